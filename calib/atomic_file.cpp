@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/atomic_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "calib/error.h"
+
+namespace vernier {
+
+void write_atomically(const std::filesystem::path& file, std::string_view content) {
+  const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.flush();
+    if (!out) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw Error(file.string(), "cannot be written", "check that its folder exists and has room");
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, file, error);
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(file.string(), "cannot be written: " + error.message(), "choose another name");
+  }
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw Error(file.string(), "is a folder", "name a file in it");
+  }
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    throw Error(file.string(), std::string("cannot be read: ") + std::strerror(errno ? errno : EIO),
+                "check the name");
+  }
+  std::ostringstream content;
+  content << in.rdbuf();
+  return std::move(content).str();
+}
+
+}  // namespace vernier

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/board_observations.h"
+
+#include <algorithm>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+std::string place_of(const BoardView& view) {
+  return "frame " + std::to_string(view.frame) + ", camera " + std::to_string(view.camera) +
+         (view.image.empty() ? "" : " (" + view.image + ")");
+}
+
+void check_view(const BoardView& view, const BoardObservations& observations) {
+  const std::string place = place_of(view);
+  if (view.camera < 0 || view.camera >= static_cast<int>(observations.size_px.size())) {
+    throw Error(place, "no image size is known for this camera", "give one size a camera");
+  }
+  if (view.ids.size() != view.pixels_px.size() || view.ids.size() < 4) {
+    throw Error(place, "fewer than four corners", "leave the view out");
+  }
+  const Eigen::Vector2d size = observations.size_px[view.camera].cast<double>();
+  for (std::size_t i = 0; i < view.ids.size(); ++i) {
+    const std::string corner = place + ", corner " + std::to_string(view.ids[i]);
+    if (view.ids[i] < 0 || view.ids[i] >= static_cast<int>(observations.target_m.size())) {
+      throw Error(corner, "the target has no such corner", "check the board's size");
+    }
+    const Eigen::Vector2d& pixel = view.pixels_px[i];
+    if (!pixel.allFinite()) {
+      throw Error(corner, "its pixel is not a finite number", "remove or correct it");
+    }
+    if ((pixel.array() < -0.5).any() || (pixel.array() > size.array() - 0.5).any()) {
+      throw Error(corner,
+                  "its pixel lies outside the image of " + std::to_string(int(size[0])) + "x" +
+                      std::to_string(int(size[1])),
+                  "check the image size, or that the corners belong to these images");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> target_points(const Chessboard& board) {
+  std::vector<Eigen::Vector3d> points;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int column = 0; column < board.columns; ++column) {
+      points.emplace_back(column * board.square_m, row * board.square_m, 0);
+    }
+  }
+  return points;
+}
+
+std::vector<int> frames_of(const BoardObservations& observations) {
+  std::vector<int> frames;
+  for (const BoardView& view : observations.views) frames.push_back(view.frame);
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+void check_and_sort(BoardObservations& observations) {
+  auto& views = observations.views;
+  std::stable_sort(views.begin(), views.end(), [](const BoardView& a, const BoardView& b) {
+    return std::pair(a.frame, a.camera) < std::pair(b.frame, b.camera);
+  });
+  for (const BoardView& view : views) check_view(view, observations);
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    if (views[i].frame == views[i - 1].frame && views[i].camera == views[i - 1].camera) {
+      throw Error(place_of(views[i]), "this camera appears twice in the frame", "remove one");
+    }
+  }
+}
+
+}  // namespace vernier

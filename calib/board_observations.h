@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// A chessboard by its inner corners.
+struct Chessboard {
+  int columns = 9;
+  int rows = 6;
+  double square_m = 0.025;
+};
+
+/// Corner positions on the board, row by row, z = 0, first corner at the origin (metres).
+std::vector<Eigen::Vector3d> target_points(const Chessboard& board);
+
+/// What one camera saw of the target in one frame.
+struct BoardView {
+  int frame = 0;   ///< views of one frame are simultaneous
+  int camera = 0;  ///< index into the rig's cameras
+  std::string image;
+  std::vector<int> ids;  ///< index into target_m, one a corner
+  std::vector<Eigen::Vector2d> pixels_px;
+};
+
+/// Corners of a rigid target seen by the cameras of a rig.
+struct BoardObservations {
+  std::vector<Eigen::Vector2i> size_px;  ///< width and height of each camera's images
+  std::vector<Eigen::Vector3d> target_m;
+  std::vector<BoardView> views;  ///< sorted by frame, then camera
+};
+
+/// The distinct frame numbers, ascending.
+std::vector<int> frames_of(const BoardObservations& observations);
+
+/// Sorts the views by frame, then camera, and checks that the observations can be calibrated from:
+/// sizes given, camera and corner indices in range, no camera twice in a frame, pixels finite and
+/// within twice the image, at least four corners a view. Throws Error naming frame, camera, corner.
+void check_and_sort(BoardObservations& observations);
+
+}  // namespace vernier

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/camera.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+template <std::size_t I = 0>
+CameraModel find_model(std::string_view name) {
+  if constexpr (I == std::variant_size_v<CameraModel>) {
+    throw Error("camera model \"" + std::string(name) + "\"", "there is no such model",
+                "use radial1, pinhole, opencv4, opencv5, opencv8 or fisheye4");
+  } else {
+    using Model = std::variant_alternative_t<I, CameraModel>;
+    if (Model::name == name) return Model{};
+    return find_model<I + 1>(name);
+  }
+}
+
+}  // namespace
+
+CameraModel camera_model(std::string_view name) { return find_model(name); }
+
+std::string_view model_name(const CameraModel& model) {
+  return std::visit([](auto m) { return decltype(m)::name; }, model);
+}
+
+std::vector<std::string> parameter_names(const CameraModel& model) {
+  std::vector<std::string> names{"f_px", "ax", "ox_px", "oy_px"};
+  std::visit(
+      [&](auto m) {
+        names.insert(names.end(), m.distortion_names.begin(), m.distortion_names.end());
+      },
+      model);
+  return names;
+}
+
+int parameter_count(const CameraModel& model) {
+  return core_parameter_count +
+         std::visit([](auto m) { return static_cast<int>(m.distortion_names.size()); }, model);
+}
+
+Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point) {
+  const double* a = camera.parameters.data();
+  const Eigen::Vector2d x = point.head<2>() / point.z();
+  const Eigen::Vector2d x_d = std::visit(
+      [&](auto m) -> Eigen::Vector2d { return m.distort(x, a + core_parameter_count).x; },
+      camera.model);
+  return {a[0] * a[1] * x_d[0] + a[2], a[0] * x_d[1] + a[3]};
+}
+
+Eigen::Vector2d project(const Camera& camera,
+                        const Eigen::Vector3d& point,
+                        ProjectionJacobian& jacobian) {
+  const double* a = camera.parameters.data();
+  const double fx = a[0] * a[1], fy = a[0];
+  const double inverse_z = 1 / point.z();
+  const Eigen::Vector2d x = point.head<2>() * inverse_z;
+  return std::visit(
+      [&](auto m) -> Eigen::Vector2d {
+        const auto d = m.distort(x, a + core_parameter_count);
+        jacobian.camera.resize(2, camera.parameters.size());
+        jacobian.camera.template leftCols<core_parameter_count>() << a[1] * d.x[0], fy * d.x[0], 1,
+            0, d.x[1], 0, 0, 1;
+        const int n = static_cast<int>(m.distortion_names.size());
+        jacobian.camera.row(0).tail(n) = fx * d.by_k.row(0);
+        jacobian.camera.row(1).tail(n) = fy * d.by_k.row(1);
+
+        Eigen::Matrix<double, 2, 3> x_by_point;
+        x_by_point << inverse_z, 0, -x[0] * inverse_z, 0, inverse_z, -x[1] * inverse_z;
+        jacobian.point = d.by_x * x_by_point;
+        jacobian.point.row(0) *= fx;
+        jacobian.point.row(1) *= fy;
+        return {fx * d.x[0] + a[2], fy * d.x[1] + a[3]};
+      },
+      camera.model);
+}
+
+Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const double* a = camera.parameters.data();
+  const Eigen::Vector2d target((pixel[0] - a[2]) / (a[0] * a[1]), (pixel[1] - a[3]) / a[0]);
+  return std::visit(
+      [&](auto m) -> Eigen::Vector3d {
+        Eigen::Vector2d x = target;
+        auto d = m.distort(x, a + core_parameter_count);
+        for (int iteration = 0; iteration < 50; ++iteration) {
+          const Eigen::Vector2d miss = d.x - target;
+          if (!(miss.norm() > 1e-15 * (1 + target.norm()))) return {x[0], x[1], 1};
+          Eigen::Vector2d step = d.by_x.inverse() * miss;
+          // Halve the step until it helps, so that a start beyond the fold cannot run away.
+          double previous = miss.norm();
+          for (int halving = 0; halving < 20; ++halving, step *= 0.5) {
+            d = m.distort(x - step, a + core_parameter_count);
+            if ((d.x - target).norm() < previous) break;
+          }
+          x -= step;
+          if (step.norm() < 1e-16 * (1 + x.norm())) break;
+        }
+        d = m.distort(x, a + core_parameter_count);
+        if (!((d.x - target).norm() < 1e-10) || d.by_x.determinant() <= 0 || d.by_x.trace() <= 0) {
+          throw Error("camera \"" + camera.name + "\"",
+                      "its distortion cannot be inverted at pixel (" + std::to_string(pixel[0]) +
+                          ", " + std::to_string(pixel[1]) + ")",
+                      "the coefficients fold the image there: calibrate with corners that reach "
+                      "the image's edge, or use a model with fewer coefficients");
+        }
+        return {x[0], x[1], 1};
+      },
+      camera.model);
+}
+
+bool in_image(const Camera& camera, const Eigen::Vector2d& pixel) {
+  return pixel[0] >= -0.5 && pixel[1] >= -0.5 && pixel[0] <= camera.size_px[0] - 0.5 &&
+         pixel[1] <= camera.size_px[1] - 0.5;
+}
+
+}  // namespace vernier

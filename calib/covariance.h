@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/normal_equations.h"
+
+namespace vernier {
+
+/// Where a covariance comes from.
+enum class CovarianceKind { mvb, clustered, jackknife, prior, combined };
+
+std::string_view name(CovarianceKind kind);
+/// Throws Error for a name that is none of mvb, clustered, jackknife, prior, combined.
+CovarianceKind covariance_kind(std::string_view name);
+
+/// A covariance of the rig's free parameters with their names: rotations in the left tangent.
+struct Covariance {
+  CovarianceKind kind = CovarianceKind::prior;
+  std::vector<std::string> names;
+  Eigen::MatrixXd matrix;
+};
+
+/// Minimum variance bound: the inverse of the reduced information, C = S⁻¹ (Tina Memo 2017-001,
+/// Eq. 3), scaled before it is factored. Throws Error, naming the parameters
+/// along the direction, where the information is singular (condition above 1e13 after scaling).
+Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
+                                       const std::vector<std::string>& names);
+
+/// Sandwich clustered by frame, F/(F-1) C (Σ_f g_f g_fᵀ) C: honest where residuals of one view
+/// depend on each other (White 1980; Liang and Zeger 1986), if frames are many. Its rank is at
+/// most F - 1, so it is refused (Error) unless F >= `frames_per_parameter` x parameters.
+Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
+                                   const Eigen::MatrixXd& bound,
+                                   double frames_per_parameter = 3);
+
+/// One principal direction of the scaled covariance D⁻¹ C D⁻¹ = U diag(s) Uᵀ, D the standard
+/// deviations.
+struct CovarianceDirection {
+  double variance_share = 0;   ///< s over the sum of all s, in [0, 1]
+  double scaled_variance = 0;  ///< s
+  Eigen::VectorXd direction;   ///< a column of U, unit, in standard deviations
+  std::string words;           ///< what it means, for a person
+};
+
+/// Scaled singular value decomposition of a covariance: C = (D U √s)(D U √s)ᵀ.
+class ScaledDecomposition {
+ public:
+  /// Throws Error where `covariance` is not symmetric or not positive semi-definite, naming the
+  /// direction in which it fails.
+  explicit ScaledDecomposition(const Covariance& covariance);
+
+  /// D U √s, parameters x parameters: C = factor factorᵀ.
+  const Eigen::MatrixXd& factor() const { return factor_; }
+  /// Largest variance first.
+  const std::vector<CovarianceDirection>& directions() const { return directions_; }
+  /// Condition number of the covariance before and after scaling.
+  double raw_condition() const { return raw_condition_; }
+  double scaled_condition() const { return scaled_condition_; }
+
+ private:
+  Eigen::MatrixXd factor_;
+  std::vector<CovarianceDirection> directions_;
+  double raw_condition_ = 0, scaled_condition_ = 0;
+};
+
+/// A unit direction in words: "0.9 of this direction is the right centre (x) against the right
+/// camera's rotation about y".
+std::string describe_direction(const Eigen::VectorXd& direction,
+                               const std::vector<std::string>& names);
+
+}  // namespace vernier

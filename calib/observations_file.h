@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "calib/board_observations.h"
+
+namespace vernier {
+
+/// Reads `frame,camera,row,col,X,Y,Z,qx,qy` (further columns ignored, target metres, pixels).
+/// Every (row, col) must have one place on the target. Throws Error with file and line.
+BoardObservations read_observations(const std::filesystem::path& file,
+                                    const std::vector<Eigen::Vector2i>& size_px);
+
+/// Writes the same columns; numbers are exact (shortest form that reads back equal).
+void write_observations(const BoardObservations& observations, const std::filesystem::path& file);
+
+/// Corners in mrcal's format: a line `# filename x y level`, then per image one line a corner, row
+/// by row, "-" for x, y, level where one was not found. An image's frame is the last number in its
+/// name and its camera the rest of the name, in order of first appearance (left01.jpg and
+/// right01.jpg: frame 1 of cameras 0 and 1). Level k means a precision of 2^k pixels: corners of
+/// level > 0 are kept as they are. Throws Error with file and line.
+BoardObservations read_corners(const std::filesystem::path& file,
+                               const Chessboard& board,
+                               const std::vector<Eigen::Vector2i>& size_px);
+
+void write_corners(const BoardObservations& observations,
+                   const Chessboard& board,
+                   const std::filesystem::path& file);
+
+/// How an image belongs to a rig by its name.
+struct ImageName {
+  std::string camera;  ///< the name without its last number
+  int frame = 0;       ///< the last number
+};
+
+/// Throws Error for a name without a number.
+ImageName parse_image_name(const std::filesystem::path& image);
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+namespace vernier {
+
+/// Where a random draw belongs. The generator has no state beyond this: the same place draws the
+/// same numbers whatever else is drawn, in whatever order, on any number of threads.
+struct DrawPlace {
+  std::uint64_t seed = 0;
+  std::uint32_t trial = 0;
+  std::uint32_t feature = 0;  ///< identity of the thing, never its position in a list
+  std::uint32_t source = 0;   ///< 8 bits: which process draws
+  std::uint32_t eye = 0;      ///< 2 bits: 0 left, 1 right
+  std::uint32_t frame = 0;    ///< 22 bits: time step or look
+};
+
+/// Stream of random numbers at one place: Philox4x32-10 (Salmon et al., "Parallel random numbers:
+/// as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye · frame,
+/// draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples monotonically.
+class Draws {
+ public:
+  /// Throws Error where source, eye or frame exceed their bits.
+  explicit Draws(const DrawPlace& place);
+
+  double uniform();                         ///< in (0, 1), 53 bits
+  double uniform(double low, double high);  ///< in (low, high)
+  double normal();                          ///< mean 0, standard deviation 1
+  std::uint32_t below(std::uint32_t n);     ///< integer in [0, n)
+  Eigen::VectorXd normals(int n);
+
+ private:
+  std::array<std::uint32_t, 2> key_;
+  std::array<std::uint32_t, 4> counter_;
+  std::array<std::uint32_t, 4> words_{};
+  int used_ = 4;
+};
+
+/// Quantile of the standard normal distribution, p in (0, 1): Wichura's AS 241, PPND16
+/// (relative accuracy about 1e-16).
+double normal_quantile(double p);
+
+}  // namespace vernier

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig.h"
+
+namespace vernier {
+
+int intrinsics_index(const Rig& rig, int camera) {
+  int index = 0;
+  for (int i = 0; i < camera; ++i) index += parameter_count(rig.cameras[i].model);
+  return index;
+}
+
+int pose_index(const Rig& rig, int camera) {
+  return intrinsics_index(rig, static_cast<int>(rig.cameras.size())) + 6 * (camera - 1);
+}
+
+int parameter_count(const Rig& rig) {
+  return pose_index(rig, static_cast<int>(rig.cameras.size()));
+}
+
+std::vector<std::string> parameter_names(const Rig& rig) {
+  std::vector<std::string> names;
+  for (const Camera& camera : rig.cameras) {
+    for (const std::string& name : parameter_names(camera.model)) {
+      names.push_back(camera.name + "." + name);
+    }
+  }
+  for (std::size_t i = 1; i < rig.cameras.size(); ++i) {
+    for (const char* name : {"wx_rad", "wy_rad", "wz_rad", "tx_m", "ty_m", "tz_m"}) {
+      names.push_back(rig.cameras[i].name + "." + name);
+    }
+  }
+  return names;
+}
+
+Eigen::VectorXd parameters(const Rig& rig) {
+  Eigen::VectorXd a(parameter_count(rig));
+  int index = 0;
+  for (const Camera& camera : rig.cameras) {
+    a.segment(index, camera.parameters.size()) = camera.parameters;
+    index += static_cast<int>(camera.parameters.size());
+  }
+  for (std::size_t i = 1; i < rig.cameras.size(); ++i, index += 6) {
+    a.segment<3>(index) = vector_from_rotation(rig.T_camera_first[i].R);
+    a.segment<3>(index + 3) = rig.T_camera_first[i].t;
+  }
+  return a;
+}
+
+Rig retract(const Rig& rig, const Eigen::VectorXd& delta) {
+  Rig moved = rig;
+  int index = 0;
+  for (Camera& camera : moved.cameras) {
+    camera.parameters += delta.segment(index, camera.parameters.size());
+    index += static_cast<int>(camera.parameters.size());
+  }
+  for (std::size_t i = 1; i < rig.cameras.size(); ++i, index += 6) {
+    moved.T_camera_first[i] = retract(rig.T_camera_first[i], delta.segment<6>(index));
+  }
+  return moved;
+}
+
+Eigen::VectorXd difference(const Rig& to, const Rig& from) {
+  Eigen::VectorXd delta = parameters(to) - parameters(from);
+  for (std::size_t i = 1; i < from.cameras.size(); ++i) {
+    delta.segment<3>(pose_index(from, static_cast<int>(i))) =
+        vector_from_rotation(to.T_camera_first[i].R * from.T_camera_first[i].R.transpose());
+  }
+  return delta;
+}
+
+}  // namespace vernier

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/camera.h"
+#include "calib/pose.h"
+
+namespace vernier {
+
+/// Cameras fixed to each other; the first one's frame is the rig's.
+///
+/// Parameter vector, in this order and with these names:
+///
+///     left.f_px left.ax left.ox_px left.oy_px left.k1 … right.f_px … right.k1
+///     right.wx_rad right.wy_rad right.wz_rad right.tx_m right.ty_m right.tz_m
+///
+/// that is the intrinsics of every camera, then the pose of every camera but the first.
+struct Rig {
+  std::vector<Camera> cameras;
+  std::vector<Pose> T_camera_first;  ///< one a camera, the first the identity
+};
+
+std::vector<std::string> parameter_names(const Rig& rig);
+int parameter_count(const Rig& rig);
+
+/// Values in the order of the names; a rotation as its rotation vector.
+Eigen::VectorXd parameters(const Rig& rig);
+
+/// The rig at `rig` moved by `delta` in its tangent: intrinsics add, a rotation becomes
+/// exp([w]x) R (left tangent, radians), a translation adds. Covariances live in this tangent.
+Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
+
+/// The delta with retract(from, delta) = to.
+Eigen::VectorXd difference(const Rig& to, const Rig& from);
+
+/// Index of the first intrinsic parameter of a camera, and of its pose (camera >= 1).
+int intrinsics_index(const Rig& rig, int camera);
+int pose_index(const Rig& rig, int camera);
+
+}  // namespace vernier

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/covariance.h"
+
+namespace vernier {
+
+/// How a calibration went.
+struct CalibrationSummary {
+  std::string source = "board";  ///< board, pairs or combined
+  double pixel_sigma_px = 0;     ///< standard deviation of a pixel coordinate
+  double rms_px = 0;             ///< root mean square residual, per coordinate
+  double chi2 = 0;               ///< sum of squared residuals over pixel_sigma_px²
+  int dof = 0;                   ///< residuals less parameters, board poses included
+  int views = 0;                 ///< frames used
+  std::vector<std::string> outliers;
+  std::vector<std::string> warnings;
+};
+
+/// All that is needed to solve again, to propagate with the board poses, to compare and combine.
+struct CalibrationEvidence {
+  BoardObservations observations;
+  std::vector<int> frames;          ///< ascending
+  std::vector<Pose> T_first_board;  ///< one a frame
+};
+
+/// A rig and how well it is known: the content of a rig.json.
+struct RigEstimate {
+  Rig rig;
+  std::optional<Covariance> covariance;           ///< what is sampled
+  std::optional<Eigen::MatrixXd> covariance_mvb;  ///< the minimum variance bound beside it
+  std::optional<CalibrationSummary> calibration;
+  std::optional<CalibrationEvidence> evidence;
+  std::string other_keys;  ///< keys of the file that this version does not know, as JSON text
+};
+
+/// The covariance to sample from. Throws Error(`place`) where the estimate has none.
+const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place);
+
+}  // namespace vernier

@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/rig_json.h"
+
+namespace vernier {
+namespace {
+
+using rig_json::Json;
+using rig_json::Node;
+using rig_json::to_json;
+
+constexpr std::array<const char*, 9> known_keys{"format",          "version",     "cameras",
+                                                "parameter_names", "parameters",  "covariance",
+                                                "covariance_mvb",  "calibration", "evidence"};
+
+Json camera_json(const Camera& camera, const Pose& T_camera_first, bool first) {
+  Json json;
+  json["name"] = camera.name;
+  json["model"] = model_name(camera.model);
+  json["size_px"] = {camera.size_px[0], camera.size_px[1]};
+  const std::vector<std::string> names = parameter_names(camera.model);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    json["parameters"][names[i]] = camera.parameters[static_cast<Eigen::Index>(i)];
+    if (names[i] == "ax") json["parameters"]["ay"] = 1;
+  }
+  if (!first) {
+    json["from_first"]["rotation_rad"] =
+        to_json(Eigen::VectorXd(vector_from_rotation(T_camera_first.R)));
+    json["from_first"]["translation_m"] = to_json(Eigen::VectorXd(T_camera_first.t));
+  }
+  return json;
+}
+
+Camera parse_camera(const Node& node) {
+  Camera camera;
+  camera.name = node.at("name").text();
+  try {
+    camera.model = camera_model(node.at("model").text());
+  } catch (const Error& error) {
+    throw Error(node.place(), error.what(), "");
+  }
+  const Eigen::VectorXd size = node.at("size_px").vector();
+  if (size.size() != 2 || !(size.minCoeff() >= 1) || size != size.array().round().matrix()) {
+    throw Error(node.at("size_px").place(), "is not [width, height]", "give two whole numbers");
+  }
+  camera.size_px = size.cast<int>();
+  const Node values = node.at("parameters");
+  if (values.has("ay") && values.at("ay").number() != 1) {
+    throw Error(values.at("ay").place(),
+                "is not 1: (f, ax, ay) together have a null direction, so ay is 1 by definition",
+                "multiply f_px by ay and divide ax by it");
+  }
+  const std::vector<std::string> names = parameter_names(camera.model);
+  camera.parameters.resize(static_cast<Eigen::Index>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    camera.parameters[static_cast<Eigen::Index>(i)] = values.at(names[i]).number();
+  }
+  for (const auto& [key, value] : values.json().items()) {
+    if (key != "ay" && std::find(names.begin(), names.end(), key) == names.end()) {
+      throw Error(values.place() + "." + key,
+                  fmt::format("the model {} has no such parameter", model_name(camera.model)),
+                  "remove it or choose another model");
+    }
+  }
+  if (!(camera.f_px() > 0) || !(camera.ax() > 0)) {
+    throw Error(values.place(), "f_px and ax must be above 0", "");
+  }
+  return camera;
+}
+
+Rig parse_cameras(const Node& node) {
+  Rig rig;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < node.array().size(); ++i) {
+    const Node camera = node.at(i);
+    rig.cameras.push_back(parse_camera(camera));
+    if (!names.insert(rig.cameras.back().name).second) {
+      throw Error(camera.at("name").place(), "two cameras have this name", "name each its own");
+    }
+    Pose T;
+    if (i > 0) {
+      const Node pose = camera.at("from_first");
+      T = {rotation_from_vector(pose.at("rotation_rad").vector3()),
+           pose.at("translation_m").vector3()};
+    }
+    rig.T_camera_first.push_back(T);
+  }
+  if (rig.cameras.empty()) throw Error(node.place(), "no camera in it", "");
+  return rig;
+}
+
+/// parameters must repeat the cameras' values; a disagreement is an error.
+void check_parameters(const Node& root, const Rig& rig) {
+  const Node node = root.at("parameters");
+  const Eigen::VectorXd stated = node.vector(), actual = parameters(rig);
+  const std::vector<std::string> names = parameter_names(rig);
+  if (stated.size() != actual.size()) {
+    throw Error(node.place(), fmt::format("{} values for {} names", stated.size(), names.size()),
+                "give one a name");
+  }
+  for (Eigen::Index i = 0; i < stated.size(); ++i) {
+    if (std::abs(stated[i] - actual[i]) > 1e-9 * (1 + std::abs(actual[i]))) {
+      throw Error(node.place(),
+                  fmt::format("{} is {} here and {} in cameras", names[i], stated[i], actual[i]),
+                  "make them agree");
+    }
+  }
+}
+
+Covariance parse_covariance(const Node& root, const Rig& rig) {
+  Covariance covariance;
+  const Node stated = root.at("parameter_names");
+  for (std::size_t i = 0; i < stated.array().size(); ++i) {
+    covariance.names.push_back(stated.at(i).text());
+  }
+  if (covariance.names != parameter_names(rig)) {
+    throw Error(stated.place(), "are not the rig's parameters in their order",
+                "see docs/file-formats.md");
+  }
+  check_parameters(root, rig);
+  const Node node = root.at("covariance");
+  covariance.kind = covariance_kind(node.at("kind").text());
+  covariance.matrix = node.at("matrix").matrix();
+  if (covariance.matrix.rows() != static_cast<Eigen::Index>(covariance.names.size())) {
+    throw Error(node.at("matrix").place(),
+                fmt::format("is {0}x{0} for {1} parameters", covariance.matrix.rows(),
+                            covariance.names.size()),
+                "");
+  }
+  return covariance;
+}
+
+std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
+  std::vector<std::string> texts;
+  if (!node.has(key)) return texts;
+  for (std::size_t i = 0; i < node.at(key).array().size(); ++i) {
+    texts.push_back(node.at(key).at(i).text());
+  }
+  return texts;
+}
+
+CalibrationSummary parse_summary(const Node& node) {
+  CalibrationSummary summary;
+  summary.source = node.at("source").text();
+  summary.pixel_sigma_px = node.at("pixel_sigma_px").number();
+  summary.rms_px = node.at("rms_px").number();
+  summary.chi2 = node.at("chi2").number();
+  summary.dof = node.at("dof").integer();
+  summary.views = node.at("views").integer();
+  summary.outliers = parse_texts(node, "outliers");
+  summary.warnings = parse_texts(node, "warnings");
+  return summary;
+}
+
+Json summary_json(const CalibrationSummary& s) {
+  return {{"source", s.source},     {"pixel_sigma_px", s.pixel_sigma_px},
+          {"rms_px", s.rms_px},     {"chi2", s.chi2},
+          {"dof", s.dof},           {"views", s.views},
+          {"outliers", s.outliers}, {"warnings", s.warnings}};
+}
+
+int line_of(const std::string& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<long>(std::min(byte, text.size()));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+}  // namespace
+
+RigFile parse_rig(const std::string& text, const std::string& place) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw Error(fmt::format("{}:{}", place, line_of(text, error.byte)),
+                "is not JSON: a comma, quote or bracket is wrong here", "correct it");
+  }
+  const Node root(json, place + ":");
+  if (!root.has("format") || root.at("format").text() != "vernier/rig") {
+    throw Error(place, "is not a rig file: its format is not \"vernier/rig\"",
+                "write one with vernier calibrate");
+  }
+  if (root.at("version").integer() != 1) {
+    throw Error(place, "its version is not 1", "use a newer vernier");
+  }
+  RigFile file;
+  RigEstimate& estimate = file.estimate;
+  estimate.rig = parse_cameras(root.at("cameras"));
+  if (root.has("covariance")) estimate.covariance = parse_covariance(root, estimate.rig);
+  if (root.has("covariance_mvb")) {
+    estimate.covariance_mvb = root.at("covariance_mvb").at("matrix").matrix();
+  }
+  if (root.has("calibration")) estimate.calibration = parse_summary(root.at("calibration"));
+  if (root.has("evidence")) {
+    estimate.evidence = rig_json::parse_evidence(root.at("evidence"), estimate.rig);
+  }
+  Json others = Json::object();
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
+    others[key] = value;
+    file.warnings.push_back(place + ": the key \"" + key + "\" is unknown; it is kept as it is");
+  }
+  if (!others.empty()) estimate.other_keys = others.dump();
+  return file;
+}
+
+RigFile read_rig(const std::filesystem::path& file) {
+  return parse_rig(read_whole(file), file.string());
+}
+
+std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
+  Json json;
+  json["format"] = "vernier/rig";
+  json["version"] = 1;
+  json["cameras"] = Json::array();
+  for (std::size_t i = 0; i < estimate.rig.cameras.size(); ++i) {
+    json["cameras"].push_back(
+        camera_json(estimate.rig.cameras[i], estimate.rig.T_camera_first[i], i == 0));
+  }
+  json["parameter_names"] = parameter_names(estimate.rig);
+  json["parameters"] = to_json(parameters(estimate.rig));
+  if (estimate.covariance) {
+    json["covariance"] = {{"kind", name(estimate.covariance->kind)},
+                          {"matrix", to_json(estimate.covariance->matrix)}};
+  }
+  if (estimate.covariance_mvb) json["covariance_mvb"]["matrix"] = to_json(*estimate.covariance_mvb);
+  if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration);
+  if (estimate.evidence && evidence == KeepEvidence::yes) {
+    json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
+  }
+  if (!estimate.other_keys.empty()) json.update(Json::parse(estimate.other_keys));
+  return json.dump() + "\n";
+}
+
+void write_rig(const RigEstimate& estimate,
+               const std::filesystem::path& file,
+               KeepEvidence evidence) {
+  write_atomically(file, format_rig(estimate, evidence));
+}
+
+}  // namespace vernier

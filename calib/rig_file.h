@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/rig_estimate.h"
+
+namespace vernier {
+
+/// A rig file as read, with what deserves a warning (unknown keys, which are kept).
+struct RigFile {
+  RigEstimate estimate;
+  std::vector<std::string> warnings;
+};
+
+/// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Needed are format,
+/// version and cameras; parameter_names, parameters and covariance come together and must agree
+/// with the cameras. Throws Error naming file and key, and the line for malformed JSON.
+RigFile read_rig(const std::filesystem::path& file);
+RigFile parse_rig(const std::string& text, const std::string& place);
+
+enum class KeepEvidence { yes, no };
+
+/// Text of a rig.json; numbers in the shortest form that reads back equal.
+std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence = KeepEvidence::yes);
+void write_rig(const RigEstimate& estimate,
+               const std::filesystem::path& file,
+               KeepEvidence evidence = KeepEvidence::yes);
+
+}  // namespace vernier

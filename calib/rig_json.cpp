@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_json.h"
+
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier::rig_json {
+
+Node Node::at(const std::string& key) const {
+  if (!json_.is_object()) throw Error(place_, "is not an object", "");
+  if (!json_.contains(key)) throw Error(place_, "has no \"" + key + "\"", "add it");
+  return {json_.at(key), place_ + (place_.back() == ':' ? " " : ".") + key};
+}
+
+Node Node::at(std::size_t index) const {
+  return {array().at(index), place_ + "[" + std::to_string(index) + "]"};
+}
+
+double Node::number() const {
+  if (!json_.is_number()) throw Error(place_, "is not a number", "");
+  const double value = json_.get<double>();
+  if (!std::isfinite(value)) throw Error(place_, "is not finite", "");
+  return value;
+}
+
+int Node::integer() const {
+  if (!json_.is_number_integer()) throw Error(place_, "is not an integer", "");
+  return json_.get<int>();
+}
+
+std::string Node::text() const {
+  if (!json_.is_string()) throw Error(place_, "is not a text", "");
+  return json_.get<std::string>();
+}
+
+const Json& Node::array() const {
+  if (!json_.is_array()) throw Error(place_, "is not a list", "");
+  return json_;
+}
+
+Eigen::VectorXd Node::vector() const {
+  Eigen::VectorXd v(static_cast<Eigen::Index>(array().size()));
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = at(static_cast<std::size_t>(i)).number();
+  return v;
+}
+
+Eigen::Vector3d Node::vector3() const {
+  const Eigen::VectorXd v = vector();
+  if (v.size() != 3) throw Error(place_, "is not a list of 3 numbers", "");
+  return v;
+}
+
+Eigen::MatrixXd Node::matrix() const {
+  const auto n = static_cast<Eigen::Index>(array().size());
+  Eigen::MatrixXd m(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd row = at(static_cast<std::size_t>(i)).vector();
+    if (row.size() != n) throw Error(place_, "is not a square matrix", "");
+    m.row(i) = row.transpose();
+  }
+  return m;
+}
+
+Json to_json(const Eigen::VectorXd& v) {
+  Json json = Json::array();
+  for (const double x : v) json.push_back(x);
+  return json;
+}
+
+Json to_json(const Eigen::MatrixXd& m) {
+  Json json = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) json.push_back(to_json(Eigen::VectorXd(m.row(i))));
+  return json;
+}
+
+Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
+  Json json;
+  const BoardObservations& observations = evidence.observations;
+  json["board"]["points_m"] = Json::array();
+  for (const auto& X : observations.target_m) {
+    json["board"]["points_m"].push_back(to_json(Eigen::VectorXd(X)));
+  }
+  json["observations"] = Json::array();
+  for (const BoardView& view : observations.views) {
+    Json v;
+    v["frame"] = view.frame;
+    v["camera"] = rig.cameras[view.camera].name;
+    if (!view.image.empty()) v["image"] = view.image;
+    bool whole = view.ids.size() == observations.target_m.size();
+    for (std::size_t i = 0; whole && i < view.ids.size(); ++i) {
+      whole = view.ids[i] == static_cast<int>(i);
+    }
+    if (!whole) v["ids"] = view.ids;  // left out where the whole target was seen in order
+    v["pixels_px"] = Json::array();
+    for (const auto& q : view.pixels_px) v["pixels_px"].push_back({q.x(), q.y()});
+    json["observations"].push_back(std::move(v));
+  }
+  json["view_poses"] = Json::array();
+  for (std::size_t f = 0; f < evidence.frames.size(); ++f) {
+    const Pose& T = evidence.T_first_board[f];
+    json["view_poses"].push_back(
+        {{"frame", evidence.frames[f]},
+         {"rotation_rad", to_json(Eigen::VectorXd(vector_from_rotation(T.R)))},
+         {"translation_m", to_json(Eigen::VectorXd(T.t))}});
+  }
+  return json;
+}
+
+CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
+  CalibrationEvidence evidence;
+  BoardObservations& observations = evidence.observations;
+  for (const Camera& camera : rig.cameras) observations.size_px.push_back(camera.size_px);
+  const Node points = node.at("board").at("points_m");
+  for (std::size_t i = 0; i < points.array().size(); ++i) {
+    observations.target_m.push_back(points.at(i).vector3());
+  }
+  const Node views = node.at("observations");
+  for (std::size_t i = 0; i < views.array().size(); ++i) {
+    const Node v = views.at(i);
+    BoardView view;
+    view.frame = v.at("frame").integer();
+    const std::string camera = v.at("camera").text();
+    view.camera = -1;
+    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+      if (rig.cameras[c].name == camera) view.camera = static_cast<int>(c);
+    }
+    if (view.camera < 0) throw Error(v.at("camera").place(), "the rig has no such camera", "");
+    if (v.has("image")) view.image = v.at("image").text();
+    const Node pixels = v.at("pixels_px");
+    for (std::size_t k = 0; k < pixels.array().size(); ++k) {
+      const Eigen::VectorXd q = pixels.at(k).vector();
+      if (q.size() != 2) throw Error(pixels.at(k).place(), "is not a pixel", "");
+      view.pixels_px.emplace_back(q);
+      view.ids.push_back(v.has("ids") ? v.at("ids").at(k).integer() : static_cast<int>(k));
+    }
+    observations.views.push_back(std::move(view));
+  }
+  const Node poses = node.at("view_poses");
+  for (std::size_t i = 0; i < poses.array().size(); ++i) {
+    const Node p = poses.at(i);
+    evidence.frames.push_back(p.at("frame").integer());
+    evidence.T_first_board.push_back(
+        {rotation_from_vector(p.at("rotation_rad").vector3()), p.at("translation_m").vector3()});
+  }
+  check_and_sort(observations);
+  if (frames_of(observations) != evidence.frames) {
+    throw Error(poses.place(), "its frames are not those of the observations", "");
+  }
+  return evidence;
+}
+
+}  // namespace vernier::rig_json

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calib/rig_estimate.h"
+
+/// Internal to calib/: JSON of the parts of a rig file. Not installed.
+namespace vernier::rig_json {
+
+using Json = nlohmann::ordered_json;
+
+/// A JSON object with the place it stands in, so that every complaint names file and key.
+class Node {
+ public:
+  Node(const Json& json, std::string place) : json_(json), place_(std::move(place)) {}
+
+  bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
+  /// Throws Error where the key is missing.
+  Node at(const std::string& key) const;
+  Node at(std::size_t index) const;
+  std::size_t size() const { return json_.size(); }
+
+  double number() const;  ///< finite
+  int integer() const;
+  std::string text() const;
+  const Json& array() const;
+  Eigen::Vector3d vector3() const;
+  Eigen::VectorXd vector() const;
+  Eigen::MatrixXd matrix() const;  ///< square
+  const Json& json() const { return json_; }
+  const std::string& place() const { return place_; }
+
+ private:
+  const Json& json_;
+  std::string place_;
+};
+
+Json to_json(const Eigen::VectorXd& v);
+Json to_json(const Eigen::MatrixXd& m);
+
+Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig);
+CalibrationEvidence parse_evidence(const Node& node, const Rig& rig);
+
+}  // namespace vernier::rig_json

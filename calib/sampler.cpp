@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/sampler.h"
+
+#include "calib/draw_sources.h"
+#include "calib/error.h"
+#include "calib/random.h"
+
+namespace vernier {
+
+RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
+    : mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {
+  if (estimate.covariance->names != parameter_names(mean_)) {
+    throw Error(place, "its covariance is of other parameters than the rig's", "");
+  }
+}
+
+Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
+  Draws draws({.seed = seed,
+               .trial = trial,
+               .source = static_cast<std::uint32_t>(DrawSource::calibration)});
+  const Eigen::MatrixXd& factor = decomposition_.factor();
+  const Eigen::VectorXd unit = factor * draws.normals(static_cast<int>(factor.cols()));
+  return psi_c * unit;
+}
+
+Rig RigSampler::sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
+  return retract(mean_, deviation(psi_c, seed, trial));
+}
+
+}  // namespace vernier

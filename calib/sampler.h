@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "calib/rig_estimate.h"
+
+namespace vernier {
+
+/// Draws rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
+///
+///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ
+///
+/// ⊕ is the tangent of calib/rig.h. ψ_c scales standard deviations: at ψ_c = 2 every deviation is
+/// exactly twice that at ψ_c = 1 under the same seed.
+class RigSampler {
+ public:
+  /// Throws Error where the estimate has no covariance or one that is not positive semi-definite.
+  explicit RigSampler(const RigEstimate& estimate, const std::string& place = "rig");
+
+  /// Deviation in the tangent of draw `trial` under `seed`.
+  Eigen::VectorXd deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
+
+  /// The rig of that draw.
+  Rig sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
+
+  const ScaledDecomposition& decomposition() const { return decomposition_; }
+  const Rig& mean() const { return mean_; }
+
+ private:
+  Rig mean_;
+  ScaledDecomposition decomposition_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "calib/initial_rig.h"
+
+namespace vernier {
+
+struct SimulatedBoardOptions {
+  int frames = 20;
+  double pixel_sigma_px = 0.2;  ///< white noise on each coordinate; 0 for none
+  double distance_m = 1.0;      ///< of the board's centre, varied by a third either way
+  double tilt_rad = 0.6;        ///< largest about x and y
+};
+
+struct SimulatedBoard {
+  BoardObservations observations;
+  BoardState truth;
+};
+
+/// Views of a chessboard that every camera of `rig` sees in full, with white noise: what a
+/// calibration is tested and planned with. The same seed and trial give the same poses; noise is
+/// drawn by (trial, frame, camera), poses by (seed) alone, so trials differ in noise only. Throws
+/// Error where no such view can be found in 1000 tries.
+SimulatedBoard simulate_board(const Rig& rig,
+                              const Chessboard& board,
+                              std::uint64_t seed,
+                              std::uint32_t trial = 0,
+                              const SimulatedBoardOptions& options = {});
+
+}  // namespace vernier

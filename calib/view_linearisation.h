@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+
+namespace vernier {
+
+/// Reprojection residuals r = project(T_camera_first T_first_board X) - q of one board view and
+/// their derivatives in the left tangents of both poses. Rows alternate u, v; pixels.
+struct ViewLinearisation {
+  Eigen::VectorXd residual_px;                                      ///< 2n
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic> by_camera;  ///< 2n x intrinsics
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_camera_pose;          ///< 2n x 6, of T_camera_first
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_board_pose;           ///< 2n x 6, of T_first_board
+};
+
+/// Whether derivatives are wanted as well.
+enum class Linearise { residual_only, with_jacobian };
+
+/// The one piece of code behind the Ceres cost, the normal equations and the re-solver.
+void linearise_view(const Camera& camera,
+                    const Pose& T_camera_first,
+                    const Pose& T_first_board,
+                    const std::vector<Eigen::Vector3d>& target_m,
+                    const BoardView& view,
+                    Linearise what,
+                    ViewLinearisation& out);
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace vernier {
+
+/// Unit normal n and distance d of the plane n·x = d through a polygon, by Newell's sum
+///
+///     n ~ Σ (p_i - p_0) × (p_i+1 - p_0),   d = mean of n·p_i,
+///
+/// counter-clockwise about n. n is zero for a polygon of no area (thinner than 1e-10 m).
+struct PolygonPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double distance_m = 0;
+};
+PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m);
+
+/// Cuts a simple planar polygon into convex pieces, each a loop of indices into `polygon_m`,
+/// counter-clockwise about the normal: ears are clipped, then every cut is taken back that both its
+/// ends can do without (Hertel and Mehlhorn, "Fast triangulation of simple polygons", 1983; at most
+/// four times the least number of pieces). A hole may be joined to the border by a cut walked both
+/// ways. A polygon that is convex to 1e-9 m is one piece; one of no area has none.
+std::vector<std::vector<int>> convex_pieces(const std::vector<Eigen::Vector3d>& polygon_m);
+
+/// A convex piece of a surface of the world: plane normal·x = distance, its vertices
+/// counter-clockwise about the normal, and a ball around them.
+struct ConvexSurface {
+  Eigen::Vector3d normal;
+  double distance_m = 0;
+  Eigen::Vector3d centre_m;
+  double radius_m = 0;
+  int first_vertex = 0, vertex_count = 0;
+};
+
+/// All surfaces of a world as convex pieces, the vertices of all in one list.
+struct ConvexSurfaces {
+  std::vector<ConvexSurface> pieces;
+  std::vector<Eigen::Vector3d> vertices_m;
+};
+ConvexSurfaces convex_surfaces(const World& world);
+
+}  // namespace vernier

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace vernier {
+
+inline constexpr double kWallThickness_m = 0.1;
+inline constexpr double kDoorWidth_m = 0.9;
+inline constexpr double kDoorHeight_m = 2.05;
+inline constexpr double kCasing_m = 0.08;    ///< width of the door frame's face
+inline constexpr double kBoardTop_m = 0.74;  ///< of a desk
+
+/// The bookshelf, for those who fill it: upper sides of its boards, clear width and height between
+/// boards, its side panels and how far the books stand from the wall.
+inline constexpr std::array<double, 5> kShelfBoards_m{0.08, 0.46, 0.84, 1.22, 1.60};
+inline constexpr double kShelfSide_m = 0.03, kShelfClear_m = 0.84;
+inline constexpr double kShelfClearHeight_m = 0.35, kBookFront_m = 0.28;
+
+/// The things of an office that are placed many times. Standing and wall-mounted things have their
+/// origin at the wall, x along the wall, y into the room, z up from the floor; ceiling lights and
+/// vents at their middle in the ceiling; chairs, monitors and bins at their middle on what they
+/// stand on; door frames at the middle of the opening on the room's side of the wall.
+std::vector<WorldTemplate> office_templates();
+
+}  // namespace vernier

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/office_site.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "sim/office_furniture.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kRouteClearance_m = 0.35;  ///< 0.3 m is promised
+constexpr double kHeadroom_m = 2.0;
+constexpr double kGap_m = 0.015;  ///< between neighbours, so that edges never coincide
+
+double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
+  const Vector2d d = b - a;
+  const double length2 = d.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((x - a).dot(d) / length2, 0.0, 1.0) : 0;
+  return (x - a - t * d).norm();
+}
+
+bool crosses(const Eigen::AlignedBox2d& box, const Vector2d& a, const Vector2d& b) {
+  double first = 0, last = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double d = b[axis] - a[axis];
+    if (d == 0) {
+      if (a[axis] < box.min()[axis] || a[axis] > box.max()[axis]) return false;
+      continue;
+    }
+    const double t0 = (box.min()[axis] - a[axis]) / d, t1 = (box.max()[axis] - a[axis]) / d;
+    first = std::max(first, std::min(t0, t1));
+    last = std::min(last, std::max(t0, t1));
+  }
+  return first <= last;
+}
+
+}  // namespace
+
+double distance_to_path(const AlignedBox3d& box, const std::vector<Vector2d>& path_m) {
+  const Eigen::AlignedBox2d plan(box.min().head<2>(), box.max().head<2>());
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < path_m.size(); ++i) {
+    const Vector2d& a = path_m[i];
+    const Vector2d& b = path_m[i + 1];
+    if (crosses(plan, a, b)) return 0;
+    // Of two convex shapes apart, the nearest pair of points holds a vertex of one of them.
+    nearest = std::min({nearest, plan.exteriorDistance(a), plan.exteriorDistance(b)});
+    for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
+                              Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
+      nearest = std::min(nearest, distance_to_segment(plan.corner(corner), a, b));
+    }
+  }
+  return nearest;
+}
+
+OfficeWall OfficeRoom::wall(int side) const {
+  const double width = high_m.x() - low_m.x(), depth = high_m.y() - low_m.y();
+  switch (side) {
+    case 0:
+      return {{{low_m.x(), low_m.y(), 0}, 0}, width};
+    case 1:
+      return {{{high_m.x(), low_m.y(), 0}, 1}, depth};
+    case 2:
+      return {{{high_m.x(), high_m.y(), 0}, 2}, width};
+    default:
+      return {{{low_m.x(), high_m.y(), 0}, 3}, depth};
+  }
+}
+
+OfficeSite::OfficeSite(std::uint64_t seed) : seed_(seed) {
+  world_.templates = office_templates();
+  for (const auto& entry : world_.templates) bounds_[entry.name] = bounds(entry.features);
+}
+
+void OfficeSite::enter(const OfficeRoom& room, const std::vector<Vector2d>& path_m) {
+  room_ = room;
+  path_m_ = path_m;
+  occupied_.clear();
+}
+
+Draws OfficeSite::draws(std::uint32_t item) const {
+  return Draws(
+      {.seed = seed_, .trial = room_.number, .feature = item, .source = kOfficeDrawSource});
+}
+
+bool OfficeSite::is_free(const AlignedBox3d& box) const {
+  AlignedBox3d room(room_.low_m, room_.high_m);
+  room.min().array() -= 1e-9;
+  room.max().array() += 1e-9;
+  if (!room.contains(box)) return false;
+  if (box.min().z() < kHeadroom_m && distance_to_path(box, path_m_) < kRouteClearance_m) {
+    return false;
+  }
+  // Stacked things touch; only neighbours keep a gap.
+  const Vector3d gap(kGap_m, kGap_m, -1e-6);
+  const AlignedBox3d grown(box.min() - gap, box.max() + gap);
+  return std::none_of(occupied_.begin(), occupied_.end(),
+                      [&](const AlignedBox3d& other) { return grown.intersects(other); });
+}
+
+AlignedBox3d OfficeSite::taken(const std::string& name,
+                               const QuarterFrame& frame,
+                               const Vector3d& at_m) const {
+  AlignedBox3d box = bounds_.at(name);
+  // Nothing goes between a piece of furniture and its wall.
+  if (box.min().y() > 0) box.min().y() = 0;
+  return frame * box.translate(at_m);
+}
+
+bool OfficeSite::try_place(const std::string& name,
+                           const QuarterFrame& frame,
+                           const Vector3d& at_m) {
+  const AlignedBox3d box = taken(name, frame, at_m);
+  if (!is_free(box)) return false;
+  occupy(box);
+  place(name, frame, at_m);
+  return true;
+}
+
+void OfficeSite::place(const std::string& name,
+                       const QuarterFrame& frame,
+                       const Vector3d& at_m,
+                       int yaw_deg) {
+  const int turned = ((frame.quarters * 90 + yaw_deg) % 360 + 360) % 360;
+  world_.instances.push_back({name, to_grid(frame * at_m), turned * (std::numbers::pi / 180)});
+}
+
+bool OfficeSite::try_carton(const QuarterFrame& frame, const AlignedBox3d& box) {
+  const AlignedBox3d placed = frame * box;
+  if (!is_free(placed)) return false;
+  occupy(placed);
+  loose_.frame = frame;
+  const Vector3d &low = box.min(), &high = box.max();
+  loose_.box(low, high, kStandingFaces);
+  const double y = (low.y() + high.y()) / 2, flap = 0.2 * (high.z() - low.z());
+  loose_.line({low.x(), y, high.z()}, {high.x(), y, high.z()});
+  for (const double x : {low.x(), high.x()}) {
+    loose_.line({x, y, high.z()}, {x, y, high.z() - flap});
+  }
+  return true;
+}
+
+WorldDescription OfficeSite::finish() {
+  std::set<std::string> used;
+  for (const auto& instance : world_.instances) used.insert(instance.template_name);
+  std::erase_if(world_.templates,
+                [&](const WorldTemplate& entry) { return !used.contains(entry.name); });
+  world_.loose = loose_.features();
+  return std::move(world_);
+}
+
+}  // namespace vernier

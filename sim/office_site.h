@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calib/random.h"
+#include "sim/office_shapes.h"
+#include "sim/world.h"
+
+namespace vernier {
+
+/// Of the 8 bits that say which process draws; far from the sources of a sensed view.
+inline constexpr std::uint32_t kOfficeDrawSource = 200;
+
+/// One wall of a room seen from inside: x along it, y into the room, z up.
+struct OfficeWall {
+  QuarterFrame frame;
+  double length_m = 0;
+};
+
+/// A rectangle of floor with its four walls: 0 at low y, 1 at high x, 2 at high y, 3 at low x.
+struct OfficeRoom {
+  std::uint32_t number = 0;  ///< keys its draws
+  Eigen::Vector3d low_m, high_m;
+
+  OfficeWall wall(int side) const;
+};
+
+/// Shortest distance from a polyline on the floor to an upright box, as seen from above.
+double distance_to_path(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector2d>& path_m);
+
+/// Where an office is put together: places templates and loose things in the current room, and
+/// keeps them apart from one another and from the route.
+class OfficeSite {
+ public:
+  explicit OfficeSite(std::uint64_t seed);
+
+  /// Begins a room; whatever stands in it later stays clear of `path_m`.
+  void enter(const OfficeRoom& room, const std::vector<Eigen::Vector2d>& path_m);
+
+  /// Draws that belong to one item of the current room.
+  Draws draws(std::uint32_t item) const;
+
+  /// Whether a box of the current room is free. What hangs above a head may cross the route.
+  bool is_free(const Eigen::AlignedBox3d& box) const;
+  void occupy(const Eigen::AlignedBox3d& box) { occupied_.push_back(box); }
+
+  /// The box that a template takes at `at_m` in a frame, from the wall on.
+  Eigen::AlignedBox3d taken(const std::string& name,
+                            const QuarterFrame& frame,
+                            const Eigen::Vector3d& at_m) const;
+
+  /// Places a template where it is free; `yaw_deg` turns it about its origin.
+  bool try_place(const std::string& name, const QuarterFrame& frame, const Eigen::Vector3d& at_m);
+  void place(const std::string& name,
+             const QuarterFrame& frame,
+             const Eigen::Vector3d& at_m,
+             int yaw_deg = 0);
+
+  /// Adds a loose box, and a line along its lid and down its front as a carton has.
+  bool try_carton(const QuarterFrame& frame, const Eigen::AlignedBox3d& box);
+
+  WorldDescription& world() { return world_; }
+  Shapes& loose() { return loose_; }
+  const OfficeRoom& room() const { return room_; }
+
+  /// The description with all loose features and without templates that were never placed.
+  WorldDescription finish();
+
+ private:
+  std::uint64_t seed_;
+  WorldDescription world_;
+  std::map<std::string, Eigen::AlignedBox3d> bounds_;
+  Shapes loose_;
+  OfficeRoom room_;
+  std::vector<Eigen::Vector2d> path_m_;
+  std::vector<Eigen::AlignedBox3d> occupied_;
+};
+
+}  // namespace vernier

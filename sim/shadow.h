@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+namespace vernier {
+
+/// One side of a shadow: x is inside where inward·x > tolerance. The side contains the eye, which
+/// is the origin here, and an edge of the surface.
+struct ShadowSide {
+  Eigen::Vector3d inward;
+  double tolerance;  ///< |inward| x 1 nm: closer than that, x is taken to lie on the side
+};
+
+/// What a convex surface hides from an eye at the origin: the points with
+///
+///     normal·x > distance + gap   and   inward_i·x > 0  for every edge i.
+struct Shadow {
+  Eigen::Vector3d normal;  ///< unit, away from the eye
+  double distance_m;       ///< of the eye from the surface's plane, not negative
+  std::span<const ShadowSide> sides;
+};
+
+/// Closer to a surface's plane than this, the eye sees the surface edge-on, and it hides nothing.
+inline constexpr double edge_on_m = 1e-9;
+
+/// The side through edge p -> q of a polygon that runs counter-clockwise about the shadow's normal.
+ShadowSide shadow_side(const Eigen::Vector3d& p, const Eigen::Vector3d& q);
+
+/// A stretch of a segment, t in [t0, t1].
+struct Stretch {
+  double t0 = 0, t1 = 0;
+};
+
+/// A stretch of a segment, t in [t0, t1], hidden to one or both hands. A segment that runs along
+/// the very border of a shadow is hidden on that one hand of it; it counts as hidden where it is so
+/// on both, as behind the seam of two walls, and not behind a single edge.
+struct HiddenStretch {
+  static constexpr int left = 1, right = 2, both = 3;
+  double t0 = 0, t1 = 0;
+  int hands = 0;  ///< 0: nothing is hidden
+};
+
+/// What `shadow` hides of x(t) = a + t (b - a) within [t0, t1].
+HiddenStretch hidden_stretch(const Shadow& shadow,
+                             const Eigen::Vector3d& a,
+                             const Eigen::Vector3d& b,
+                             double t0,
+                             double t1,
+                             double gap_m);
+
+enum class PointInShadow { outside, on_border, inside };
+PointInShadow point_in_shadow(const Shadow& shadow, const Eigen::Vector3d& x, double gap_m);
+
+/// Points 10 nm around x, across its ray. A point on the border of shadows is hidden if all of
+/// these are: behind the seam of two walls, not behind a single edge.
+std::array<Eigen::Vector3d, 16> points_around(const Eigen::Vector3d& x);
+
+/// The picture of a stretch of a segment x(t) = a + t (b - a) before the eye, in normalised
+/// coordinates: a straight line from x0 to x1, at depths z0 to z1.
+struct PictureOfSegment {
+  PictureOfSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Stretch& stretch);
+
+  /// The t that is seen at x0 + s (x1 - x0): equal steps in the picture are not equal in space.
+  double t_at(double s) const {
+    if (s >= 1) return stretch.t1;
+    const double share = s * z0 / (z1 * (1 - s) + s * z0);
+    return stretch.t0 + share * (stretch.t1 - stretch.t0);
+  }
+
+  Stretch stretch;
+  Eigen::Vector2d x0, x1;
+  double z0, z1;
+};
+
+/// Hidden stretches that come this close in t are one; a visible one no longer than
+/// `least_stretch` is a crack, not a sight.
+inline constexpr double touching = 1e-9;
+inline constexpr double least_stretch = 3e-9;
+
+/// What is left of `whole` without the hidden stretches, ascending. Reorders `hidden`.
+void visible_stretches(const Stretch& whole,
+                       std::vector<HiddenStretch>& hidden,
+                       std::vector<Stretch>& visible);
+
+}  // namespace vernier

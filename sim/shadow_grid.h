@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "calib/pose.h"
+#include "sim/convex_pieces.h"
+#include "sim/shadow.h"
+#include "sim/view_frustum.h"
+
+namespace vernier {
+
+/// The shadows that one view's surfaces cast, sorted into tiles of the image.
+///
+/// A tile lists, nearest first, the shadows that reach into it. Where one piece covers a whole
+/// tile, everything in the tile beyond the farthest point of that piece there, and the gap, is
+/// hidden: its depth is kept, and pieces behind it are left out, since they hide nothing that it
+/// does not. May be built anew for every view, to reuse its memory.
+class ShadowGrid {
+ public:
+  void build(const ConvexSurfaces& surfaces,
+             const Pose& T_camera_world,
+             const ViewFrustum& frustum,
+             double gap_m);
+
+  /// What is hidden of the stretch `open` of the segment a b (camera frame, `open` from
+  /// ViewFrustum::clip). What is hidden at its ends is cut off `open`, the rest goes to `hidden`.
+  /// False if nothing is left open; `open` and `hidden` are then meaningless.
+  bool hide(const Eigen::Vector3d& a,
+            const Eigen::Vector3d& b,
+            Stretch& open,
+            std::vector<HiddenStretch>& hidden);
+
+  /// Whether a point (camera frame, in the frustum) is hidden.
+  bool hides(const Eigen::Vector3d& point) const;
+
+ private:
+  static constexpr int columns = 32, rows = 24;
+  struct Walk;
+  struct Traverse;
+
+  struct Candidate {
+    double inverse_nearest;  ///< 1 / depth of its nearest vertex, infinite from the eye's depth on
+    int index;               ///< among all convex surfaces
+    int first_vertex, vertex_count;
+    Eigen::Vector3d normal;
+    double distance_m;
+    ImageBox box;
+  };
+  struct Caster {
+    Shadow shadow;
+    double inverse_nearest;
+    ImageBox box;
+    int first_side, side_count;
+  };
+  struct TileRange {
+    int column0, column1, row0, row1;  ///< inclusive
+  };
+
+  void set_raster(const ImageBox& outer);
+  void collect(const ConvexSurfaces& surfaces, const Pose& T, const ViewFrustum& frustum);
+  void append_candidate(const ConvexSurface& piece,
+                        int index,
+                        std::span<const Eigen::Vector3d> vertices,
+                        const Pose& T,
+                        const ImageBox& outer);
+  void cast(const Candidate& candidate);
+  void mark_lattice(const TileRange& range, std::span<const ShadowSide> sides);
+  bool cover_or_miss(const Candidate& candidate, int column, int row);
+  void sort_into_tiles();
+  TileRange tiles_of(const ImageBox& box) const;
+  bool hide_in_slab(Traverse& traverse, const Walk& walk);
+  bool covers_slab(const Walk& walk) const;
+  PointInShadow classify(const Eigen::Vector3d& point) const;
+
+  double gap_m_ = 0;
+  Eigen::Vector2d origin_, tile_size_, tiles_per_unit_;
+  std::vector<Eigen::Vector3d> vertices_;
+  std::vector<Candidate> candidates_;
+  std::vector<Caster> casters_;
+  std::vector<ShadowSide> sides_;
+  std::vector<std::uint32_t> outside_, not_inside_;  ///< one bit a side, for every tile corner
+  std::vector<std::pair<int, int>> entries_;         ///< (tile, caster)
+  std::vector<double> inverse_covered_;  ///< one a tile: 1 / depth that hides all beyond
+  std::vector<int> tile_begin_, tile_casters_;
+  std::vector<std::uint32_t> tried_;  ///< one a caster: the last segment it was tried on
+  std::uint32_t segment_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/camera.h"
+#include "sim/shadow.h"
+
+namespace vernier {
+
+/// An upright rectangle of normalised image coordinates (x / z, y / z).
+struct ImageBox {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  bool contains(const Eigen::Vector2d& x) const {
+    return x[0] >= x0 && x[0] <= x1 && x[1] >= y0 && x[1] <= y1;
+  }
+};
+
+/// The part of space that a camera sees: between two depths, and inside its image.
+///
+/// Distortion bends the sides of that part, so it is kept between two plain pyramids: `outer`
+/// holds every ray of the image, `inner` holds rays of the image only. Between them the image's
+/// border is found on the distorted curve of the segment itself. Outside `outer`, and farther from
+/// the axis than any pixel is, distortion models may fold back into the image: nothing is looked
+/// for there.
+class ViewFrustum {
+ public:
+  /// Throws Error for depths that are not 0 < near < far, a camera without an image or with the
+  /// wrong number of parameters, and where the distortion cannot be inverted at the image's border.
+  /// Keeps a reference to `camera`.
+  ViewFrustum(const Camera& camera, double near_m, double far_m);
+
+  /// Stretch of the segment a b (camera frame, metres) between near and far and in the outer
+  /// pyramid; false if there is none.
+  bool clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stretch& stretch) const;
+
+  /// Stretches of `clipped` (from `clip`) whose projections lie in the image; mostly one, two where
+  /// barrel distortion bows the segment out of the image in between.
+  void in_image(const Eigen::Vector3d& a,
+                const Eigen::Vector3d& b,
+                const Stretch& clipped,
+                std::vector<Stretch>& inside) const;
+
+  /// Whether the camera has a pixel for this point, between near and far.
+  bool contains(const Eigen::Vector3d& point) const;
+
+  const ImageBox& outer() const { return outer_; }
+  double near_m() const { return near_m_; }
+  double far_m() const { return far_m_; }
+
+ private:
+  void bound_border();
+  /// Shares s of the picture, ascending from 0 to 1, between which it is in the image or is not.
+  void cut_at_border(const PictureOfSegment& picture, std::vector<double>& cuts) const;
+
+  const Camera& camera_;
+  double near_m_, far_m_;
+  ImageBox outer_, inner_;
+  double outer_radius2_ = 0;
+};
+
+}  // namespace vernier

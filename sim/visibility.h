@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "sim/world.h"
+
+namespace vernier {
+
+struct VisibilityOptions {
+  double near_m = 0.1;         ///< nothing closer along the optical axis is seen
+  double far_m = 30;           ///< nor farther
+  double min_length_px = 10;   ///< shorter visible runs are not detected as lines
+  double surface_gap_m = 1e-3; ///< a point this close behind a surface lies on it
+};
+
+/// A stretch of a segment that one camera sees, x(t) = a + t (b - a), t in [t0, t1].
+struct VisibleRun {
+  int segment = 0;  ///< index into World::segments
+  int run = 0;      ///< counts the runs of this segment from a to b
+  double t0 = 0, t1 = 1;
+};
+
+/// Hidden-line removal in a world of opaque surfaces, exact up to rounding.
+///
+/// A point x is hidden from the eye o by a convex surface P with plane n·x = d exactly where it
+/// lies in P's shadow: beyond the plane as seen from o, and inside every half-space through o and
+/// an edge of P. All of these are linear along a segment, so each surface hides one interval of t,
+/// found analytically in double precision (Appel, "The notion of quantitative invisibility",
+/// 1967, has the idea). Surfaces that cannot matter are left out by a grid over the view.
+class Visibility {
+ public:
+  /// Keeps a reference to `world`, which must outlive this. Non-convex surfaces are cut into
+  /// convex ones once, here.
+  explicit Visibility(const World& world);
+  ~Visibility();
+  Visibility(Visibility&&) noexcept;
+
+  /// What one camera at T_camera_world sees of every segment: inside the image (distortion
+  /// included), between near and far, not hidden; ordered by segment, then by t.
+  std::vector<VisibleRun> visible_runs(const Camera& camera,
+                                       const Pose& T_camera_world,
+                                       const VisibilityOptions& options = {}) const;
+
+  /// Indices of the corners that the camera sees, ascending.
+  std::vector<int> visible_corners(const Camera& camera,
+                                   const Pose& T_camera_world,
+                                   const VisibilityOptions& options = {}) const;
+
+  /// Whether no surface hides `point` from `eye` (world frame, metres).
+  bool sees(const Eigen::Vector3d& eye,
+            const Eigen::Vector3d& point,
+            const VisibilityOptions& options = {}) const;
+
+  const World& world() const;
+
+ private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// A straight edge of the wire frame, in metres, z up. `object` says what it belongs to.
+struct WorldSegment {
+  Eigen::Vector3d a_m, b_m;
+  std::int32_t object = 0;
+};
+
+/// A point where edges meet, seen as a corner in an image.
+struct WorldCorner {
+  Eigen::Vector3d position_m;
+  std::int32_t object = 0;
+};
+
+/// A planar polygon, opaque from both sides. It need not be convex; its border does not cross
+/// itself.
+struct WorldSurface {
+  std::vector<Eigen::Vector3d> polygon_m;
+  std::int32_t object = 0;
+};
+
+/// One placed thing: an instance of a template, or the loose features of the world (template
+/// name empty).
+struct WorldObject {
+  std::string template_name;
+};
+
+/// One leg of a route to record a map along: a polyline on the floor.
+struct RouteLeg {
+  std::vector<Eigen::Vector2d> points_m;
+};
+
+/// A building as a wire frame with opaque surfaces, all of it in world coordinates.
+struct World {
+  std::string name;
+  std::vector<WorldSegment> segments;
+  std::vector<WorldCorner> corners;
+  std::vector<WorldSurface> surfaces;
+  std::vector<WorldObject> objects;
+  std::vector<RouteLeg> route;  ///< the path "default" of studies
+};
+
+/// Features in the frame of a template, or of the world.
+struct FeatureSet {
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> segments_m;
+  std::vector<Eigen::Vector3d> corners_m;
+  std::vector<std::vector<Eigen::Vector3d>> surfaces_m;
+};
+
+struct WorldTemplate {
+  std::string name;
+  FeatureSet features;
+};
+
+struct WorldInstance {
+  std::string template_name;
+  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
+  double yaw_rad = 0;  ///< about z, counter-clockwise
+};
+
+/// What a .world.toml says: named templates placed many times, and loose features.
+struct WorldDescription {
+  std::string name;
+  std::vector<WorldTemplate> templates;
+  std::vector<WorldInstance> instances;
+  FeatureSet loose;
+  std::vector<RouteLeg> route;
+};
+
+/// Places every instance. Object 0 holds the loose features, object i + 1 instance i. Throws Error
+/// for an instance of an unknown template, a segment shorter than 1 mm, a surface of fewer than
+/// three points or one that is not planar to 1 mm; the place names template and index.
+World build_world(const WorldDescription& description);
+
+/// Share of the world's segments that belong to templates placed at least twice, in [0, 1].
+double repeated_share(const World& world);
+
+/// Lower and upper corner of the box around all segments, metres.
+struct WorldExtent {
+  Eigen::Vector3d low_m, high_m;
+};
+WorldExtent extent(const World& world);
+
+}  // namespace vernier

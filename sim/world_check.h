@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace vernier {
+
+/// What is wrong with a piece of a world and what to do about it; the caller knows the place.
+struct WorldFault {
+  std::string fault, remedy;
+};
+
+/// A segment must have finite end points at least 1 mm apart.
+std::optional<WorldFault> segment_fault(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m);
+
+/// A surface must have at least three finite points, enclose an area and be planar to 1 mm.
+std::optional<WorldFault> surface_fault(const std::vector<Eigen::Vector3d>& polygon_m);
+
+/// A leg of a route must have at least two finite points.
+std::optional<WorldFault> route_fault(const std::vector<Eigen::Vector2d>& points_m);
+
+/// Checks everything build_world relies on; throws Error with template and index as the place.
+void check_world(const WorldDescription& description);
+
+}  // namespace vernier

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <numbers>
+
+#include "calib/error.h"
+#include "sim/world_check.h"
+#include "sim/world_file.h"
+
+namespace vernier {
+namespace {
+
+constexpr double kSteps = 1e4;  ///< a tenth of a millimetre, or a ten-thousandth of a degree
+constexpr double kLargest = 1e9;
+
+double rounded(double value) { return std::round(value * kSteps) / kSteps; }
+
+template <int N>
+Eigen::Matrix<double, N, 1> rounded(const Eigen::Matrix<double, N, 1>& value) {
+  return value.unaryExpr([](double v) { return rounded(v); });
+}
+
+FeatureSet rounded(const FeatureSet& features) {
+  FeatureSet result = features;
+  for (auto& [a, b] : result.segments_m) {
+    a = rounded<3>(a);
+    b = rounded<3>(b);
+  }
+  for (auto& corner : result.corners_m) corner = rounded<3>(corner);
+  for (auto& polygon : result.surfaces_m) {
+    for (auto& point : polygon) point = rounded<3>(point);
+  }
+  return result;
+}
+
+// What the text will say, so that the checks see what a reader of the text would see.
+WorldDescription rounded(const WorldDescription& description) {
+  WorldDescription result = description;
+  for (auto& entry : result.templates) entry.features = rounded(entry.features);
+  for (auto& instance : result.instances) instance.at_m = rounded<3>(instance.at_m);
+  result.loose = rounded(result.loose);
+  for (auto& leg : result.route) {
+    for (auto& point : leg.points_m) point = rounded<2>(point);
+  }
+  return result;
+}
+
+// By integers, so that no locale and no printf decides about the bytes.
+std::string number(double value) {
+  if (!(std::abs(value) < kLargest)) {
+    throw Error("world", "a number is beyond 1e9 or not finite", "check the description");
+  }
+  const std::int64_t steps = std::llround(value * kSteps);
+  const std::int64_t size = steps < 0 ? -steps : steps;
+  std::string digits = std::to_string(size % 10000);
+  digits.insert(0, 4 - digits.size(), '0');
+  digits.erase(digits.find_last_not_of('0') + 1);
+  return (steps < 0 ? "-" : "") + std::to_string(size / 10000) +
+         (digits.empty() ? "" : "." + digits);
+}
+
+template <typename Vector>
+std::string numbers(const Vector& values) {
+  std::string text;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    text += (i ? ", " : "") + number(values[i]);
+  }
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  static constexpr char kHex[] = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += {'\\', c};
+    } else if (byte < 0x20 || byte == 0x7f) {
+      result += std::string("\\u00") + kHex[byte >> 4] + kHex[byte & 15];
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+// One entry a line, so that a complaint's line number points at the feature itself.
+template <typename Entries, typename Format>
+void append_list(const char* key, const Entries& entries, const Format& format, std::string& text) {
+  if (entries.empty()) return;
+  text += std::string(key) + " = [\n";
+  for (const auto& entry : entries) text += "  [" + format(entry) + "],\n";
+  text += "]\n";
+}
+
+template <typename Points>
+std::string bracketed(const Points& points) {
+  std::string text;
+  for (const auto& point : points) text += (text.empty() ? "[" : ", [") + numbers(point) + "]";
+  return text;
+}
+
+void append_features(const FeatureSet& features, std::string& text) {
+  append_list(
+      "segments", features.segments_m,
+      [](const auto& ends) { return numbers(ends.first) + ", " + numbers(ends.second); }, text);
+  append_list(
+      "surfaces", features.surfaces_m, [](const auto& polygon) { return bracketed(polygon); },
+      text);
+  append_list(
+      "corners", features.corners_m, [](const auto& corner) { return numbers(corner); }, text);
+}
+
+void append_instance(const WorldInstance& instance, std::string& text) {
+  text += "\n[[instance]]\ntemplate = " + quoted(instance.template_name) + "\nat_m = [" +
+          numbers(instance.at_m) + "]\n";
+  const std::string yaw_deg = number(instance.yaw_rad * (180 / std::numbers::pi));
+  if (yaw_deg != "0") text += "yaw_deg = " + yaw_deg + "\n";
+}
+
+void write_whole(const std::string& text, const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (!stream) throw Error(file.string(), "cannot be written", "check folder, rights and space");
+}
+
+}  // namespace
+
+std::string format_world(const WorldDescription& description) {
+  const WorldDescription world = rounded(description);
+  check_world(world);
+  std::string text = "format = \"vernier/world\"\nversion = 1\n";
+  if (!world.name.empty()) text += "name = " + quoted(world.name) + "\n";
+  for (const auto& entry : world.templates) {
+    text += "\n[[template]]\nname = " + quoted(entry.name) + "\n";
+    append_features(entry.features, text);
+  }
+  for (const auto& instance : world.instances) append_instance(instance, text);
+  const FeatureSet& loose = world.loose;
+  if (!(loose.segments_m.empty() && loose.surfaces_m.empty() && loose.corners_m.empty())) {
+    text += "\n[loose]\n";
+    append_features(loose, text);
+  }
+  for (const auto& leg : world.route) {
+    text += "\n[[route]]\npoints_m = [" + bracketed(leg.points_m) + "]\n";
+  }
+  return text;
+}
+
+void write_world(const WorldDescription& description, const std::filesystem::path& file) {
+  const std::string text = format_world(description);
+  // Two writers of one file must not share the temporary one.
+  std::filesystem::path temporary = file;
+  temporary += "." + std::to_string(getpid()) + ".tmp";
+  try {
+    write_whole(text, temporary);
+    std::filesystem::rename(temporary, file);
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(file.string(), "cannot be written: " + error.code().message(), "check the folder");
+  } catch (const Error&) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace vernier

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "calib/board_observations.h"
+#include "calib/error.h"
+#include "calib/simulated_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+std::string complaint_of(BoardObservations observations) {
+  try {
+    check_and_sort(observations);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class BadBoard : public testing::Test {
+ protected:
+  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, 1).observations;
+};
+
+TEST_F(BadBoard, GoodOnesPass) { EXPECT_EQ(complaint_of(good_), ""); }
+
+TEST_F(BadBoard, NonFiniteCornerIsNamed) {
+  good_.views[3].pixels_px[7].x() = std::nan("");
+  EXPECT_EQ(complaint_of(good_),
+            "frame 1, camera 1, corner 7: its pixel is not a finite number; remove or correct it");
+}
+
+TEST_F(BadBoard, CornerOutsideTheImageIsNamed) {
+  good_.views[0].pixels_px[2].x() = 640.2;
+  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0, corner 2: its pixel lies outside"),
+            std::string::npos);
+}
+
+TEST_F(BadBoard, CameraTwiceInAFrameIsNamed) {
+  good_.views[1].camera = 0;
+  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0: this camera appears twice"),
+            std::string::npos);
+}
+
+TEST(SimulatedBoard, NoiseDiffersByTrialAndPosesDoNot) {
+  const Rig rig = test::stereo_rig();
+  const SimulatedBoard a = simulate_board(rig, {}, 5, 0), b = simulate_board(rig, {}, 5, 1);
+  EXPECT_EQ(a.truth.T_first_board[3].t, b.truth.T_first_board[3].t);
+  EXPECT_NE(a.observations.views[3].pixels_px[0], b.observations.views[3].pixels_px[0]);
+}
+
+}  // namespace
+}  // namespace vernier

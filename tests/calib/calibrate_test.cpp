@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/error.h"
+#include "calib/simulated_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+class ExactViews : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExactViews, GiveTheTrueRigBack) {
+  const Rig truth = test::stereo_rig(camera_model(GetParam()));
+  const SimulatedBoard board = simulate_board(truth, {}, 4, 0, {.frames = 20, .pixel_sigma_px = 0});
+  const RigEstimate estimate =
+      calibrate(board.observations, {.model = camera_model(GetParam()), .pixel_sigma_px = 1e-3});
+  const Eigen::VectorXd sd = estimate.covariance_mvb->diagonal().cwiseSqrt();
+  const Eigen::VectorXd miss = difference(estimate.rig, truth).cwiseQuotient(sd);
+  EXPECT_LT(miss.cwiseAbs().maxCoeff(), 1e-3) << miss.transpose();
+  EXPECT_LT(estimate.calibration->rms_px, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models,
+                         ExactViews,
+                         testing::Values("pinhole", "radial1", "opencv4", "opencv5"));
+
+TEST(Calibrate, IsTheSameToTheBitTwice) {
+  const auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  EXPECT_EQ(parameters(calibrate(observations).rig), parameters(calibrate(observations).rig));
+}
+
+TEST(Calibrate, OneCameraAndThreeCameras) {
+  Rig rig = test::stereo_rig();
+  rig.cameras.push_back(rig.cameras[0]);
+  rig.cameras[2].name = "camera2";
+  rig.T_camera_first.push_back({rotation_from_vector({0, 0.05, 0}), {0.15, 0, 0}});
+  const SimulatedBoard three = simulate_board(rig, {}, 6, 0, {.pixel_sigma_px = 0});
+  EXPECT_LT(difference(calibrate(three.observations).rig, rig).norm(), 1e-5);
+
+  BoardObservations one = three.observations;
+  std::erase_if(one.views, [](const BoardView& view) { return view.camera > 0; });
+  one.size_px.resize(1);
+  const RigEstimate single = calibrate(one);
+  EXPECT_EQ(single.covariance->matrix.rows(), 5);
+  EXPECT_NEAR(single.rig.cameras[0].f_px(), 525, 1e-5);
+}
+
+TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
+  const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, 6, 0, {.frames = 60});
+  const RigEstimate estimate = calibrate(board.observations);
+  EXPECT_EQ(estimate.covariance->kind, CovarianceKind::clustered);
+  // White noise: both say the same within the sandwich's own scatter.
+  const Eigen::ArrayXd ratio =
+      estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array();
+  EXPECT_GT(ratio.minCoeff(), 0.5);
+  EXPECT_LT(ratio.maxCoeff(), 2.0);
+}
+
+TEST(Calibrate, TwoViewsAreTooFew) {
+  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  std::erase_if(observations.views, [](const BoardView& view) { return view.frame > 1; });
+  try {
+    calibrate(observations);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("2 views of the board"), std::string::npos);
+  }
+}
+
+TEST(Calibrate, CamerasWithoutACommonFrameAreNamed) {
+  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  std::erase_if(observations.views,
+                [](const BoardView& view) { return (view.frame < 10) != (view.camera == 0); });
+  try {
+    calibrate(observations);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("camera 1: it shares no frame"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace vernier

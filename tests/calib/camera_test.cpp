@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/camera.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/error.h"
+#include "tests/support/numeric_jacobian.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+class EveryModel : public testing::TestWithParam<const char*> {
+ protected:
+  Camera camera() const { return test::stereo_rig(camera_model(GetParam())).cameras[1]; }
+};
+
+TEST_P(EveryModel, JacobianIsTheNumericOne) {
+  const Camera camera = this->camera();
+  for (const Eigen::Vector3d& point : {Eigen::Vector3d(0.4, -0.3, 1.2), Eigen::Vector3d(0, 0, 2),
+                                       Eigen::Vector3d(-0.9, 0.7, 1.7)}) {
+    ProjectionJacobian J;
+    const Eigen::Vector2d pixel = project(camera, point, J);
+    EXPECT_EQ(pixel, project(camera, point));
+    const auto by_point =
+        test::numeric_jacobian([&](const Eigen::VectorXd& x) { return project(camera, x); }, point);
+    EXPECT_LT((J.point - by_point).cwiseAbs().maxCoeff(), 1e-6);
+    const auto by_camera = test::numeric_jacobian(
+        [&](const Eigen::VectorXd& a) {
+          Camera moved = camera;
+          moved.parameters = a;
+          return project(moved, point);
+        },
+        camera.parameters);
+    EXPECT_LT((J.camera - by_camera).cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
+TEST_P(EveryModel, UnprojectInvertsProject) {
+  const Camera camera = this->camera();
+  for (double u = 0; u < 640; u += 91) {
+    for (double v = 0; v < 480; v += 79) {
+      const Eigen::Vector2d pixel(u, v);
+      EXPECT_LT((project(camera, unproject(camera, pixel)) - pixel).norm(), 1e-9);
+    }
+  }
+}
+
+TEST_P(EveryModel, NamesItself) {
+  EXPECT_EQ(model_name(camera_model(GetParam())), GetParam());
+  EXPECT_EQ(parameter_names(camera().model).size(),
+            static_cast<std::size_t>(parameter_count(camera().model)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models,
+    EveryModel,
+    testing::Values("pinhole", "radial1", "opencv4", "opencv5", "opencv8", "fisheye4"));
+
+TEST(Camera, UnknownModelNamesTheKnownOnes) {
+  try {
+    camera_model("radial2");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("fisheye4"), std::string::npos);
+  }
+}
+
+TEST(Camera, UnprojectRefusesAFoldedImage) {
+  Camera camera = test::stereo_rig().cameras[0];
+  camera.parameters[4] = -2;  // folds at r = 0.41, inside the image
+  EXPECT_THROW(unproject(camera, {0, 0}), Error);
+}
+
+TEST(Camera, RadialModelsAreOpenCv8WithZeros) {
+  Camera radial = test::stereo_rig().cameras[0], full = radial;
+  full.model = OpenCv8{};
+  full.parameters = Eigen::VectorXd::Zero(12);
+  full.parameters.head<5>() = radial.parameters;
+  const Eigen::Vector3d point(0.5, 0.4, 1.5);
+  EXPECT_LT((project(radial, point) - project(full, point)).norm(), 1e-10);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/observations_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/simulated_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+class ObservationsFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("vernier_observations_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string complaint_of(const std::string& text) {
+    write_atomically(folder_ / "bad.csv", text);
+    try {
+      read_observations(folder_ / "bad.csv", {{640, 480}, {640, 480}});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(ObservationsFile, RoundTripIsExact) {
+  const auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  write_observations(before, folder_ / "o.csv");
+  const auto after = read_observations(folder_ / "o.csv", before.size_px);
+  ASSERT_EQ(after.views.size(), before.views.size());
+  for (std::size_t i = 0; i < before.views.size(); ++i) {
+    EXPECT_EQ(after.views[i].pixels_px, before.views[i].pixels_px);
+  }
+  EXPECT_EQ(after.target_m, before.target_m);
+}
+
+TEST_F(ObservationsFile, CornersRoundTrip) {
+  auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  for (auto& view : before.views) {
+    view.image = (view.camera == 0 ? "left" : "right") + std::to_string(view.frame) + ".png";
+  }
+  // a partial board
+  before.views[4].ids.erase(before.views[4].ids.begin() + 5);
+  before.views[4].pixels_px.erase(before.views[4].pixels_px.begin() + 5);
+  write_corners(before, {}, folder_ / "corners.vnl");
+  const auto after = read_corners(folder_ / "corners.vnl", {}, {{640, 480}});
+  ASSERT_EQ(after.views.size(), before.views.size());
+  for (std::size_t i = 0; i < before.views.size(); ++i) {
+    EXPECT_EQ(after.views[i].frame, before.views[i].frame);
+    EXPECT_EQ(after.views[i].ids, before.views[i].ids);
+    EXPECT_EQ(after.views[i].pixels_px, before.views[i].pixels_px);
+  }
+}
+
+TEST_F(ObservationsFile, ABadLineIsNamed) {
+  std::string text = "frame,camera,row,col,X,Y,Z,qx,qy\n";
+  for (int i = 2; i < 37; ++i) {
+    text += "0,0,0," + std::to_string(i) + "," + std::to_string(i) + ",0,0,10,10\n";
+  }
+  EXPECT_NE(complaint_of(text + "0,0,1,0,0,1,0,ten,10\n").find("bad.csv:37: qx, qy is \"ten\""),
+            std::string::npos);
+  EXPECT_NE(complaint_of(text + "0,0,1\n").find("bad.csv:37: 3 columns"), std::string::npos);
+  EXPECT_NE(complaint_of("frame,row\n").find("bad.csv:1:"), std::string::npos);
+}
+
+TEST(ImageName, LastNumberIsTheFrame) {
+  EXPECT_EQ(parse_image_name("a/left07.png").frame, 7);
+  EXPECT_EQ(parse_image_name("cam2_0031_raw.png").frame, 31);
+  EXPECT_EQ(parse_image_name("x/left07.png").camera, parse_image_name("x/left12.jpg").camera);
+  EXPECT_NE(parse_image_name("x/left07.png").camera, parse_image_name("x/right07.png").camera);
+  EXPECT_THROW(parse_image_name("left.png"), Error);
+}
+
+}  // namespace
+}  // namespace vernier

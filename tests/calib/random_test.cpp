@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+TEST(Draws, SamePlaceSameNumbers) {
+  const DrawPlace place{.seed = 7, .trial = 3, .feature = 11, .source = 2, .eye = 1, .frame = 5};
+  Draws a(place), b(place);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(a.uniform(), b.uniform());
+}
+
+TEST(Draws, EveryPartOfThePlaceMatters) {
+  const DrawPlace places[] = {{},           {.seed = 1},    {.seed = 1ull << 32},
+                              {.trial = 1}, {.feature = 1}, {.source = 1},
+                              {.eye = 1},   {.frame = 1}};
+  std::set<double> firsts;
+  for (const auto& place : places) firsts.insert(Draws(place).uniform());
+  EXPECT_EQ(firsts.size(), std::size(places));
+}
+
+TEST(Draws, RefusesFieldsBeyondTheirBits) {
+  EXPECT_THROW(Draws({.source = 256}), Error);
+  EXPECT_THROW(Draws({.eye = 4}), Error);
+  EXPECT_THROW(Draws({.frame = 1u << 22}), Error);
+}
+
+TEST(NormalQuantile, InvertsTheDistribution) {
+  for (const double z : {-8.0, -5.5, -3.0, -1.0, -0.1, 0.0, 0.4, 1.7, 2.6, 4.9}) {
+    const double p = 0.5 * std::erfc(-z / std::sqrt(2.0));
+    EXPECT_NEAR(normal_quantile(p), z, 2e-12 * std::max(1.0, std::exp(z > 0 ? z * z / 2 : 0)));
+  }
+}
+
+// The published example of Random123 for Philox4x32-10 with zero counter and key.
+TEST(Draws, IsPhilox) {
+  Draws draws(DrawPlace{});
+  const std::uint64_t first = (0xe169c58dull << 32 | 0x6627e8d5ull) >> 11;
+  EXPECT_EQ(draws.uniform(), (static_cast<double>(first) + 0.5) * 0x1p-53);
+}
+
+}  // namespace
+}  // namespace vernier

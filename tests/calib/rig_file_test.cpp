@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_file.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/calibrate.h"
+#include "calib/error.h"
+#include "calib/simulated_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+const RigEstimate& estimate() {
+  static const RigEstimate estimate =
+      calibrate(simulate_board(test::stereo_rig(), {}, 3).observations);
+  return estimate;
+}
+
+std::string complaint_of(const std::string& text) {
+  try {
+    parse_rig(text, "rig.json");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(RigFile, RoundTrip) {
+  const RigFile file = parse_rig(format_rig(estimate()), "rig.json");
+  const RigEstimate &before = estimate(), &after = file.estimate;
+  EXPECT_TRUE(file.warnings.empty());
+  EXPECT_EQ(after.covariance->matrix, before.covariance->matrix);
+  EXPECT_EQ(*after.covariance_mvb, *before.covariance_mvb);
+  EXPECT_EQ(after.calibration->warnings, before.calibration->warnings);
+  for (int c = 0; c < 2; ++c) {
+    EXPECT_EQ(after.rig.cameras[c].parameters, before.rig.cameras[c].parameters);
+  }
+  // A rotation passes through its rotation vector: equal to rounding.
+  EXPECT_LT(difference(after.rig, before.rig).cwiseAbs().maxCoeff(), 1e-15);
+  ASSERT_EQ(after.evidence->observations.views.size(), 40u);
+  for (std::size_t i = 0; i < 40; ++i) {
+    EXPECT_TRUE(after.evidence->observations.views[i].pixels_px ==
+                before.evidence->observations.views[i].pixels_px);
+  }
+  EXPECT_LT((after.evidence->T_first_board[7].R - before.evidence->T_first_board[7].R).norm(),
+            1e-14);
+}
+
+TEST(RigFile, UnknownKeysAreKeptWithAWarning) {
+  const std::string text = replaced(format_rig(estimate(), KeepEvidence::no), "\"version\":1",
+                                    "\"version\":1,\"serial\":\"A-17\"");
+  const RigFile file = parse_rig(text, "rig.json");
+  ASSERT_EQ(file.warnings.size(), 1u);
+  EXPECT_NE(format_rig(file.estimate).find("\"serial\":\"A-17\""), std::string::npos);
+}
+
+TEST(RigFile, ComplaintsNameFileAndKey) {
+  const std::string text = format_rig(estimate(), KeepEvidence::no);
+  EXPECT_NE(complaint_of("{\n\"format\": \"vernier/rig\",\n oops}").find("rig.json:3: is not JSON"),
+            std::string::npos);
+  EXPECT_NE(complaint_of("{}").find("is not a rig file"), std::string::npos);
+  EXPECT_NE(
+      complaint_of(replaced(text, "\"k1\"", "\"k7\"")).find("rig.json: cameras[0].parameters"),
+      std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "radial1", "radial9")).find("there is no such model"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "\"ay\":1", "\"ay\":2")).find("null direction"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "\"parameters\":[", "\"parameters\":[7,"))
+                .find("rig.json: parameters: 17 values for 16 names"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "\"kind\":\"mvb\"", "\"kind\":\"best\""))
+                .find("covariance kind \"best\""),
+            std::string::npos);
+}
+
+TEST(RigFile, ValuesThatDisagreeAreAnError) {
+  RigEstimate e = estimate();
+  const std::string before = format_rig(e, KeepEvidence::no);
+  const std::size_t at = before.find("\"parameters\":[") + 14;
+  const std::string text = before.substr(0, at) + "9" + before.substr(at);
+  EXPECT_NE(complaint_of(text).find("left.f_px is"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

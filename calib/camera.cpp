@@ -90,7 +90,7 @@ Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
         auto d = m.distort(x, a + core_parameter_count);
         for (int iteration = 0; iteration < 50; ++iteration) {
           const Eigen::Vector2d miss = d.x - target;
-          if (!(miss.norm() > 1e-15 * (1 + target.norm()))) return {x[0], x[1], 1};
+          if (!(miss.norm() > 1e-15 * (1 + target.norm()))) break;
           Eigen::Vector2d step = d.by_x.inverse() * miss;
           // Halve the step until it helps, so that a start beyond the fold cannot run away.
           double previous = miss.norm();

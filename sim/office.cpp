@@ -20,11 +20,11 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSkirting_m = 0.08;
-constexpr double kRouteEnd_m = 0.6;    ///< from the end walls of the corridor
-constexpr double kWindowRoom_m = 1.2;  ///< between the end of a room's leg and its outer wall
-constexpr std::uint32_t kCorridorNumber = 0;  ///< rooms count from 1
-constexpr std::uint32_t kDoorPlaceItem = 100;
+constexpr double skirting_m = 0.08;
+constexpr double route_end_m = 0.6;    ///< from the end walls of the corridor
+constexpr double window_room_m = 1.2;  ///< between the end of a room's leg and its outer wall
+constexpr std::uint32_t corridor_number = 0;  ///< rooms count from 1
+constexpr std::uint32_t door_place_item = 100;
 
 struct Room {
   OfficeRoom floor;
@@ -54,7 +54,7 @@ void check_options(const OfficeOptions& options) {
   if (options.corridor_width_m < 1.2) refuse("the corridor is below 1.2 m", "widen it");
   if (options.room_width_m < 2.8) refuse("rooms are below 2.8 m wide", "widen them");
   if (size.x() < 2.8) refuse("no room fits in its length", "make it 2.8 m or longer");
-  if ((size.y() - options.corridor_width_m) / 2 - kWallThickness_m < 2.8) {
+  if ((size.y() - options.corridor_width_m) / 2 - wall_thickness_m < 2.8) {
     refuse("no room fits beside the corridor", "rooms must be 2.8 m deep, make it wider");
   }
 }
@@ -68,8 +68,8 @@ RouteLeg room_leg(const Room& room, double corridor_m) {
   leg.points_m = {{room.door_x_m, corridor_m},
                   {room.door_x_m, door_y + 0.5 * into},
                   {middle_x, door_y + 0.5 * depth * into}};
-  if (depth / 2 > kWindowRoom_m + 0.1) {
-    leg.points_m.push_back({middle_x, door_y + (depth - kWindowRoom_m) * into});
+  if (depth / 2 > window_room_m + 0.1) {
+    leg.points_m.push_back({middle_x, door_y + (depth - window_room_m) * into});
   }
   for (auto& point : leg.points_m) point = {to_grid(point.x()), to_grid(point.y())};
   return leg;
@@ -80,7 +80,7 @@ Plan make_plan(std::uint64_t seed, const OfficeOptions& options) {
   plan.size_m = to_grid(options.size_m);
   plan.south_m = to_grid((plan.size_m.y() - options.corridor_width_m) / 2);
   plan.north_m = plan.size_m.y() - plan.south_m;
-  const double length = plan.size_m.x(), half = kWallThickness_m / 2;
+  const double length = plan.size_m.x(), half = wall_thickness_m / 2;
   const int along = std::max(1, static_cast<int>(std::floor(length / options.room_width_m + 0.5)));
   const int fitting = std::clamp(along, 1, static_cast<int>(length / 2.8));
   for (int side = 0; side < 2; ++side) {
@@ -90,13 +90,13 @@ Plan make_plan(std::uint64_t seed, const OfficeOptions& options) {
       room.window_side = side == 0 ? 0 : 2;
       const double x0 = k == 0 ? 0 : k * length / fitting + half;
       const double x1 = k + 1 == fitting ? length : (k + 1) * length / fitting - half;
-      room.floor.low_m = {x0, side == 0 ? 0 : plan.north_m + kWallThickness_m, 0};
-      room.floor.high_m = {x1, side == 0 ? plan.south_m - kWallThickness_m : plan.size_m.y(),
+      room.floor.low_m = {x0, side == 0 ? 0 : plan.north_m + wall_thickness_m, 0};
+      room.floor.high_m = {x1, side == 0 ? plan.south_m - wall_thickness_m : plan.size_m.y(),
                            plan.size_m.z()};
       Draws draws({.seed = seed,
                    .trial = room.floor.number,
-                   .feature = kDoorPlaceItem,
-                   .source = kOfficeDrawSource});
+                   .feature = door_place_item,
+                   .source = office_draws});
       const bool left = draws.below(2);
       const double from = 0.75 + draws.uniform(0, std::min(0.6, (x1 - x0) / 2 - 0.75));
       room.door_x_m = to_grid(left ? x0 + from : x1 - from);
@@ -139,14 +139,14 @@ void draw_shell(Shapes& shapes,
                 const Vector3d& high,
                 const std::vector<double>& low_doors,
                 const std::vector<double>& high_doors) {
-  const double half = kDoorWidth_m / 2, casing = half + kCasing_m;
+  const double half = door_width_m / 2, casing = half + casing_m;
   for (const auto& [y, gaps] : {std::pair(low.y(), &low_doors), std::pair(high.y(), &high_doors)}) {
     broken_line(shapes, low.x(), high.x(), *gaps, half, y, 0);
-    broken_line(shapes, low.x(), high.x(), *gaps, casing, y, kSkirting_m);
+    broken_line(shapes, low.x(), high.x(), *gaps, casing, y, skirting_m);
     shapes.line({low.x(), y, high.z()}, {high.x(), y, high.z()});
   }
   for (const double x : {low.x(), high.x()}) {
-    for (const double z : {0.0, kSkirting_m, high.z()}) {
+    for (const double z : {0.0, skirting_m, high.z()}) {
       shapes.line({x, low.y(), z}, {x, high.y(), z});
     }
     for (const double y : {low.y(), high.y()}) shapes.line({x, y, 0}, {x, y, high.z()});
@@ -155,16 +155,16 @@ void draw_shell(Shapes& shapes,
 
 // A wall along the corridor as solid pieces between openings, and lintels above these.
 void raise_corridor_wall(Shapes& shapes, const Plan& plan, int window_side) {
-  const double y0 = window_side == 0 ? plan.south_m - kWallThickness_m : plan.north_m;
-  const double y1 = y0 + kWallThickness_m, height = plan.size_m.z();
-  const unsigned faces = kFrontFace | kBackFace;
+  const double y0 = window_side == 0 ? plan.south_m - wall_thickness_m : plan.north_m;
+  const double y1 = y0 + wall_thickness_m, height = plan.size_m.z();
+  const unsigned faces = front_face | back_face;
   double from = 0;
   for (const double door : doors(plan, window_side)) {
-    const double x0 = door - kDoorWidth_m / 2, x1 = door + kDoorWidth_m / 2;
+    const double x0 = door - door_width_m / 2, x1 = door + door_width_m / 2;
     shapes.surfaces_of_box({from, y0, 0}, {x0, y1, height}, faces);
-    shapes.surfaces_of_box({x0, y0, 0}, {x0, y1, kDoorHeight_m}, kLeftFace);
-    shapes.surfaces_of_box({x1, y0, 0}, {x1, y1, kDoorHeight_m}, kLeftFace);
-    shapes.surfaces_of_box({x0, y0, kDoorHeight_m}, {x1, y1, height}, faces | kBottomFace);
+    shapes.surfaces_of_box({x0, y0, 0}, {x0, y1, door_height_m}, left_face);
+    shapes.surfaces_of_box({x1, y0, 0}, {x1, y1, door_height_m}, left_face);
+    shapes.surfaces_of_box({x0, y0, door_height_m}, {x1, y1, height}, faces | bottom_face);
     from = x1;
   }
   shapes.surfaces_of_box({from, y0, 0}, {plan.size_m.x(), y1, height}, faces);
@@ -173,15 +173,15 @@ void raise_corridor_wall(Shapes& shapes, const Plan& plan, int window_side) {
 void raise_walls(Shapes& shapes, const Plan& plan) {
   const Vector3d& size = plan.size_m;
   // Nothing lies beyond the outer walls, so that their inner faces stand for them.
-  shapes.surfaces_of_box(Vector3d::Zero(), size, kAllFaces);
+  shapes.surfaces_of_box(Vector3d::Zero(), size, all_faces);
   raise_corridor_wall(shapes, plan, 0);
   raise_corridor_wall(shapes, plan, 2);
   for (const auto& room : plan.rooms) {
     if (room.floor.high_m.x() >= size.x()) continue;
     const double x = room.floor.high_m.x();
     shapes.surfaces_of_box({x, room.floor.low_m.y(), 0},
-                           {x + kWallThickness_m, room.floor.high_m.y(), size.z()},
-                           kLeftFace | kRightFace);
+                           {x + wall_thickness_m, room.floor.high_m.y(), size.z()},
+                           left_face | right_face);
   }
   for (const auto& room : plan.rooms) {
     const std::vector<double> none, own{room.door_x_m};
@@ -195,12 +195,12 @@ void raise_walls(Shapes& shapes, const Plan& plan) {
 // Posters, lockers, notice boards and cartons between the doors, and a closed exit at the far end.
 void furnish_corridor_wall(OfficeSite& site, const Plan& plan, int side) {
   const OfficeWall wall = site.room().wall(side);
-  const double half = kDoorWidth_m / 2 + kCasing_m;
+  const double half = door_width_m / 2 + casing_m;
   for (const auto& room : plan.rooms) {
     if (room.window_side != side) continue;
     const double x = side == 0 ? room.door_x_m : plan.size_m.x() - room.door_x_m;
     site.occupy(wall.frame * AlignedBox3d(Vector3d(x - half - 0.02, 0, 0),
-                                          Vector3d(x + half + 0.02, 0.6, kDoorHeight_m + 0.12)));
+                                          Vector3d(x + half + 0.02, 0.6, door_height_m + 0.12)));
     site.try_place("door_sign", wall.frame, {x + half + 0.06, 0, 0});
   }
   Draws draws = site.draws(200 + side);
@@ -217,7 +217,7 @@ void furnish_corridor_wall(OfficeSite& site, const Plan& plan, int side) {
     site.try_place("socket", wall.frame, {draws.uniform(0.1, wall.length_m - 0.3), 0, 0});
   }
   run_cables(site, wall, draws);
-  hang_pictures(site, wall, static_cast<int>(2 * wall.length_m), draws);
+  hang_pictures(site, wall, static_cast<int>(wall.length_m), draws);
   drop_cartons(site, wall, 3, draws);
 }
 
@@ -231,15 +231,15 @@ void furnish_corridor(OfficeSite& site, const Plan& plan) {
   }
   Shapes& loose = site.loose();
   loose.frame = end.frame;
-  for (const double out : {0.0, kCasing_m}) {
-    const double half = kDoorWidth_m / 2 + out, top = kDoorHeight_m + out;
+  for (const double out : {0.0, casing_m}) {
+    const double half = door_width_m / 2 + out, top = door_height_m + out;
     loose.line({middle - half, 0.01, 0}, {middle - half, 0.01, top});
     loose.line({middle - half, 0.01, top}, {middle + half, 0.01, top});
     loose.line({middle + half, 0.01, top}, {middle + half, 0.01, 0});
   }
   loose.upright_rectangle(middle - 0.35, 1.02, middle + 0.35, 1.08, 0.02);
-  loose.box({middle - 0.2, 0.3, kDoorHeight_m + 0.1}, {middle + 0.2, 0.33, kDoorHeight_m + 0.22},
-            kAllFaces);
+  loose.box({middle - 0.2, 0.3, door_height_m + 0.1}, {middle + 0.2, 0.33, door_height_m + 0.22},
+            all_faces);
   furnish_corridor_wall(site, plan, 0);
   furnish_corridor_wall(site, plan, 2);
   const int lights = std::max(1, static_cast<int>(std::round(plan.size_m.x() / 2.5)));
@@ -258,9 +258,9 @@ WorldDescription make_office(std::uint64_t seed, const OfficeOptions& options) {
   raise_walls(site.loose(), plan);
 
   const double middle = to_grid(plan.size_m.y() / 2), length = plan.size_m.x();
-  std::vector<RouteLeg> route{{{{kRouteEnd_m, middle}, {length - kRouteEnd_m, middle}}}};
+  std::vector<RouteLeg> route{{{{route_end_m, middle}, {length - route_end_m, middle}}}};
   const OfficeRoom corridor{
-      kCorridorNumber, {0, plan.south_m, 0}, {length, plan.north_m, plan.size_m.z()}};
+      corridor_number, {0, plan.south_m, 0}, {length, plan.north_m, plan.size_m.z()}};
   site.enter(corridor, route[0].points_m);
   furnish_corridor(site, plan);
 

@@ -19,17 +19,17 @@ using Eigen::Vector3d;
 void row_of_books(Shapes& loose, double x, double end, double board, Draws& draws) {
   double last_height = 0;
   while (true) {
-    const double width = draws.uniform(0.03, 0.1);
-    const double height = draws.uniform(0.17, kShelfClearHeight_m - 0.03);
+    const double width = draws.uniform(0.04, 0.12);
+    const double height = draws.uniform(0.17, shelf_clear_height_m - 0.03);
     const bool fits = x + width <= end;
     const double edge = std::max(last_height, fits ? height : 0.0);
-    if (edge > 0) loose.line({x, kBookFront_m, board}, {x, kBookFront_m, board + edge});
+    if (edge > 0) loose.line({x, book_front_m, board}, {x, book_front_m, board + edge});
     if (!fits) return;
-    loose.line({x, kBookFront_m, board + height}, {x + width, kBookFront_m, board + height});
+    loose.line({x, book_front_m, board + height}, {x + width, book_front_m, board + height});
     x += width;
     last_height = height;
-    if (draws.uniform() < 0.15) {
-      loose.line({x, kBookFront_m, board}, {x, kBookFront_m, board + height});
+    if (draws.uniform() < 0.12) {
+      loose.line({x, book_front_m, board}, {x, book_front_m, board + height});
       x += draws.uniform(0.04, 0.2);
       last_height = 0;
     }
@@ -37,13 +37,13 @@ void row_of_books(Shapes& loose, double x, double end, double board, Draws& draw
 }
 
 void fill_board(OfficeSite& site, double x, double board, Draws& draws) {
-  const double full = x + kShelfClear_m;
+  const double full = x + shelf_clear_m;
   const double start = x + draws.uniform(0.005, 0.15);
   const double kind = draws.uniform();
-  if (kind < 0.15) return;
-  if (kind < 0.35) {
+  if (kind < 0.2) return;
+  if (kind < 0.45) {
     const double width = draws.uniform(0.25, 0.5), height = draws.uniform(0.15, 0.32);
-    site.loose().box({start, 0.06, board}, {start + width, 0.3, board + height}, kStandingFaces);
+    site.loose().box({start, 0.06, board}, {start + width, 0.3, board + height}, standing_faces);
     return;
   }
   row_of_books(site.loose(), start, x + draws.uniform(0.5, 1) * (full - 0.005 - x), board, draws);
@@ -77,8 +77,8 @@ void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, Draws& dra
 
 void fill_bookshelf(OfficeSite& site, const QuarterFrame& frame, double x_m, Draws& draws) {
   site.loose().frame = frame;
-  for (const double board : kShelfBoards_m) {
-    fill_board(site, x_m + kShelfSide_m, board, draws);
+  for (const double board : shelf_boards_m) {
+    fill_board(site, x_m + shelf_side_m, board, draws);
   }
 }
 
@@ -101,7 +101,7 @@ void pin_papers(OfficeSite& site,
       const double line = z + draws.uniform(0.6, 0.9) * height;
       site.loose().line({x + 0.02, 0.018, line}, {x + width - 0.02, 0.018, line});
     }
-    x += width + draws.uniform(0.02, 0.2);
+    x += width + draws.uniform(0.03, 0.35);
   }
 }
 
@@ -121,7 +121,7 @@ void litter_top(OfficeSite& site,
     if (!site.is_free(frame * box)) continue;
     site.occupy(frame * box);
     site.loose().frame = frame;
-    site.loose().box(box.min(), box.max(), kStandingFaces);
+    site.loose().box(box.min(), box.max(), standing_faces);
   }
 }
 
@@ -137,7 +137,7 @@ void stack_cartons(OfficeSite& site,
     if (x + size.x() > corner_m.x() + size_m.x()) return;
     const Vector3d low(x, corner_m.y() + draws.uniform(0, size_m.y() - size.y()), corner_m.z());
     site.try_carton(frame, AlignedBox3d(low, low + size));
-    x += size.x() + draws.uniform(0.03, 0.4);
+    x += size.x() + draws.uniform(0.05, 0.7);
   }
 }
 
@@ -189,7 +189,7 @@ void run_cables(OfficeSite& site, const OfficeWall& wall, Draws& draws) {
     site.loose().line({0, depth, 0}, {0, depth, ceiling});
     site.loose().line({0, depth, ceiling}, {width, depth, ceiling});
     site.loose().line({width, 0, ceiling}, {width, depth, ceiling});
-    site.loose().surfaces_of_box(duct.min(), duct.max(), kRightFace | kFrontFace);
+    site.loose().surfaces_of_box(duct.min(), duct.max(), right_face | front_face);
   }
   const double x = draws.uniform(0.4, std::max(0.5, wall.length_m - 0.4));
   const double from = draws.uniform(1.1, 2.0);

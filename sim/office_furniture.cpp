@@ -9,8 +9,8 @@ namespace {
 
 FeatureSet door_frame() {
   Shapes s;
-  const double half = kDoorWidth_m / 2, top = kDoorHeight_m, out = half + kCasing_m;
-  const double near = 0.01, far = -kWallThickness_m - 0.01;  // the casing stands off both faces
+  const double half = door_width_m / 2, top = door_height_m, out = half + casing_m;
+  const double near = 0.01, far = -wall_thickness_m - 0.01;  // the casing stands off both faces
   for (const double y : {near, far}) {
     for (const double x : {half, out}) {
       const double z = top + (x - half);
@@ -31,45 +31,44 @@ FeatureSet door_frame() {
   return s.features();
 }
 
-// Open by half a turn, so that it lies against the wall beside the opening.
-FeatureSet door_leaf() {
+// Open by half a turn, so that it lies against the wall beside the opening; the handle is on the
+// edge away from the hinge.
+FeatureSet door_leaf(bool hinge_at_low_x) {
   Shapes s;
-  s.box({0, 0.02, 0.01}, {0.88, 0.06, 2.03}, kStandingFaces);
+  s.box({0, 0.02, 0.01}, {0.88, 0.06, 2.03}, standing_faces);
   s.upright_rectangle(0.15, 1.15, 0.73, 1.85, 0.062);
   s.upright_rectangle(0.15, 0.2, 0.73, 0.95, 0.062);
-  s.upright_rectangle(0.79, 0.96, 0.83, 1.14, 0.065);
-  s.box({0.72, 0.08, 1.04}, {0.82, 0.1, 1.06}, kNoFace);
+  const double plate = hinge_at_low_x ? 0.81 : 0.07, grip = hinge_at_low_x ? 0.72 : 0.16;
+  s.upright_rectangle(plate - 0.02, 0.96, plate + 0.02, 1.14, 0.065);
+  s.line({plate, 0.09, 1.05}, {grip, 0.09, 1.05});
   return s.features();
 }
 
 FeatureSet window() {
   Shapes s;
   s.upright_rectangle(0, 0.95, 1.5, 2.1, 0);
-  s.upright_rectangle(0.05, 1.0, 1.45, 2.05, 0.01);
   for (const double x : {0.08, 0.78}) {
     s.upright_rectangle(x, 1.03, x + 0.64, 2.02, 0.02);
     s.upright_rectangle(x + 0.06, 1.09, x + 0.58, 1.96, 0.01);
   }
   s.upright_rectangle(0.735, 1.42, 0.765, 1.56, 0.02);
-  s.box({-0.05, 0, 0.9}, {1.55, 0.16, 0.93}, kAllFaces - kBackFace);
+  s.box({-0.05, 0, 0.9}, {1.55, 0.16, 0.93}, all_faces - back_face);
   return s.features();
 }
 
 FeatureSet radiator() {
   Shapes s;
-  s.box({0, 0.04, 0.14}, {1.2, 0.14, 0.74}, kAllFaces);
+  s.box({0, 0.04, 0.14}, {1.2, 0.14, 0.74}, all_faces);
   for (int k = 1; k < 10; ++k) s.line({0.12 * k, 0.14, 0.17}, {0.12 * k, 0.14, 0.71});
   s.line({1.2, 0.09, 0.2}, {1.26, 0.09, 0.2});
   s.line({1.26, 0.09, 0.2}, {1.26, 0.09, 0});
-  s.box({1.2, 0.07, 0.62}, {1.28, 0.11, 0.66}, kNoFace);
   return s.features();
 }
 
 FeatureSet ceiling_light() {
   Shapes s;
-  s.box({-0.6, -0.15, -0.07}, {0.6, 0.15, 0}, kHangingFaces);
-  s.level_rectangle(-0.57, -0.12, 0.57, 0.12, -0.07);
-  for (int k = -2; k <= 2; ++k) s.line({0.19 * k, -0.12, -0.07}, {0.19 * k, 0.12, -0.07});
+  s.box({-0.6, -0.15, -0.07}, {0.6, 0.15, 0}, hanging_faces);
+  for (const double x : {-0.2, 0.2}) s.line({x, -0.15, -0.07}, {x, 0.15, -0.07});
   return s.features();
 }
 
@@ -83,19 +82,19 @@ FeatureSet ceiling_vent() {
 
 FeatureSet desk() {
   Shapes s;
-  s.box({0, 0.02, 0.71}, {1.6, 0.8, kBoardTop_m});
-  s.leg({0.04, 0.06, 0}, {0.07, 0.74, 0.71}, kLeftFace | kRightFace);
-  s.leg({1.53, 0.06, 0}, {1.56, 0.74, 0.71}, kLeftFace | kRightFace);
+  s.box({0, 0.02, 0.71}, {1.6, 0.8, board_top_m});
+  s.leg({0.04, 0.06, 0}, {0.07, 0.74, 0.71}, left_face | right_face);
+  s.leg({1.53, 0.06, 0}, {1.56, 0.74, 0.71}, left_face | right_face);
   s.line({0.07, 0.12, 0.3}, {1.53, 0.12, 0.3});
-  s.surfaces_of_box({0.07, 0.12, 0.3}, {1.53, 0.12, 0.71}, kBackFace);
+  s.surfaces_of_box({0.07, 0.12, 0.3}, {1.53, 0.12, 0.71}, back_face);
   return s.features();
 }
 
 FeatureSet table() {
   Shapes s;
-  s.box({0, 0.02, 0.7}, {1.2, 0.72, kBoardTop_m});
-  for (const double x : {0.05, 1.1}) {
-    for (const double y : {0.07, 0.62}) s.leg({x, y, 0}, {x + 0.05, y + 0.05, 0.7});
+  s.box({0, 0.02, 0.7}, {1.2, 0.72, board_top_m});
+  for (const double x : {0.05, 1.15}) {
+    for (const double y : {0.07, 0.67}) s.line({x, y, 0}, {x, y, 0.7});
   }
   return s.features();
 }
@@ -104,7 +103,7 @@ void drawers(double x0, double x1, double y, const std::vector<double>& z, Shape
   for (std::size_t k = 0; k + 1 < z.size(); ++k) {
     s.upright_rectangle(x0, z[k] + 0.01, x1, z[k + 1] - 0.01, y);
     const double middle = (x0 + x1) / 2, up = z[k + 1] - 0.05;
-    s.upright_rectangle(middle - 0.06, up - 0.01, middle + 0.06, up + 0.01, y + 0.015);
+    s.line({middle - 0.06, y + 0.015, up}, {middle + 0.06, y + 0.015, up});
   }
 }
 
@@ -117,7 +116,7 @@ FeatureSet pedestal() {
 
 FeatureSet filing_cabinet() {
   Shapes s;
-  s.box({0, 0.02, 0}, {0.46, 0.62, 1.32}, kLeaningFaces);
+  s.box({0, 0.02, 0}, {0.46, 0.62, 1.32}, leaning_faces);
   drawers(0.02, 0.44, 0.625, {0.04, 0.36, 0.68, 1.0, 1.3}, s);
   return s.features();
 }
@@ -126,14 +125,14 @@ FeatureSet monitor() {
   Shapes s;
   s.box({-0.27, -0.02, 0.12}, {0.27, 0.02, 0.44});
   s.upright_rectangle(-0.255, 0.14, 0.255, 0.425, 0.021);
-  s.leg({-0.03, -0.04, 0.01}, {0.03, -0.02, 0.3});
+  for (const double x : {-0.03, 0.03}) s.line({x, -0.03, 0.01}, {x, -0.03, 0.12});
   s.level_rectangle(-0.12, -0.1, 0.12, 0.1, 0.01);
   return s.features();
 }
 
 FeatureSet keyboard() {
   Shapes s;
-  s.box({-0.22, -0.07, 0}, {0.22, 0.07, 0.02}, kTopFace);
+  s.box({-0.22, -0.07, 0}, {0.22, 0.07, 0.02}, top_face);
   s.line({0.1, -0.07, 0.02}, {0.1, 0.07, 0.02});
   return s.features();
 }
@@ -147,17 +146,14 @@ FeatureSet office_chair() {
   const std::array<std::array<double, 2>, 5> feet{
       {{0.29, 0}, {0.09, 0.276}, {-0.235, 0.17}, {-0.235, -0.17}, {0.09, -0.276}}};
   for (const auto& foot : feet) s.line({0, 0, 0.08}, {foot[0], foot[1], 0.05});
-  for (const double x : {-0.27, 0.27}) {
-    s.line({x, -0.12, 0.67}, {x, 0.14, 0.67});
-    s.line({x, 0.14, 0.67}, {x, 0.14, 0.46});
-  }
   return s.features();
 }
 
 FeatureSet visitor_chair() {
   Shapes s;
   s.box({-0.22, -0.21, 0.43}, {0.22, 0.21, 0.46});
-  s.box({-0.22, 0.19, 0.6}, {0.22, 0.21, 0.84});
+  s.upright_rectangle(-0.21, 0.6, 0.21, 0.84, 0.2);
+  s.surfaces_of_box({-0.21, 0.2, 0.6}, {0.21, 0.2, 0.84}, back_face);
   for (const double x : {-0.21, 0.21}) {
     s.line({x, -0.2, 0}, {x, -0.2, 0.43});
     s.line({x, 0.2, 0}, {x, 0.2, 0.6});
@@ -168,19 +164,19 @@ FeatureSet visitor_chair() {
 
 FeatureSet bookshelf() {
   Shapes s;
-  const double width = kShelfClear_m + 2 * kShelfSide_m, depth = 0.32, height = 2.0;
-  s.box({0, 0.02, 0}, {width, depth, height}, kLeftFace | kRightFace | kBackFace | kTopFace);
-  for (const double x : {kShelfSide_m, width - kShelfSide_m}) {
+  const double width = shelf_clear_m + 2 * shelf_side_m, depth = 0.32, height = 2.0;
+  s.box({0, 0.02, 0}, {width, depth, height}, left_face | right_face | back_face | top_face);
+  for (const double x : {shelf_side_m, width - shelf_side_m}) {
     s.line({x, depth, 0}, {x, depth, height - 0.03});
   }
-  for (const double z : kShelfBoards_m) {
+  for (const double z : shelf_boards_m) {
     for (const double edge : {z - 0.025, z}) {
-      s.line({kShelfSide_m, depth, edge}, {width - kShelfSide_m, depth, edge});
+      s.line({shelf_side_m, depth, edge}, {width - shelf_side_m, depth, edge});
     }
-    s.surfaces_of_box({kShelfSide_m, 0.02, z - 0.025}, {width - kShelfSide_m, depth, z},
-                      kTopFace | kBottomFace);
+    s.surfaces_of_box({shelf_side_m, 0.02, z - 0.025}, {width - shelf_side_m, depth, z},
+                      top_face | bottom_face);
   }
-  s.line({kShelfSide_m, depth, height - 0.03}, {width - kShelfSide_m, depth, height - 0.03});
+  s.line({shelf_side_m, depth, height - 0.03}, {width - shelf_side_m, depth, height - 0.03});
   return s.features();
 }
 
@@ -189,34 +185,34 @@ void leaves(double width, double z0, double z1, double depth, Shapes& s) {
   const double middle = width / 2, grip = (z0 + z1) / 2;
   s.upright_rectangle(0.02, z0, middle - 0.005, z1, depth + 0.005);
   s.upright_rectangle(middle + 0.005, z0, width - 0.02, z1, depth + 0.005);
-  for (const double x : {middle - 0.05, middle + 0.03}) {
-    s.upright_rectangle(x, grip - 0.08, x + 0.02, grip + 0.08, depth + 0.02);
+  for (const double x : {middle - 0.04, middle + 0.04}) {
+    s.line({x, depth + 0.02, grip - 0.08}, {x, depth + 0.02, grip + 0.08});
   }
 }
 
 FeatureSet cupboard() {
   Shapes s;
-  s.box({0, 0.02, 0}, {1.0, 0.45, 1.8}, kLeaningFaces);
+  s.box({0, 0.02, 0}, {1.0, 0.45, 1.8}, leaning_faces);
   leaves(1.0, 0.06, 1.78, 0.45, s);
   return s.features();
 }
 
 FeatureSet sideboard() {
   Shapes s;
-  s.box({0, 0.02, 0}, {1.2, 0.45, 0.78}, kLeaningFaces);
+  s.box({0, 0.02, 0}, {1.2, 0.45, 0.78}, leaning_faces);
   leaves(1.2, 0.06, 0.75, 0.45, s);
   return s.features();
 }
 
 FeatureSet locker() {
   Shapes s;
-  s.box({0, 0.02, 0}, {0.4, 0.42, 1.8}, kLeaningFaces);
+  s.box({0, 0.02, 0}, {0.4, 0.42, 1.8}, leaning_faces);
   for (const double z : {0.1, 0.95}) {
     s.upright_rectangle(0.02, z, 0.38, z + 0.82, 0.425);
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 2; ++k) {
       s.line({0.12, 0.43, z + 0.66 + 0.04 * k}, {0.28, 0.43, z + 0.66 + 0.04 * k});
     }
-    s.upright_rectangle(0.32, z + 0.36, 0.35, z + 0.46, 0.435);
+    s.line({0.34, 0.435, z + 0.36}, {0.34, 0.435, z + 0.46});
   }
   return s.features();
 }
@@ -232,7 +228,7 @@ FeatureSet whiteboard() {
   Shapes s;
   s.upright_rectangle(0, 1.0, 1.5, 2.0, 0.02);
   s.upright_rectangle(0.02, 1.02, 1.48, 1.98, 0.02);
-  s.box({0.2, 0.02, 0.97}, {1.3, 0.08, 0.99}, kTopFace);
+  s.level_rectangle(0.2, 0.02, 1.3, 0.08, 0.98);
   return s.features();
 }
 
@@ -243,14 +239,14 @@ FeatureSet bin() {
   for (const double x : {-1, 1}) {
     for (const double y : {-1, 1}) s.line({0.11 * x, 0.11 * y, 0}, {0.15 * x, 0.15 * y, 0.36});
   }
-  s.surfaces_of_box({-0.12, -0.12, 0}, {0.12, 0.12, 0.3}, kUprightFaces);
+  s.surfaces_of_box({-0.12, -0.12, 0}, {0.12, 0.12, 0.3}, upright_faces);
   return s.features();
 }
 
 FeatureSet socket() {
   Shapes s;
   s.upright_rectangle(0, 0.26, 0.16, 0.34, 0.01);
-  for (const double x : {0.015, 0.095}) s.upright_rectangle(x, 0.275, x + 0.05, 0.325, 0.012);
+  s.line({0.08, 0.01, 0.26}, {0.08, 0.01, 0.34});
   return s.features();
 }
 
@@ -274,7 +270,8 @@ FeatureSet door_sign() {
 
 std::vector<WorldTemplate> office_templates() {
   return {{"door_frame", door_frame()},
-          {"door_leaf", door_leaf()},
+          {"door_leaf_right", door_leaf(true)},
+          {"door_leaf_left", door_leaf(false)},
           {"window", window()},
           {"radiator", radiator()},
           {"ceiling_light", ceiling_light()},

@@ -19,16 +19,16 @@ using Eigen::Vector3d;
 // What a draw is for. Every item has draws of its own, so that a change to one leaves the rest of
 // the room as it was.
 enum Item : std::uint32_t {
-  kStyleItem = 0,
-  kWindowItem = 1,
-  kDoorItem = 2,
-  kLightItem = 3,
-  kSocketItem = 10,
-  kBoardItem = 20,
-  kCableItem = 30,
-  kPictureItem = 40,
-  kCartonItem = 50,
-  kWallItem = 1000,  ///< + 1000 · wall + place along the wall
+  style_item = 0,
+  window_item = 1,
+  door_item = 2,
+  light_item = 3,
+  socket_item = 10,
+  board_item = 20,
+  cable_item = 30,
+  picture_item = 40,
+  carton_item = 50,
+  wall_item = 1000,  ///< + 1000 · wall + place along the wall
 };
 
 /// How often a room of one style takes each kind of furniture, out of the sum.
@@ -36,27 +36,27 @@ struct Style {
   std::array<double, 8> weights;
 };
 
-enum Furniture { kDesk, kTable, kShelf, kCupboard, kSideboard, kFiling, kLocker, kNothing };
+enum Furniture { desk, table, shelf, cupboard, sideboard, filing, locker, nothing };
 
-constexpr std::array<const char*, 7> kFurnitureNames{
+constexpr std::array<const char*, 7> furniture_names{
     "desk", "table", "bookshelf", "cupboard", "sideboard", "filing_cabinet", "locker"};
 
-constexpr std::array<Style, 4> kStyles{{
-    {{5, 0, 2, 1, 1, 1, 0, 1}},  // study
-    {{2, 1, 5, 2, 1, 2, 0, 1}},  // archive
-    {{1, 4, 1, 1, 3, 0, 0, 2}},  // meeting
-    {{3, 3, 2, 2, 0, 1, 2, 1}},  // laboratory
+constexpr std::array<Style, 4> styles{{
+    {{5, 0, 2, 1, 1, 1, 0, 3}},  // study
+    {{2, 1, 5, 2, 1, 2, 0, 3}},  // archive
+    {{2, 3, 2, 1, 2, 0, 0, 5}},  // meeting
+    {{4, 2, 2, 2, 0, 1, 2, 4}},  // laboratory
 }};
 
 int draw_furniture(const Style& style, Draws& draws) {
   double total = 0;
   for (const double weight : style.weights) total += weight;
   double rest = draws.uniform(0, total);
-  for (int kind = 0; kind < kNothing; ++kind) {
+  for (int kind = 0; kind < nothing; ++kind) {
     rest -= style.weights[kind];
     if (rest < 0) return kind;
   }
-  return kNothing;
+  return nothing;
 }
 
 // A chair turns within its circle; it may reach below the board it stands before.
@@ -82,25 +82,25 @@ void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, Draws& dr
     const double at = seat + (screens == 2 ? 0.62 * i - 0.31 : draws.uniform(-0.1, 0.1));
     const double y = draws.uniform(0.18, 0.26);
     const double inside = std::clamp(at, x + 0.28, x + 1.32);
-    const AlignedBox3d box(Vector3d(inside - 0.28, y - 0.11, kBoardTop_m),
-                           Vector3d(inside + 0.28, y + 0.11, kBoardTop_m + 0.45));
+    const AlignedBox3d box(Vector3d(inside - 0.28, y - 0.11, board_top_m),
+                           Vector3d(inside + 0.28, y + 0.11, board_top_m + 0.45));
     if (!site.is_free(frame * box)) continue;
     site.occupy(frame * box);
-    site.place("monitor", frame, {inside, y, kBoardTop_m});
+    site.place("monitor", frame, {inside, y, board_top_m});
   }
   const double keys = seat + draws.uniform(-0.08, 0.08), keys_y = draws.uniform(0.52, 0.64);
-  const AlignedBox3d box(Vector3d(keys - 0.23, keys_y - 0.08, kBoardTop_m),
-                         Vector3d(keys + 0.23, keys_y + 0.08, kBoardTop_m + 0.02));
+  const AlignedBox3d box(Vector3d(keys - 0.23, keys_y - 0.08, board_top_m),
+                         Vector3d(keys + 0.23, keys_y + 0.08, board_top_m + 0.02));
   if (site.is_free(frame * box)) {
     site.occupy(frame * box);
-    site.place("keyboard", frame, {keys, keys_y, kBoardTop_m});
+    site.place("keyboard", frame, {keys, keys_y, board_top_m});
   }
   const double side = draws.uniform();
   if (side < 0.7) site.place("pedestal", frame, {x + (side < 0.35 ? 0.09 : 1.09), 0, 0});
   const double pull = draws.uniform(0.86, 1.0);
   place_chair(site, "office_chair", frame, {seat, pull}, 0.8, draws);
-  const int things = 2 + static_cast<int>(draws.below(5));
-  litter_top(site, frame, {x + 0.03, 0.05, kBoardTop_m}, {1.54, 0.7}, things, draws);
+  const int things = 1 + static_cast<int>(draws.below(4));
+  litter_top(site, frame, {x + 0.03, 0.05, board_top_m}, {1.54, 0.7}, things, draws);
   if (draws.below(2)) site.try_place("bin", frame, {x - 0.2, draws.uniform(0.2, 0.5), 0});
 }
 
@@ -111,24 +111,24 @@ void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, Draws& d
     const double pull = draws.uniform(0.8, 0.95);
     place_chair(site, "visitor_chair", frame, {at, pull}, 0.72, draws);
   }
-  const int things = 1 + static_cast<int>(draws.below(6));
-  litter_top(site, frame, {x + 0.03, 0.05, kBoardTop_m}, {1.14, 0.62}, things, draws);
+  const int things = static_cast<int>(draws.below(4));
+  litter_top(site, frame, {x + 0.03, 0.05, board_top_m}, {1.14, 0.62}, things, draws);
 }
 
 void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, Draws& draws) {
   switch (kind) {
-    case kDesk:
+    case desk:
       return equip_desk(site, frame, x, draws);
-    case kTable:
+    case table:
       return equip_table(site, frame, x, draws);
-    case kShelf:
+    case shelf:
       fill_bookshelf(site, frame, x, draws);
       return stack_cartons(site, frame, {x, 0.04, 2.0}, {0.9, 0.26}, draws);
-    case kCupboard:
+    case cupboard:
       return stack_cartons(site, frame, {x, 0.04, 1.8}, {1.0, 0.4}, draws);
-    case kSideboard:
-      return litter_top(site, frame, {x + 0.02, 0.05, 0.78}, {1.16, 0.38}, 5, draws);
-    case kFiling:
+    case sideboard:
+      return litter_top(site, frame, {x + 0.02, 0.05, 0.78}, {1.16, 0.38}, 3, draws);
+    case filing:
       return litter_top(site, frame, {x + 0.02, 0.05, 1.32}, {0.42, 0.54}, 2, draws);
     default:
       return;
@@ -137,17 +137,17 @@ void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, Draw
 
 void furnish_wall(OfficeSite& site, int side, const Style& style) {
   const OfficeWall wall = site.room().wall(side);
-  std::uint32_t item = kWallItem + 1000 * side;
+  std::uint32_t item = wall_item + 1000 * side;
   double x = site.draws(item).uniform(0.03, 0.5);
   while (x < wall.length_m) {
     Draws draws = site.draws(++item);
     const int kind = draw_furniture(style, draws);
-    const double gap = draws.uniform() < 0.6 ? draws.uniform(0.02, 0.06) : draws.uniform(0.1, 0.6);
-    if (kind == kNothing) {
+    const double gap = draws.uniform() < 0.4 ? draws.uniform(0.02, 0.06) : draws.uniform(0.2, 1.3);
+    if (kind == nothing) {
       x += 0.3 + gap;
       continue;
     }
-    const char* name = kFurnitureNames[kind];
+    const char* name = furniture_names[kind];
     const double width = site.taken(name, {}, Vector3d::Zero()).max().x();
     if (!site.try_place(name, wall.frame, {x, 0, 0})) {
       x += 0.2;
@@ -159,7 +159,7 @@ void furnish_wall(OfficeSite& site, int side, const Style& style) {
 }
 
 void open_windows(OfficeSite& site, const OfficeWall& wall) {
-  Draws draws = site.draws(kWindowItem);
+  Draws draws = site.draws(window_item);
   const int windows = std::max(1, static_cast<int>(std::floor(wall.length_m / 3.2)));
   const double share = wall.length_m / windows;
   for (int i = 0; i < windows; ++i) {
@@ -175,11 +175,11 @@ void open_windows(OfficeSite& site, const OfficeWall& wall) {
 }
 
 void fit_ceiling(OfficeSite& site) {
-  Draws draws = site.draws(kLightItem);
+  Draws draws = site.draws(light_item);
   const Vector3d low = site.room().low_m, size = site.room().high_m - low;
   const bool across = draws.below(2);
   const int columns = std::max(1, static_cast<int>(std::round(size.x() / 2)));
-  const int rows = std::max(1, static_cast<int>(std::round(size.y() / 2.6)));
+  const int rows = std::max(1, static_cast<int>(std::round(size.y() / 3.2)));
   const double shift = draws.uniform(-0.25, 0.25);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
@@ -196,13 +196,13 @@ void fit_ceiling(OfficeSite& site) {
 
 // The leaf beside the opening, on the side with more wall, and the switch on the other.
 void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
-  Draws draws = site.draws(kDoorItem);
-  const double half = kDoorWidth_m / 2 + kCasing_m + 0.02;
+  Draws draws = site.draws(door_item);
+  const double half = door_width_m / 2 + casing_m + 0.02;
   site.occupy(wall.frame * AlignedBox3d(Vector3d(door_x - half, 0, 0),
-                                        Vector3d(door_x + half, 0.8, kDoorHeight_m + 0.15)));
+                                        Vector3d(door_x + half, 0.8, door_height_m + 0.15)));
   const bool leaf_right = door_x < wall.length_m / 2;
   if (draws.uniform() < 0.7) {
-    site.try_place("door_leaf", wall.frame,
+    site.try_place(leaf_right ? "door_leaf_right" : "door_leaf_left", wall.frame,
                    {leaf_right ? door_x + half + 0.02 : door_x - half - 0.91, 0, 0});
   }
   site.try_place("light_switch", wall.frame,
@@ -211,7 +211,7 @@ void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
 
 void mount_boards(OfficeSite& site, int side) {
   const OfficeWall wall = site.room().wall(side);
-  Draws draws = site.draws(kBoardItem + side);
+  Draws draws = site.draws(board_item + side);
   for (int i = 0; i < 8; ++i) {
     const bool notice = draws.below(2);
     const double width = notice ? 1.2 : 1.5;
@@ -225,21 +225,18 @@ void mount_boards(OfficeSite& site, int side) {
 
 void fit_sockets(OfficeSite& site, int side) {
   const OfficeWall wall = site.room().wall(side);
-  Draws draws = site.draws(kSocketItem + side);
+  Draws draws = site.draws(socket_item + side);
   const int sockets = 1 + static_cast<int>(wall.length_m / 3);
   for (int i = 0; i < sockets; ++i) {
     const double x = (i + draws.uniform(0.1, 0.8)) * wall.length_m / sockets;
-    // Sockets were there before the furniture: they may be behind it.
-    if (site.room().wall(side).length_m - x > 0.2) {
-      site.try_place("socket", wall.frame, {x, 0, 0});
-    }
+    site.try_place("socket", wall.frame, {x, 0, 0});
   }
 }
 
 }  // namespace
 
 void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
-  const Style& style = kStyles[site.draws(kStyleItem).below(kStyles.size())];
+  const Style& style = styles[site.draws(style_item).below(styles.size())];
   const int door_side = (window_side + 2) % 4;
   hang_door(site, site.room().wall(door_side), door_x_m);
   open_windows(site, site.room().wall(window_side));
@@ -252,12 +249,12 @@ void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
     const OfficeWall wall = site.room().wall(side);
     mount_boards(site, side);
     fit_sockets(site, side);
-    Draws cables = site.draws(kCableItem + side);
+    Draws cables = site.draws(cable_item + side);
     run_cables(site, wall, cables);
-    Draws pictures = site.draws(kPictureItem + side);
-    hang_pictures(site, wall, static_cast<int>(3 * wall.length_m), pictures);
-    Draws cartons = site.draws(kCartonItem + side);
-    drop_cartons(site, wall, 4, cartons);
+    Draws pictures = site.draws(picture_item + side);
+    hang_pictures(site, wall, static_cast<int>(wall.length_m), pictures);
+    Draws cartons = site.draws(carton_item + side);
+    drop_cartons(site, wall, 2, cartons);
   }
 }
 

@@ -12,18 +12,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGridSteps = 1e4;
+constexpr double grid_steps = 1e4;
 
 std::array<std::int64_t, 3> grid_point(const Vector3d& x) {
-  return {std::llround(x.x() * kGridSteps), std::llround(x.y() * kGridSteps),
-          std::llround(x.z() * kGridSteps)};
+  return {std::llround(x.x() * grid_steps), std::llround(x.y() * grid_steps),
+          std::llround(x.z() * grid_steps)};
 }
 
 }  // namespace
 
 double to_grid(double value_m) {
   // Adding zero turns -0 into 0.
-  return static_cast<double>(std::llround(value_m * kGridSteps)) / kGridSteps + 0.0;
+  return static_cast<double>(std::llround(value_m * grid_steps)) / grid_steps + 0.0;
 }
 
 Vector3d to_grid(const Vector3d& value_m) {
@@ -85,10 +85,10 @@ void Shapes::leg(const Vector3d& low_m, const Vector3d& high_m, unsigned faces) 
 }
 
 void Shapes::surfaces_of_box(const Vector3d& low_m, const Vector3d& high_m, unsigned faces) {
-  static constexpr std::array<BoxFaces, 6> kFaces{kLeftFace,  kRightFace,  kBackFace,
-                                                  kFrontFace, kBottomFace, kTopFace};
+  static constexpr std::array<BoxFaces, 6> every{left_face,  right_face,  back_face,
+                                                 front_face, bottom_face, top_face};
   for (int side = 0; side < 6; ++side) {
-    if (!(faces & kFaces[side])) continue;
+    if (!(faces & every[side])) continue;
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     Vector3d corner = side % 2 ? high_m : low_m;
     std::vector<Vector3d> polygon;

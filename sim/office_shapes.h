@@ -28,18 +28,18 @@ struct QuarterFrame {
 
 /// The faces of a box that become opaque surfaces. y points away from the wall, hence the names.
 enum BoxFaces : unsigned {
-  kNoFace = 0,
-  kLeftFace = 1,
-  kRightFace = 2,
-  kBackFace = 4,
-  kFrontFace = 8,
-  kBottomFace = 16,
-  kTopFace = 32,
-  kAllFaces = 63,
-  kStandingFaces = kAllFaces - kBottomFace,    ///< on the floor
-  kLeaningFaces = kStandingFaces - kBackFace,  ///< on the floor with its back to a wall
-  kHangingFaces = kAllFaces - kTopFace,        ///< from the ceiling
-  kUprightFaces = kLeftFace + kRightFace + kBackFace + kFrontFace,
+  no_face = 0,
+  left_face = 1,
+  right_face = 2,
+  back_face = 4,
+  front_face = 8,
+  bottom_face = 16,
+  top_face = 32,
+  all_faces = 63,
+  standing_faces = all_faces - bottom_face,    ///< on the floor
+  leaning_faces = standing_faces - back_face,  ///< on the floor with its back to a wall
+  hanging_faces = all_faces - top_face,        ///< from the ceiling
+  upright_faces = left_face + right_face + back_face + front_face,
 };
 
 /// Collects features in a frame. Lines that coincide are kept once, and corners are found where
@@ -54,9 +54,9 @@ class Shapes {
   /// A rectangle in the plane z = `z_m`.
   void level_rectangle(double x0_m, double y0_m, double x1_m, double y1_m, double z_m);
   /// The twelve edges of a box, and the surfaces of some of its faces.
-  void box(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = kAllFaces);
+  void box(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = all_faces);
   /// A leg or a panel below a board: the edges but those of its top.
-  void leg(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = kNoFace);
+  void leg(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = no_face);
   void surfaces_of_box(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces);
 
   FeatureSet features() const;

@@ -16,9 +16,9 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRouteClearance_m = 0.35;  ///< 0.3 m is promised
-constexpr double kHeadroom_m = 2.0;
-constexpr double kGap_m = 0.015;  ///< between neighbours, so that edges never coincide
+constexpr double route_clearance_m = 0.35;  ///< 0.3 m is promised
+constexpr double headroom_m = 2.0;
+constexpr double gap_m = 0.015;  ///< between neighbours, so that edges never coincide
 
 double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
   const Vector2d d = b - a;
@@ -87,8 +87,7 @@ void OfficeSite::enter(const OfficeRoom& room, const std::vector<Vector2d>& path
 }
 
 Draws OfficeSite::draws(std::uint32_t item) const {
-  return Draws(
-      {.seed = seed_, .trial = room_.number, .feature = item, .source = kOfficeDrawSource});
+  return Draws({.seed = seed_, .trial = room_.number, .feature = item, .source = office_draws});
 }
 
 bool OfficeSite::is_free(const AlignedBox3d& box) const {
@@ -96,11 +95,11 @@ bool OfficeSite::is_free(const AlignedBox3d& box) const {
   room.min().array() -= 1e-9;
   room.max().array() += 1e-9;
   if (!room.contains(box)) return false;
-  if (box.min().z() < kHeadroom_m && distance_to_path(box, path_m_) < kRouteClearance_m) {
+  if (box.min().z() < headroom_m && distance_to_path(box, path_m_) < route_clearance_m) {
     return false;
   }
   // Stacked things touch; only neighbours keep a gap.
-  const Vector3d gap(kGap_m, kGap_m, -1e-6);
+  const Vector3d gap(gap_m, gap_m, -1e-6);
   const AlignedBox3d grown(box.min() - gap, box.max() + gap);
   return std::none_of(occupied_.begin(), occupied_.end(),
                       [&](const AlignedBox3d& other) { return grown.intersects(other); });
@@ -139,7 +138,7 @@ bool OfficeSite::try_carton(const QuarterFrame& frame, const AlignedBox3d& box) 
   occupy(placed);
   loose_.frame = frame;
   const Vector3d &low = box.min(), &high = box.max();
-  loose_.box(low, high, kStandingFaces);
+  loose_.box(low, high, standing_faces);
   const double y = (low.y() + high.y()) / 2, flap = 0.2 * (high.z() - low.z());
   loose_.line({low.x(), y, high.z()}, {high.x(), y, high.z()});
   for (const double x : {low.x(), high.x()}) {

@@ -9,14 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "calib/draw_sources.h"
 #include "calib/random.h"
 #include "sim/office_shapes.h"
 #include "sim/world.h"
 
 namespace vernier {
 
-/// Of the 8 bits that say which process draws; far from the sources of a sensed view.
-inline constexpr std::uint32_t kOfficeDrawSource = 200;
+/// The stream of every draw of a generated office.
+inline constexpr auto office_draws = static_cast<std::uint32_t>(DrawSource::office);
 
 /// One wall of a room seen from inside: x along it, y into the room, z up.
 struct OfficeWall {

@@ -94,7 +94,10 @@ HiddenStretch hidden_stretch(const Shadow& shadow,
   return {t0, t1, hands};
 }
 
-PointInShadow point_in_shadow(const Shadow& shadow, const Eigen::Vector3d& x, double gap_m) {
+PointInShadow point_in_shadow(const Shadow& shadow,
+                              const Eigen::Vector3d& x,
+                              double gap_m,
+                              std::vector<Eigen::Vector3d>* touched) {
   if (shadow.normal.dot(x) - shadow.distance_m <= gap_m) return PointInShadow::outside;
   bool on_border = false;
   for (const ShadowSide& side : shadow.sides) {
@@ -102,15 +105,28 @@ PointInShadow point_in_shadow(const Shadow& shadow, const Eigen::Vector3d& x, do
     if (f < -side.tolerance) return PointInShadow::outside;
     on_border |= f <= side.tolerance;
   }
-  return on_border ? PointInShadow::on_border : PointInShadow::inside;
+  if (!on_border) return PointInShadow::inside;
+  for (const ShadowSide& side : shadow.sides) {
+    if (touched && side.inward.dot(x) <= side.tolerance) touched->push_back(side.inward);
+  }
+  return PointInShadow::on_border;
 }
 
-std::array<Eigen::Vector3d, 16> points_around(const Eigen::Vector3d& x) {
+std::vector<Eigen::Vector3d> points_around(const Eigen::Vector3d& x,
+                                           const std::vector<Eigen::Vector3d>& touched) {
   const Eigen::Vector3d u = x.unitOrthogonal(), v = u.cross(x).normalized();
-  std::array<Eigen::Vector3d, 16> points;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + 0.3) / 16;
-    points[i] = x + 10 * on_side_m * (std::cos(angle) * u + std::sin(angle) * v);
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& inward : touched) {
+    const double along = std::atan2(inward.dot(v), inward.dot(u)) + std::numbers::pi / 2;
+    angles.push_back(std::remainder(along, 2 * std::numbers::pi));
+    angles.push_back(std::remainder(along + std::numbers::pi, 2 * std::numbers::pi));
+  }
+  std::sort(angles.begin(), angles.end());
+  angles.push_back(angles.front() + 2 * std::numbers::pi);
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
+    const double angle = 0.5 * (angles[i] + angles[i + 1]);
+    points.push_back(x + 10 * on_side_m * (std::cos(angle) * u + std::sin(angle) * v));
   }
   return points;
 }

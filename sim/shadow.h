@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 
@@ -54,11 +53,19 @@ HiddenStretch hidden_stretch(const Shadow& shadow,
                              double gap_m);
 
 enum class PointInShadow { outside, on_border, inside };
-PointInShadow point_in_shadow(const Shadow& shadow, const Eigen::Vector3d& x, double gap_m);
 
-/// Points 10 nm around x, across its ray. A point on the border of shadows is hidden if all of
-/// these are: behind the seam of two walls, not behind a single edge.
-std::array<Eigen::Vector3d, 16> points_around(const Eigen::Vector3d& x);
+/// Where x lies. Of a shadow on whose border it lies, appends the inward normals of the sides it
+/// lies on to `touched`, if given.
+PointInShadow point_in_shadow(const Shadow& shadow,
+                              const Eigen::Vector3d& x,
+                              double gap_m,
+                              std::vector<Eigen::Vector3d>* touched = nullptr);
+
+/// Points 10 nm around x, across its ray: one in each sector between the sides it touches. A point
+/// on the border of shadows is hidden if all of these are: behind the seam of two walls, not behind
+/// a single edge.
+std::vector<Eigen::Vector3d> points_around(const Eigen::Vector3d& x,
+                                           const std::vector<Eigen::Vector3d>& touched);
 
 /// The picture of a stretch of a segment x(t) = a + t (b - a) before the eye, in normalised
 /// coordinates: a straight line from x0 to x1, at depths z0 to z1.

@@ -14,7 +14,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double eye_depth_m = 1e-6;  ///< what a surface has nearer than this, hides nothing
 constexpr double box_slack = 1e-7;    ///< normalised; more than rounding and any tolerance
-constexpr double tile_slack = 1e-7;   ///< of a tile
 constexpr int most_sides_in_mask = 32;
 
 void extend(ImageBox& box, const Eigen::Vector2d& x) {
@@ -193,7 +192,7 @@ void ShadowGrid::mark_lattice(const TileRange& range, std::span<const ShadowSide
     const double y = origin_[1] + row * tile_size_[1];
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const Eigen::Vector3d& n = sides[i].inward;
-      // As far outside or inside as would matter to a point 100 m away, and to rounding.
+      // On the unit plane; enough that points from 1 cm on are clear of the side's tolerance.
       const double margin = 100 * sides[i].tolerance;
       const double constant = n.y() * y + n.z() + n.x() * origin_[0];
       const double step = n.x() * tile_size_[0];
@@ -239,56 +238,6 @@ void ShadowGrid::sort_into_tiles() {
   }
 }
 
-/// The tiles under a segment's picture, slab by slab along the axis on which it crosses more of
-/// them.
-struct ShadowGrid::Walk {
-  int major, direction, slab, last;
-  Eigen::Vector2d g0, dg;         ///< the picture in tiles: g0 + s dg
-  double inverse_z0, inverse_dz;  ///< 1 / depth is linear in the picture, too
-  double s0 = 0, s1 = 1;          ///< the part in this slab
-  int minor0 = 0, minor1 = 0;     ///< tiles of the slab under that part
-
-  Walk(const Eigen::Vector2d& from,
-       const Eigen::Vector2d& to,
-       double inverse_from,
-       double inverse_to)
-      : g0(from), dg(to - from), inverse_z0(inverse_from), inverse_dz(inverse_to - inverse_from) {
-    major = std::abs(dg[1]) > std::abs(dg[0]);
-    direction = dg[major] < 0 ? -1 : 1;
-    const int count = major ? rows : columns;
-    slab = clamp_tile(from[major] - direction * tile_slack, count);
-    last = clamp_tile(to[major] + direction * tile_slack, count);
-    enter();
-  }
-
-  static int clamp_tile(double g, int count) {
-    return static_cast<int>(std::clamp(g, 0.0, count - 1.0));
-  }
-
-  /// Goes on to the next slab, false after the last.
-  bool next() {
-    if (slab == last) return false;
-    slab += direction;
-    s0 = is_point() ? 0 : s1;
-    enter();
-    return true;
-  }
-
-  void enter() {
-    const double exit = slab + (direction > 0 ? 1 : 0);
-    s1 = slab == last || is_point() ? 1 : std::clamp((exit - g0[major]) / dg[major], s0, 1.0);
-    const int count = major ? columns : rows;
-    const double m0 = g0[1 - major] + s0 * dg[1 - major], m1 = g0[1 - major] + s1 * dg[1 - major];
-    minor0 = clamp_tile(std::min(m0, m1) - tile_slack, count);
-    minor1 = clamp_tile(std::max(m0, m1) + tile_slack, count);
-  }
-
-  bool is_point() const { return std::abs(dg[major]) < 1e-12; }
-  int tile(int minor) const { return major ? slab * columns + minor : minor * columns + slab; }
-  double nearest() const { return inverse_z0 + (inverse_dz > 0 ? s1 : s0) * inverse_dz; }
-  double farthest() const { return inverse_z0 + (inverse_dz > 0 ? s0 : s1) * inverse_dz; }
-};
-
 /// A segment on its way through the tiles, and what is known to be hidden of it.
 struct ShadowGrid::Traverse {
   const Eigen::Vector3d &a, &b;
@@ -313,20 +262,21 @@ struct ShadowGrid::Traverse {
   }
 };
 
-bool ShadowGrid::covers_slab(const Walk& walk) const {
-  for (int minor = walk.minor0; minor <= walk.minor1; ++minor) {
-    if (walk.nearest() >= inverse_covered_[walk.tile(minor)]) return false;
+bool ShadowGrid::covers_slab(const TileWalk& walk) const {
+  for (int minor = walk.first_minor(); minor <= walk.last_minor(); ++minor) {
+    if (walk.inverse_nearest() >= inverse_covered_[walk.tile(minor)]) return false;
   }
   return true;
 }
 
-bool ShadowGrid::hide_in_slab(Traverse& traverse, const Walk& walk) {
-  for (int minor = walk.minor0; minor <= walk.minor1; ++minor) {
+bool ShadowGrid::hide_in_slab(Traverse& traverse, const TileWalk& walk) {
+  for (int minor = walk.first_minor(); minor <= walk.last_minor(); ++minor) {
     const int tile = walk.tile(minor);
     for (int k = tile_begin_[tile]; k < tile_begin_[tile + 1]; ++k) {
       const int index = tile_casters_[k];
       const Caster& caster = casters_[index];
-      if (caster.inverse_nearest <= walk.farthest()) break;  // this and all that follow are behind
+      if (caster.inverse_nearest <= walk.inverse_farthest())
+        break;  // this and all that follow are behind
       if (tried_[index] == segment_) continue;
       tried_[index] = segment_;
       if (!overlap(caster.box, traverse.box)) continue;
@@ -348,15 +298,14 @@ bool ShadowGrid::hide(const Eigen::Vector3d& a,
   Traverse traverse{
       a, b, open, hidden, {picture.x0[0], picture.x0[1], picture.x0[0], picture.x0[1]}};
   extend(traverse.box, picture.x1);
-  Walk walk((picture.x0 - origin_).cwiseProduct(tiles_per_unit_),
-            (picture.x1 - origin_).cwiseProduct(tiles_per_unit_), 1 / picture.z0, 1 / picture.z1);
+  TileWalk walk(picture, origin_, tiles_per_unit_, {columns, rows});
   double covered_from = -1;
   do {
     const bool covered = covers_slab(walk);
-    if (covered && covered_from < 0) covered_from = walk.s0;
+    if (covered && covered_from < 0) covered_from = walk.s0();
     if (!covered && !hide_in_slab(traverse, walk)) return false;
-    if (covered_from >= 0 && (!covered || walk.slab == walk.last)) {
-      const double t1 = picture.t_at(covered ? walk.s1 : walk.s0);
+    if (covered_from >= 0 && (!covered || walk.at_last())) {
+      const double t1 = picture.t_at(covered ? walk.s1() : walk.s0());
       if (!traverse.close({picture.t_at(covered_from), t1, HiddenStretch::both})) return false;
       covered_from = -1;
     }
@@ -367,7 +316,7 @@ bool ShadowGrid::hide(const Eigen::Vector3d& a,
 bool ShadowGrid::hides(const Eigen::Vector3d& point) const {
   const Eigen::Vector2d g =
       (Eigen::Vector2d(point.head<2>() / point.z()) - origin_).cwiseProduct(tiles_per_unit_);
-  const int tile = Walk::clamp_tile(g[1], rows) * columns + Walk::clamp_tile(g[0], columns);
+  const int tile = clamp_tile(g[1], rows) * columns + clamp_tile(g[0], columns);
   if (1 / point.z() < inverse_covered_[tile]) return true;
   bool on_border = false;
   for (int k = tile_begin_[tile]; k < tile_begin_[tile + 1]; ++k) {
@@ -376,16 +325,19 @@ bool ShadowGrid::hides(const Eigen::Vector3d& point) const {
     on_border |= where == PointInShadow::on_border;
   }
   if (!on_border) return false;
-  const auto around = points_around(point);
+  std::vector<Eigen::Vector3d> touched;
+  if (classify(point, &touched) == PointInShadow::inside) return true;
+  const auto around = points_around(point, touched);
   return std::none_of(around.begin(), around.end(), [&](const Eigen::Vector3d& x) {
     return classify(x) == PointInShadow::outside;
   });
 }
 
-PointInShadow ShadowGrid::classify(const Eigen::Vector3d& point) const {
+PointInShadow ShadowGrid::classify(const Eigen::Vector3d& point,
+                                   std::vector<Eigen::Vector3d>* touched) const {
   PointInShadow result = PointInShadow::outside;
   for (const Caster& caster : casters_) {
-    const PointInShadow where = point_in_shadow(caster.shadow, point, gap_m_);
+    const PointInShadow where = point_in_shadow(caster.shadow, point, gap_m_, touched);
     if (where == PointInShadow::inside) return where;
     if (where == PointInShadow::on_border) result = where;
   }

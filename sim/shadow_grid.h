@@ -10,6 +10,7 @@
 #include "calib/pose.h"
 #include "sim/convex_pieces.h"
 #include "sim/shadow.h"
+#include "sim/tile_walk.h"
 #include "sim/view_frustum.h"
 
 namespace vernier {
@@ -40,7 +41,6 @@ class ShadowGrid {
 
  private:
   static constexpr int columns = 32, rows = 24;
-  struct Walk;
   struct Traverse;
 
   struct Candidate {
@@ -73,9 +73,10 @@ class ShadowGrid {
   bool cover_or_miss(const Candidate& candidate, int column, int row);
   void sort_into_tiles();
   TileRange tiles_of(const ImageBox& box) const;
-  bool hide_in_slab(Traverse& traverse, const Walk& walk);
-  bool covers_slab(const Walk& walk) const;
-  PointInShadow classify(const Eigen::Vector3d& point) const;
+  bool hide_in_slab(Traverse& traverse, const TileWalk& walk);
+  bool covers_slab(const TileWalk& walk) const;
+  PointInShadow classify(const Eigen::Vector3d& point,
+                         std::vector<Eigen::Vector3d>* touched = nullptr) const;
 
   double gap_m_ = 0;
   Eigen::Vector2d origin_, tile_size_, tiles_per_unit_;

@@ -115,6 +115,20 @@ void append_crossings(const Curve& curve,
   cuts.push_back(root(f, turn, s1, f0 >= 0));
 }
 
+/// Throws Error if distortion turns round on the way from the axis to x: x is then beyond a fold,
+/// and what lies between has more than one pixel.
+void refuse_fold(const Camera& camera, const Eigen::Vector2d& x) {
+  const Curve ray{camera, Eigen::Vector2d::Zero(), x};
+  for (double share : {0.25, 0.5, 0.75, 1.0}) {
+    const Eigen::Vector2d outwards(camera.f_px() * camera.ax() * x[0], camera.f_px() * x[1]);
+    if (x.squaredNorm() == 0 || ray(share).slope.dot(outwards) > 0) continue;
+    throw Error("camera \"" + camera.name + "\"",
+                "its distortion folds the image within its border",
+                "calibrate with corners that reach the image's edge, or use a model with fewer "
+                "coefficients");
+  }
+}
+
 }  // namespace
 
 ViewFrustum::ViewFrustum(const Camera& camera, double near_m, double far_m)
@@ -139,6 +153,7 @@ void ViewFrustum::bound_border() {
   inner_ = {-none, -none, none, none};
   const auto visit = [&](double u, double v) {
     const Eigen::Vector2d x = unproject(camera_, {u - 0.5, v - 0.5}).head<2>();
+    refuse_fold(camera_, x);
     outer_ = {std::min(outer_.x0, x[0]), std::min(outer_.y0, x[1]), std::max(outer_.x1, x[0]),
               std::max(outer_.y1, x[1])};
     outer_radius2_ = std::max(outer_radius2_, x.squaredNorm());

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/visibility.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <span>
 
 #include "calib/error.h"
 #include "sim/convex_pieces.h"
@@ -21,6 +21,11 @@ void check(const Pose& T_camera_world, const VisibilityOptions& options) {
   if (!T_camera_world.R.allFinite() || !T_camera_world.t.allFinite()) {
     throw Error("visibility", "the camera's pose is not finite", "give a rotation and metres");
   }
+}
+
+/// The gap, and no less than keeps a surface's own edges before it in spite of rounding.
+double gap_m(const VisibilityOptions& options) {
+  return std::max(options.surface_gap_m, edge_on_m);
 }
 
 /// The parts of both, ascending.
@@ -49,7 +54,8 @@ thread_local Scratch scratch;
 PointInShadow classify(const ConvexSurfaces& surfaces,
                        const Eigen::Vector3d& eye,
                        const Eigen::Vector3d& x,
-                       double gap_m) {
+                       double gap,
+                       std::vector<Eigen::Vector3d>* touched = nullptr) {
   PointInShadow result = PointInShadow::outside;
   for (const ConvexSurface& piece : surfaces.pieces) {
     double distance = piece.distance_m - piece.normal.dot(eye);
@@ -59,7 +65,9 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
       distance = -distance;
       beyond = -beyond;
     }
-    if (distance <= edge_on_m || beyond <= gap_m) continue;
+    if (distance <= edge_on_m || beyond <= gap) continue;
+    const double reach = piece.radius_m + 1e-7;  // more than any tolerance
+    if ((piece.centre_m - eye).cross(x).squaredNorm() > reach * reach * x.squaredNorm()) continue;
     scratch.sides.clear();
     const Eigen::Vector3d* p = surfaces.vertices_m.data() + piece.first_vertex;
     for (int i = 0; i < piece.vertex_count; ++i) {
@@ -68,7 +76,7 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
       scratch.sides.push_back(flip ? shadow_side(to, from) : shadow_side(from, to));
     }
     const Shadow shadow{flip ? -piece.normal : piece.normal, distance, scratch.sides};
-    const PointInShadow where = point_in_shadow(shadow, x, gap_m);
+    const PointInShadow where = point_in_shadow(shadow, x, gap, touched);
     if (where == PointInShadow::inside) return where;
     if (where == PointInShadow::on_border) result = where;
   }
@@ -94,7 +102,7 @@ std::vector<VisibleRun> Visibility::visible_runs(const Camera& camera,
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
   Scratch& s = scratch;
-  s.grid.build(index_->surfaces, T_camera_world, frustum, options.surface_gap_m);
+  s.grid.build(index_->surfaces, T_camera_world, frustum, gap_m(options));
   std::vector<VisibleRun> runs;
   const std::vector<WorldSegment>& segments = index_->world.segments;
   for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
@@ -120,7 +128,7 @@ std::vector<int> Visibility::visible_corners(const Camera& camera,
                                              const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  scratch.grid.build(index_->surfaces, T_camera_world, frustum, options.surface_gap_m);
+  scratch.grid.build(index_->surfaces, T_camera_world, frustum, gap_m(options));
   std::vector<int> visible;
   const std::vector<WorldCorner>& corners = index_->world.corners;
   for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
@@ -134,14 +142,14 @@ bool Visibility::sees(const Eigen::Vector3d& eye,
                       const Eigen::Vector3d& point,
                       const VisibilityOptions& options) const {
   const Eigen::Vector3d x = point - eye;
-  const auto at = [&](const Eigen::Vector3d& y) {
-    return classify(index_->surfaces, eye, y, options.surface_gap_m);
-  };
-  const PointInShadow where = at(x);
+  const double gap = gap_m(options);
+  std::vector<Eigen::Vector3d> touched;
+  const PointInShadow where = classify(index_->surfaces, eye, x, gap, &touched);
   if (where != PointInShadow::on_border) return where == PointInShadow::outside;
-  const auto around = points_around(x);
-  return std::any_of(around.begin(), around.end(),
-                     [&](const Eigen::Vector3d& y) { return at(y) == PointInShadow::outside; });
+  const auto around = points_around(x, touched);
+  return std::any_of(around.begin(), around.end(), [&](const Eigen::Vector3d& y) {
+    return classify(index_->surfaces, eye, y, gap) == PointInShadow::outside;
+  });
 }
 
 }  // namespace vernier

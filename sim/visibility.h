@@ -12,10 +12,10 @@
 namespace vernier {
 
 struct VisibilityOptions {
-  double near_m = 0.1;         ///< nothing closer along the optical axis is seen
-  double far_m = 30;           ///< nor farther
-  double min_length_px = 10;   ///< shorter visible runs are not detected as lines
-  double surface_gap_m = 1e-3; ///< a point this close behind a surface lies on it
+  double near_m = 0.1;          ///< nothing closer along the optical axis is seen
+  double far_m = 30;            ///< nor farther
+  double min_length_px = 10;    ///< shorter visible runs are not detected as lines
+  double surface_gap_m = 1e-3;  ///< a point this close behind a surface lies on it
 };
 
 /// A stretch of a segment that one camera sees, x(t) = a + t (b - a), t in [t0, t1].

@@ -19,7 +19,7 @@
 namespace vernier {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
+constexpr double rad_per_deg = std::numbers::pi / 180;
 
 /// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
 std::size_t edit_distance(std::string_view from, std::string_view to) {
@@ -263,7 +263,7 @@ WorldInstance Reader::read_instance(const toml::table& table, const std::string&
   instance.template_name = text(required(table, "template", what), what + " template");
   instance.at_m = numbers<3>(required(table, "at_m", what), what + " at_m");
   if (const auto* yaw = table.get("yaw_deg")) {
-    instance.yaw_rad = number(*yaw, what + " yaw_deg") * kRadPerDeg;
+    instance.yaw_rad = number(*yaw, what + " yaw_deg") * rad_per_deg;
   }
   return instance;
 }

@@ -14,10 +14,10 @@
 namespace vernier {
 namespace {
 
-constexpr double kSteps = 1e4;  ///< a tenth of a millimetre, or a ten-thousandth of a degree
-constexpr double kLargest = 1e9;
+constexpr double steps_per_unit = 1e4;  ///< a tenth of a millimetre, or a ten-thousandth of a degree
+constexpr double largest = 1e9;
 
-double rounded(double value) { return std::round(value * kSteps) / kSteps; }
+double rounded(double value) { return std::round(value * steps) / steps; }
 
 template <int N>
 Eigen::Matrix<double, N, 1> rounded(const Eigen::Matrix<double, N, 1>& value) {
@@ -51,10 +51,10 @@ WorldDescription rounded(const WorldDescription& description) {
 
 // By integers, so that no locale and no printf decides about the bytes.
 std::string number(double value) {
-  if (!(std::abs(value) < kLargest)) {
+  if (!(std::abs(value) < largest)) {
     throw Error("world", "a number is beyond 1e9 or not finite", "check the description");
   }
-  const std::int64_t steps = std::llround(value * kSteps);
+  const std::int64_t steps = std::llround(value * steps);
   const std::int64_t size = steps < 0 ? -steps : steps;
   std::string digits = std::to_string(size % 10000);
   digits.insert(0, 4 - digits.size(), '0');
@@ -73,14 +73,14 @@ std::string numbers(const Vector& values) {
 }
 
 std::string quoted(const std::string& text) {
-  static constexpr char kHex[] = "0123456789ABCDEF";
+  static constexpr char hex[] = "0123456789ABCDEF";
   std::string result = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
       result += {'\\', c};
     } else if (byte < 0x20 || byte == 0x7f) {
-      result += std::string("\\u00") + kHex[byte >> 4] + kHex[byte & 15];
+      result += std::string("\\u00") + hex[byte >> 4] + hex[byte & 15];
     } else {
       result += c;
     }
@@ -122,11 +122,11 @@ void append_instance(const WorldInstance& instance, std::string& text) {
   if (yaw_deg != "0") text += "yaw_deg = " + yaw_deg + "\n";
 }
 
-void write_whole(const std::string& text, const std::filesystem::path& file) {
+bool write_whole(const std::string& text, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream << text;
   stream.close();
-  if (!stream) throw Error(file.string(), "cannot be written", "check folder, rights and space");
+  return static_cast<bool>(stream);
 }
 
 }  // namespace
@@ -157,18 +157,14 @@ void write_world(const WorldDescription& description, const std::filesystem::pat
   // Two writers of one file must not share the temporary one.
   std::filesystem::path temporary = file;
   temporary += "." + std::to_string(getpid()) + ".tmp";
-  try {
-    write_whole(text, temporary);
-    std::filesystem::rename(temporary, file);
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw Error(file.string(), "cannot be written: " + error.code().message(), "check the folder");
-  } catch (const Error&) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  std::error_code fault;
+  const bool whole = write_whole(text, temporary);
+  if (whole) std::filesystem::rename(temporary, file, fault);
+  if (whole && !fault) return;
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  throw Error(file.string(), "cannot be written" + (fault ? ": " + fault.message() : std::string()),
+              "check its folder, the rights to it and the space left");
 }
 
 }  // namespace vernier

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "localise/place.h"
+
+namespace vernier {
+
+struct AlignmentOptions {
+  double max_turn_rad = 0.61;     ///< 35 degrees either way
+  double turn_step_rad = 0.0436;  ///< 2.5 degrees
+  double max_shift_m = 1.5;       ///< along each axis
+  double shift_step_m = 0.1;
+  double position_sigma_m = 0.12;  ///< of a line's place beside its own error
+};
+
+/// A rigid motion on the floor and how much of both views it explains.
+struct Alignment {
+  PlanePose query_in_node;  ///< pose of the query in the node's robot frame
+  double score = 0;         ///< matched lines over the geometric mean of both counts, in [0, 1]
+};
+
+/// Best placement of one view over another from the plan of their lines: a Hough vote of upright
+/// lines (and of level ones that cross) over turn and shift, then ascent of a robust score in
+/// which every line of the query finds the nearest line of its kind in the node. Generalised Hough
+/// transform after matching: Ashbrook et al. 1995.
+Alignment align(const PlaceView& query,
+                const PlaceView& node,
+                const AlignmentOptions& options = {});
+
+}  // namespace vernier

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "localise/localiser.h"
+
+namespace vernier {
+
+/// The memo's way as far as it is known, kept plain on purpose. See make_localiser.
+class BaselineLocaliser : public Localiser {
+ public:
+  explicit BaselineLocaliser(const TopologicalMap& map);
+
+  LocalisationAnswer localise(const PlaceView& query) const override;
+
+ private:
+  const TopologicalMap& map_;
+  PghOptions options_;
+  std::vector<Pgh> histograms_;  // of the nodes' image lines, not square-rooted back
+};
+
+}  // namespace vernier

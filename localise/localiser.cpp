@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/localiser.h"
+
+#include "calib/error.h"
+#include "localise/baseline_localiser.h"
+#include "localise/pgh_localiser.h"
+
+namespace vernier {
+
+std::string_view name(LocalisationStatus status) {
+  switch (status) {
+    case LocalisationStatus::answered:
+      return "answered";
+    case LocalisationStatus::too_few_lines:
+      return "too_few_lines";
+    case LocalisationStatus::tie:
+      return "tie";
+  }
+  return "";
+}
+
+std::vector<std::string> localiser_names() { return {"pgh", "pgh_baseline"}; }
+
+std::unique_ptr<Localiser> make_localiser(std::string_view method,
+                                          const TopologicalMap& map,
+                                          const LocaliserOptions& options) {
+  if (method == "pgh") return std::make_unique<PghLocaliser>(map, options);
+  if (method == "pgh_baseline") return std::make_unique<BaselineLocaliser>(map);
+  throw Error("localiser \"" + std::string(method) + "\"", "there is no such method",
+              "use pgh or pgh_baseline");
+}
+
+}  // namespace vernier

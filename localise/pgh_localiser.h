@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "localise/localiser.h"
+
+namespace vernier {
+
+/// Rank by histograms, verify and refine by rigid alignment. See make_localiser.
+class PghLocaliser : public Localiser {
+ public:
+  PghLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
+      : map_(map), options_(options) {}
+
+  LocalisationAnswer localise(const PlaceView& query) const override;
+
+ private:
+  const TopologicalMap& map_;
+  LocaliserOptions options_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib/pose.h"
+#include "stereo/segment.h"
+
+namespace vernier {
+
+/// Where a robot stands on the floor: world frame, metres; heading from +x, counter-clockwise.
+struct PlanePose {
+  double x_m = 0, y_m = 0, heading_rad = 0;
+};
+
+/// Distance on the floor.
+double distance_m(const PlanePose& a, const PlanePose& b);
+/// Difference of headings a - b in (-pi, pi].
+double heading_difference_rad(const PlanePose& a, const PlanePose& b);
+/// Where `step`, given in the frame of `from`, is in the world.
+PlanePose compose(const PlanePose& from, const PlanePose& step);
+
+/// How the left camera sits on the robot. Robot frame: x forward, y left, z up, origin on the
+/// floor below the camera.
+struct CameraMount {
+  double height_m = 1.2;
+  double pitch_rad = 0;  ///< nose down positive
+};
+Pose T_robot_camera(const CameraMount& mount);
+
+enum class LineKind { vertical, level, oblique };
+
+/// An edge in the robot's frame.
+struct PlaceLine {
+  Eigen::Vector3d a_m, b_m;
+  LineKind kind = LineKind::oblique;
+  double sigma_m = 0;  ///< standard deviation of its distance from the robot
+  double length_m() const { return (b_m - a_m).norm(); }
+};
+
+struct PlaceLineOptions {
+  double max_range_m = 10;       ///< lines farther off along the floor are left out
+  double max_sigma_m = 0.45;     ///< so are lines known less well than this
+  double vertical_slope = 0.12;  ///< image slope |du/dv| below which a line may be vertical
+  double level_slope = 0.35;     ///< rise over run below which a line counts as level
+};
+
+/// What a robot knows of one place from one look: lines in space, and the image lines.
+struct PlaceView {
+  std::vector<PlaceLine> lines;           ///< reliable ones only
+  std::vector<ImageSegment> image_lines;  ///< left image, all
+};
+
+/// Brings triangulated segments into the robot's frame. A line that may be vertical (its image
+/// nearly so and the depths of its ends equal within their error) is made exactly vertical at its
+/// mean depth: in a building that is what it is, and its tilt would be noise.
+PlaceView place_view(std::span<const SpaceSegment> segments,
+                     std::span<const StereoSegment> images,
+                     const CameraMount& mount,
+                     const PlaceLineOptions& options = {});
+
+}  // namespace vernier

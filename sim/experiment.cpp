@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/experiment.h"
+
+#include <time.h>
+
+#include <cmath>
+#include <limits>
+
+#include "calib/draw_sources.h"
+#include "stereo/triangulate.h"
+
+namespace vernier {
+namespace {
+
+/// Trials of a map lie far from those of queries: the same sources draw from other streams.
+constexpr std::uint32_t map_trial = 0x80000000u;
+
+double clock_ms(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+LookOptions look_options(const ExperimentSettings& settings) {
+  LookOptions options;
+  options.mount = settings.mount;
+  return options;
+}
+
+PlaceView interpret(const Rig& told,
+                    const StereoSighting& sighting,
+                    const ExperimentSettings& settings) {
+  const TriangulationOptions options{.endpoint_sigma_px =
+                                         std::max(0.1, settings.sources.endpoint_sigma_px)};
+  return place_view(triangulate(told, sighting.segments, options), sighting.segments,
+                    settings.mount);
+}
+
+}  // namespace
+
+MapLooks map_looks(const Visibility& visibility,
+                   const Rig& true_rig,
+                   const ExperimentSettings& settings) {
+  MapLooks looks;
+  for (const PlanePose& place :
+       map_places(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
+    looks.push_back(look(visibility, true_rig, place, look_options(settings)));
+  }
+  return looks;
+}
+
+LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
+                                               const RigEstimate& rig,
+                                               std::shared_ptr<const MapLooks> looks,
+                                               ExperimentSettings settings)
+    : visibility_(visibility),
+      rig_(rig),
+      looks_(std::move(looks)),
+      settings_(std::move(settings)),
+      sensor_(rig.rig, settings_.sources) {
+  if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
+}
+
+Rig LocalisationExperiment::draw_rig(std::uint32_t trial, bool of_map) const {
+  if (!sampler_) return rig_.rig;
+  return sampler_->sample(settings_.sources.calibration, settings_.seed,
+                          of_map ? map_trial + trial : trial);
+}
+
+Rig LocalisationExperiment::told_rig(std::uint32_t trial) const { return draw_rig(trial, false); }
+Rig LocalisationExperiment::told_map_rig(std::uint32_t block) const {
+  return draw_rig(block, true);
+}
+
+TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
+  std::vector<MapNode> nodes;
+  nodes.reserve(looks_->size());
+  for (std::size_t i = 0; i < looks_->size(); ++i) {
+    const Look& place = (*looks_)[i];
+    const StereoSighting sighting =
+        sensor_.sense(place, settings_.seed, map_trial + block, static_cast<std::uint32_t>(i));
+    nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
+  }
+  return make_map(std::move(nodes));
+}
+
+TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
+                                              const Rig& told,
+                                              const Localiser& localiser) const {
+  TrialResult result;
+  result.trial = trial;
+  result.truth =
+      draw_query(visibility_, settings_.protocol, settings_.mount.height_m, settings_.seed, trial);
+  const Look seen = look(visibility_, rig_.rig, result.truth, look_options(settings_));
+  const StereoSighting sighting = sensor_.sense(seen, settings_.seed, trial, 0);
+
+  const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
+  const PlaceView view = interpret(told, sighting, settings_);
+  const LocalisationAnswer answer = localiser.localise(view);
+  result.cpu_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu;
+  result.wall_ms = clock_ms(CLOCK_MONOTONIC) - wall;
+
+  result.status = answer.status;
+  result.lines = static_cast<int>(view.lines.size());
+  result.score = answer.score;
+  result.runner_up = answer.runner_up;
+  result.error_m = result.node_error_m = result.heading_error_rad =
+      std::numeric_limits<double>::quiet_NaN();
+  if (result.answered()) {
+    result.answer = answer.pose;
+    result.node = (*looks_)[answer.node].pose;
+    result.error_m = distance_m(answer.pose, result.truth);
+    result.node_error_m = distance_m(result.node, result.truth);
+    result.heading_error_rad = heading_difference_rad(answer.pose, result.truth);
+  }
+  return result;
+}
+
+std::vector<TrialResult> LocalisationExperiment::run_block(std::uint32_t block,
+                                                           std::uint32_t first,
+                                                           std::uint32_t count) const {
+  std::vector<TrialResult> results;
+  results.reserve(count);
+  TopologicalMap map;
+  std::unique_ptr<Localiser> localiser;
+  for (std::uint32_t trial = first; trial < first + count; ++trial) {
+    const Rig told = told_rig(trial);
+    const bool same = settings_.map_rig == MapRig::same;
+    if (same || !localiser) {
+      localiser.reset();
+      map = record_map(block, same ? told : told_map_rig(block));
+      localiser = make_localiser(settings_.method, map);
+    }
+    results.push_back(run_trial(trial, told, *localiser));
+  }
+  return results;
+}
+
+}  // namespace vernier

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calib/sampler.h"
+#include "localise/localiser.h"
+#include "sim/query_protocol.h"
+#include "sim/sense.h"
+
+namespace vernier {
+
+/// Which rig the map's recorder was told.
+enum class MapRig {
+  recalibrated,  ///< a draw of its own, once a block
+  same,          ///< the draw of the query
+};
+
+struct ExperimentSettings {
+  SourceSettings sources;
+  CameraMount mount;
+  QueryProtocol protocol = QueryProtocol::path;
+  MapRig map_rig = MapRig::recalibrated;
+  double map_spacing_m = 0.5;
+  int map_headings = 0;  ///< a node; 0: along the route
+  std::string method = "pgh";
+  std::uint64_t seed = 1;
+};
+
+/// One localisation trial: where the robot was, what was answered, and what that cost.
+struct TrialResult {
+  std::uint32_t trial = 0;
+  PlanePose truth;
+  LocalisationStatus status = LocalisationStatus::too_few_lines;
+  PlanePose answer;    ///< refined pose
+  PlanePose node;      ///< the map's node
+  double error_m = 0;  ///< of the answer on the floor; NaN without one
+  double node_error_m = 0;
+  double heading_error_rad = 0;
+  int lines = 0;  ///< in space, as the localiser had them
+  double score = 0, runner_up = 0;
+  double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
+
+  bool answered() const { return status == LocalisationStatus::answered; }
+  bool success() const { return answered() && error_m <= 1.0; }
+};
+
+/// The noise-free looks of a map's places: they depend on world, true rig and mount alone, so
+/// blocks and cells that differ in noise share them.
+using MapLooks = std::vector<Look>;
+MapLooks map_looks(const Visibility& visibility,
+                   const Rig& true_rig,
+                   const ExperimentSettings& settings);
+
+/// A simulated robot that records a map with one calibration of its rig and localises with
+/// another. The true rig is the estimate's; what an estimator is told is drawn around it.
+class LocalisationExperiment {
+ public:
+  /// Keeps references to `visibility` and `looks`. Throws Error for bad settings or a rig without
+  /// covariance where sources.calibration > 0.
+  LocalisationExperiment(const Visibility& visibility,
+                         const RigEstimate& rig,
+                         std::shared_ptr<const MapLooks> looks,
+                         ExperimentSettings settings);
+
+  /// The trials first, first + 1 … of one block: the map is recorded once, with draws of the
+  /// block's own. With MapRig::same the map is recorded again for every trial. Results depend on
+  /// (settings, block, trial) only.
+  std::vector<TrialResult> run_block(std::uint32_t block,
+                                     std::uint32_t first,
+                                     std::uint32_t count) const;
+
+  /// The map as recorded in a block, told `rig`.
+  TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
+
+  /// What the estimator of a trial is told.
+  Rig told_rig(std::uint32_t trial) const;
+  Rig told_map_rig(std::uint32_t block) const;
+
+ private:
+  TrialResult run_trial(std::uint32_t trial, const Rig& told, const Localiser& localiser) const;
+  Rig draw_rig(std::uint32_t trial, bool of_map) const;
+
+  const Visibility& visibility_;
+  RigEstimate rig_;
+  std::shared_ptr<const MapLooks> looks_;
+  ExperimentSettings settings_;
+  Sensor sensor_;
+  std::unique_ptr<RigSampler> sampler_;  // none where calibration error is off
+};
+
+}  // namespace vernier

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/random.h"
+
+namespace vernier {
+
+Interval wilson_interval(double successes, double trials, double confidence) {
+  if (!(trials > 0)) return {0, 1};
+  const double z = normal_quantile(0.5 + 0.5 * confidence), p = successes / trials;
+  const double shrink = 1 + z * z / trials;
+  const double centre = (p + z * z / (2 * trials)) / shrink;
+  const double half = z * std::sqrt(p * (1 - p) / trials + z * z / (4 * trials * trials)) / shrink;
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+double design_effect(std::span<const ClusterCount> clusters) {
+  double trials = 0, successes = 0;
+  for (const ClusterCount& c : clusters) {
+    trials += c.trials;
+    successes += c.successes;
+  }
+  const auto k = static_cast<double>(clusters.size());
+  if (k < 2 || !(trials > 0)) return 1;
+  const double p = successes / trials;
+  const double binomial = p * (1 - p) / trials;
+  if (!(binomial > 0)) return 1;
+  double between = 0;
+  for (const ClusterCount& c : clusters) {
+    const double residual = c.successes - p * c.trials;
+    between += residual * residual;
+  }
+  between *= k / (k - 1) / (trials * trials);
+  return std::max(1.0, between / binomial);
+}
+
+}  // namespace vernier

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+/// Stretches that two sorted lists of runs of one segment have in common.
+template <class Visit>
+void for_common_stretches(const std::vector<VisibleRun>& left,
+                          const std::vector<VisibleRun>& right,
+                          Visit visit) {
+  std::size_t i = 0, j = 0;
+  int segment = -1, count = 0;
+  while (i < left.size() && j < right.size()) {
+    const VisibleRun &l = left[i], &r = right[j];
+    if (l.segment != r.segment) {
+      (l.segment < r.segment ? i : j)++;
+      continue;
+    }
+    if (l.segment != segment) {
+      segment = l.segment;
+      count = 0;
+    }
+    const double t0 = std::max(l.t0, r.t0), t1 = std::min(l.t1, r.t1);
+    if (t0 < t1) visit(VisibleRun{segment, count++, t0, t1});
+    (l.t1 < r.t1 ? i : j)++;
+  }
+}
+
+}  // namespace
+
+Pose T_left_world(const PlanePose& pose, const CameraMount& mount) {
+  const Pose T_world_robot{rotation_from_vector({0, 0, pose.heading_rad}), {pose.x_m, pose.y_m, 0}};
+  return (T_world_robot * T_robot_camera(mount)).inverse();
+}
+
+Look look(const Visibility& visibility,
+          const Rig& rig,
+          const PlanePose& pose,
+          const LookOptions& options) {
+  if (rig.cameras.size() != 2) {
+    throw Error("simulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+                "give a rig of two");
+  }
+  const World& world = visibility.world();
+  const Pose T_left = T_left_world(pose, options.mount);
+  const Pose T_right = rig.T_camera_first[1] * T_left;
+  // Length is judged on what both eyes share, not on what one sees.
+  VisibilityOptions any_length = options.visibility;
+  any_length.min_length_px = 0;
+  const auto left = visibility.visible_runs(rig.cameras[0], T_left, any_length);
+  const auto right = visibility.visible_runs(rig.cameras[1], T_right, any_length);
+
+  Look seen{pose, {}, {}};
+  for_common_stretches(left, right, [&](const VisibleRun& run) {
+    const WorldSegment& segment = world.segments[run.segment];
+    const Eigen::Vector3d d = segment.b_m - segment.a_m;
+    const Eigen::Vector3d a = T_left * (segment.a_m + run.t0 * d);
+    const Eigen::Vector3d b = T_left * (segment.a_m + run.t1 * d);
+    const double length = (project(rig.cameras[0], a) - project(rig.cameras[0], b)).norm();
+    if (length < options.visibility.min_length_px) return;
+    const auto feature = static_cast<std::uint32_t>(run.segment * 32 + std::min(run.run, 31));
+    seen.edges.push_back({a, b, run.segment, feature, segment.object});
+  });
+  if (options.with_corners) {
+    const auto corners_left =
+        visibility.visible_corners(rig.cameras[0], T_left, options.visibility);
+    const auto corners_right =
+        visibility.visible_corners(rig.cameras[1], T_right, options.visibility);
+    std::vector<int> both;
+    std::set_intersection(corners_left.begin(), corners_left.end(), corners_right.begin(),
+                          corners_right.end(), std::back_inserter(both));
+    for (const int corner : both) {
+      seen.corners.push_back(
+          {T_left * world.corners[corner].position_m, static_cast<std::uint32_t>(corner)});
+    }
+  }
+  return seen;
+}
+
+}  // namespace vernier

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "sim/route.h"
+#include "sim/visibility.h"
+
+namespace vernier {
+
+/// How far from the recorded route queries are asked. Worth more than any other setting, so it is
+/// part of every result.
+enum class QueryProtocol {
+  near_path,  ///< ± 0.1 m across the route, ± 5°
+  path,       ///< ± 0.3 m, ± 15°
+  anywhere,   ///< ± 0.6 m, any heading
+};
+
+std::string_view name(QueryProtocol protocol);
+/// Throws Error for a name that is none of near_path, path, anywhere.
+QueryProtocol query_protocol(std::string_view name);
+
+/// Half the span across the route (metres) and of heading (radians).
+struct ProtocolSpan {
+  double across_m, heading_rad;
+};
+ProtocolSpan span(QueryProtocol protocol);
+
+/// Whether a robot of the given radius can stand at a point: no surface lower than `height_m` comes
+/// nearer than the radius.
+bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m);
+
+/// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
+/// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place
+/// from the route. Throws Error where 1000 draws find no place.
+PlanePose draw_query(const Visibility& visibility,
+                     QueryProtocol protocol,
+                     double eye_height_m,
+                     std::uint64_t seed,
+                     std::uint32_t trial);
+
+}  // namespace vernier

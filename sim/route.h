@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "localise/place.h"
+#include "sim/world.h"
+
+namespace vernier {
+
+/// A point of a route and the direction of travel there.
+struct RoutePoint {
+  PlanePose pose;
+  double leg_position_m = 0;  ///< from the start of its leg
+  int leg = 0;
+};
+
+/// Length of all legs, metres.
+double route_length_m(const std::vector<RouteLeg>& route);
+
+/// The point at `s_m` metres along all legs, one after another (clamped to the route's ends).
+RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m);
+
+/// Places to record a map at: every leg divided evenly into steps of at most `spacing_m`, the
+/// start included and the end left to the next leg. With `headings` = 0 one a place, looking
+/// along the route; else that many all around. Throws Error for an empty route or spacing <= 0.
+std::vector<PlanePose> map_places(const std::vector<RouteLeg>& route,
+                                  double spacing_m,
+                                  int headings = 0);
+
+}  // namespace vernier

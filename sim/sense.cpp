@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sense.h"
+
+namespace vernier {
+
+Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px)
+    : rig_(true_rig),
+      rectification_(rectification(true_rig)),
+      sources_((check(settings, "sources"), standard_sources(settings, min_length_px))) {}
+
+StereoSighting Sensor::sense(const Look& look,
+                             std::uint64_t seed,
+                             std::uint32_t trial,
+                             std::uint32_t frame) const {
+  SensedView view;
+  view.edges.reserve(look.edges.size());
+  for (const SeenEdge& edge : look.edges) view.edges.emplace_back().truth = edge;
+  for (const SeenCorner& corner : look.corners) {
+    const auto pixel = [&](int eye) {
+      return project(rig_.cameras[eye], rig_.T_camera_first[eye] * corner.at_m);
+    };
+    view.corners.push_back({corner, {pixel(0), pixel(1)}, false});
+  }
+  const SensingContext context{rig_, rectification_, seed, trial, frame};
+  for (const auto& source : sources_) source->apply(context, view);
+
+  StereoSighting sighting;
+  sighting.segments.reserve(view.edges.size());
+  for (const SensedEdge& edge : view.edges) {
+    sighting.segments.push_back(
+        {image_of(rig_, edge, 0), image_of(rig_, edge, 1), edge.truth.feature * 2 + edge.piece});
+    sighting.true_edges.push_back(edge.truth);
+  }
+  sighting.corners = std::move(view.corners);
+  return sighting;
+}
+
+}  // namespace vernier

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sim/uncertainty_source.h"
+
+namespace vernier {
+
+/// What a pair of cameras hands to an estimator, with the truth beside it for scoring only.
+struct StereoSighting {
+  std::vector<StereoSegment> segments;
+  std::vector<SeenEdge> true_edges;  ///< one a segment
+  std::vector<SensedCorner> corners;
+};
+
+/// The true rig looking at the world through all sources that are on.
+class Sensor {
+ public:
+  /// Throws Error for settings out of range or a rig that is no pair.
+  Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
+
+  /// The same (look, seed, trial, frame) gives the same sighting to the bit.
+  StereoSighting sense(const Look& look,
+                       std::uint64_t seed,
+                       std::uint32_t trial,
+                       std::uint32_t frame) const;
+
+  const Rig& rig() const { return rig_; }
+
+ private:
+  Rig rig_;
+  Rectification rectification_;
+  std::vector<std::unique_ptr<UncertaintySource>> sources_;
+};
+
+}  // namespace vernier

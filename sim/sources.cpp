@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sources.h"
+
+#include <fmt/format.h>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr SourceParameter parameters[] = {
+    {"lateral_shift_px", &SourceSettings::lateral_shift_px, 0, 100,
+     "psi_l: illumination moves an edge by U[s/2, 3s/2] pixels"},
+    {"edge_loss", &SourceSettings::edge_loss, 0, 0.95,
+     "psi_e: share of each edge's length in one gap"},
+    {"endpoint_sigma_px", &SourceSettings::endpoint_sigma_px, 0, 10,
+     "psi_g: Gaussian error of each end point"},
+    {"epipolar_reject_deg", &SourceSettings::epipolar_reject_deg, 0, 89,
+     "edges this near to the epipolar direction are dropped"},
+    {"stereo_mismatch", &SourceSettings::stereo_mismatch, 0, 1,
+     "psi_s: share of edges matched wrongly"},
+    {"stereo_mismatch_px", &SourceSettings::stereo_mismatch_px, 0, 500,
+     "reach of a wrong match along the epipolar line"},
+    {"corner_loss", &SourceSettings::corner_loss, 0, 1, "psi_cd: share of corner pairs lost"},
+    {"corner_mismatch", &SourceSettings::corner_mismatch, 0, 1,
+     "psi_cm: share of corner pairs matched wrongly"},
+    {"corner_mismatch_px", &SourceSettings::corner_mismatch_px, 0, 500,
+     "radius in which a wrong corner match lies"},
+    {"calibration", &SourceSettings::calibration, 0, 1000,
+     "psi_c: factor on the calibration's standard deviations"},
+};
+
+}  // namespace
+
+std::span<const SourceParameter> source_parameters() { return parameters; }
+
+void check(const SourceSettings& settings, const std::string& place) {
+  for (const SourceParameter& parameter : parameters) {
+    const double value = settings.*parameter.value;
+    if (!(value >= parameter.low && value <= parameter.high)) {
+      throw Error(place, fmt::format("sources.{} = {} is out of range", parameter.name, value),
+                  fmt::format("give {} to {}", parameter.low, parameter.high));
+    }
+  }
+}
+
+SourceSettings no_sources() {
+  SourceSettings settings;
+  for (const SourceParameter& parameter : parameters) settings.*parameter.value = 0;
+  return settings;
+}
+
+}  // namespace vernier

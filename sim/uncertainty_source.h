@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
+
+namespace vernier {
+
+/// One source of geometric error. Sources act in a fixed order on the noise-free view of the true
+/// rig; each draws from its own stream, keyed by what it acts on, so that switching one on or off
+/// leaves the draws of all others as they were.
+class UncertaintySource {
+ public:
+  virtual ~UncertaintySource() = default;
+  virtual std::string_view name() const = 0;
+  virtual void apply(const SensingContext& context, SensedView& view) const = 0;
+};
+
+/// The sources that these settings switch on, in order: lateral shift, edge loss, end-point error,
+/// epipolar rejection, stereo mismatch, corner loss, corner mismatch. (The seventh of the memo,
+/// calibration, acts on the rig that the estimator is told: see RigSampler.)
+std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
+                                                                 double min_length_px);
+
+}  // namespace vernier

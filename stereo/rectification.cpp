@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/rectification.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+
+Rectification rectification(const Rig& rig) {
+  if (rig.cameras.size() != 2) {
+    throw Error("rectification", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+                "give a rig of two");
+  }
+  const Pose& T = rig.T_camera_first[1];
+  const Eigen::Vector3d baseline = -(T.R.transpose() * T.t);  // right centre, left frame
+  if (!(baseline.norm() > 1e-3)) {
+    throw Error("rectification", "the baseline is shorter than 1 mm", "check the translation");
+  }
+  const Eigen::Vector3d x = baseline.normalized();
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ() + T.R.row(2).transpose();
+  const Eigen::Vector3d y = axis.cross(x).normalized();
+  Rectification result;
+  result.R_rectified_left.row(0) = x;
+  result.R_rectified_left.row(1) = y;
+  result.R_rectified_left.row(2) = x.cross(y);
+  result.R_rectified_right = result.R_rectified_left * T.R.transpose();
+  return result;
+}
+
+double epipolar_angle_rad(const Rig& rig,
+                          const Rectification& rectification,
+                          const ImageSegment& left) {
+  const auto rectified = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
+    const Eigen::Vector3d ray = rectification.R_rectified_left * unproject(rig.cameras[0], pixel);
+    return ray.head<2>() / ray.z();
+  };
+  const Eigen::Vector2d d = rectified(left.b_px) - rectified(left.a_px);
+  return std::atan2(std::abs(d.y()), std::abs(d.x()));
+}
+
+}  // namespace vernier

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace vernier {
+
+/// A straight edge in an image, end points in pixels.
+struct ImageSegment {
+  Eigen::Vector2d a_px, b_px;
+
+  double length_px() const { return (b_px - a_px).norm(); }
+};
+
+/// The same edge in both images of a pair: the two lines correspond, their end points need not.
+struct StereoSegment {
+  ImageSegment left, right;
+  std::uint32_t feature = 0;  ///< identity for scoring; no estimator reads it
+};
+
+/// An edge in space, in the rig's frame (metres), with how well it is known.
+struct SpaceSegment {
+  Eigen::Vector3d a_m, b_m;
+  double depth_sigma_m = 0;  ///< of the farther end, from the line fit's end-point error
+  bool reliable = true;      ///< false where the disparity is not distinguishable from zero
+};
+
+}  // namespace vernier

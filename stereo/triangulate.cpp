@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/triangulate.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+void require_pair(const Rig& rig) {
+  if (rig.cameras.size() != 2) {
+    throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+                "give a rig of two");
+  }
+}
+
+/// Standard deviation of the depth at the end of a line. An error e across the right line moves it
+/// by e / sin(angle to the baseline) along the baseline, and dZ = Z² / (f b) per pixel of that.
+double depth_sigma(double depth, double sine, const Rig& rig, double sigma_px) {
+  const double baseline = rig.T_camera_first[1].t.norm();
+  const double both_lines = std::sqrt(2.0) * sigma_px / std::max(sine, 1e-3);
+  return depth * depth * both_lines / (rig.cameras[0].f_px() * baseline);
+}
+
+}  // namespace
+
+SpaceSegment triangulate(const Rig& rig,
+                         const StereoSegment& segment,
+                         const TriangulationOptions& options) {
+  require_pair(rig);
+  const Camera &left = rig.cameras[0], &right = rig.cameras[1];
+  const Pose& T_right_left = rig.T_camera_first[1];
+  const Eigen::Vector3d n =
+      unproject(right, segment.right.a_px).cross(unproject(right, segment.right.b_px));
+  const double offset = n.dot(T_right_left.t);
+
+  SpaceSegment result;
+  const auto place = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
+    const Eigen::Vector3d ray = unproject(left, pixel);
+    const double slope = n.dot(T_right_left.R * ray);
+    const double depth = -offset / slope;
+    if (depth > 0 && depth < options.max_depth_m) return depth * ray;
+    result.reliable = false;
+    return options.max_depth_m * ray;
+  };
+  result.a_m = place(segment.left.a_px);
+  result.b_m = place(segment.left.b_px);
+
+  const Eigen::Vector2d direction = segment.left.b_px - segment.left.a_px;
+  const double sine = std::abs(direction.y()) / std::max(direction.norm(), 1e-12);
+  const double farther = std::max(result.a_m.z(), result.b_m.z());
+  result.depth_sigma_m = depth_sigma(farther, sine, rig, options.endpoint_sigma_px);
+  return result;
+}
+
+std::vector<SpaceSegment> triangulate(const Rig& rig,
+                                      std::span<const StereoSegment> segments,
+                                      const TriangulationOptions& options) {
+  std::vector<SpaceSegment> placed;
+  placed.reserve(segments.size());
+  for (const StereoSegment& segment : segments)
+    placed.push_back(triangulate(rig, segment, options));
+  return placed;
+}
+
+}  // namespace vernier

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calib/rig.h"
+#include "stereo/segment.h"
+
+namespace vernier {
+
+struct TriangulationOptions {
+  double endpoint_sigma_px = 0.15;  ///< of each end point across its line, for depth_sigma_m
+  double max_depth_m = 30;          ///< an end at or beyond this, or behind the rig, is unreliable
+};
+
+/// The edge in space that a matched pair of image lines is of.
+///
+/// The right line's end points span a plane through the right camera with normal n (right frame).
+/// The point on the left ray r at depth λ lies in it where n·(R λ r + T) = 0, so
+///
+///     λ = -n·T / n·(R r)
+///
+/// for either end of the left line: exact for any pose of the rig and any distortion, since end
+/// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are put at that
+/// depth and the segment marked unreliable. Hartley and Zisserman, "Multiple View Geometry" (2nd
+/// ed., 2004), section 15.4 has lines as planes through the cameras. Throws Error unless the rig
+/// is a pair.
+SpaceSegment triangulate(const Rig& rig,
+                         const StereoSegment& segment,
+                         const TriangulationOptions& options = {});
+
+std::vector<SpaceSegment> triangulate(const Rig& rig,
+                                      std::span<const StereoSegment> segments,
+                                      const TriangulationOptions& options = {});
+
+}  // namespace vernier

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/world_file.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+const std::string kHead = "format = \"vernier/world\"\nversion = 1\n";  // lines 1 and 2
+
+std::string message_of(const std::string& text) {
+  try {
+    parse_world(text, "w.world.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+WorldDescription small_world() {
+  WorldDescription world;
+  world.name = "a \"quoted\\\" name\t";
+  WorldTemplate door{"door", {}};
+  door.features.segments_m = {{{0, 0, 0}, {0, 0, 2.05}}, {{-1e-6, 1.0 / 3, 2.05}, {0.9, 0, 2.05}}};
+  door.features.surfaces_m = {{{0, 0, 0}, {0.9, 0, 0}, {0.9, 0, 2.05}, {0, 0, 2.05}}};
+  door.features.corners_m = {{0, 0, 2.05}};
+  world.templates = {door};
+  world.instances = {{"door", {4, 2.5, 0}, std::numbers::pi / 2}, {"door", {1, 1, 0}, -0.1}};
+  world.loose.segments_m = {{{0, 0, 0}, {20, 0, 0}}};
+  world.route = {{{{0.6, 7.5}, {19.4, 7.5}}}};
+  return world;
+}
+
+TEST(WorldFile, WritesPlainShortNumbers) {
+  EXPECT_EQ(format_world(small_world()), R"(format = "vernier/world"
+version = 1
+name = "a \"quoted\\\" name\u0009"
+
+[[template]]
+name = "door"
+segments = [
+  [0, 0, 0, 0, 0, 2.05],
+  [0, 0.3333, 2.05, 0.9, 0, 2.05],
+]
+surfaces = [
+  [[0, 0, 0], [0.9, 0, 0], [0.9, 0, 2.05], [0, 0, 2.05]],
+]
+corners = [
+  [0, 0, 2.05],
+]
+
+[[instance]]
+template = "door"
+at_m = [4, 2.5, 0]
+yaw_deg = 90
+
+[[instance]]
+template = "door"
+at_m = [1, 1, 0]
+yaw_deg = -5.7296
+
+[loose]
+segments = [
+  [0, 0, 0, 20, 0, 0],
+]
+
+[[route]]
+points_m = [[0.6, 7.5], [19.4, 7.5]]
+)");
+}
+
+TEST(WorldFile, RoundTripKeepsEveryByte) {
+  const std::string text = format_world(small_world());
+  const WorldDescription again = parse_world(text, "text");
+  EXPECT_EQ(again.name, small_world().name);
+  EXPECT_EQ(format_world(again), text);
+}
+
+TEST(WorldFile, WritesByRenameAndReadsBack) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "vernier_world_file_test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "small.world.toml";
+  write_world(small_world(), file);
+  write_world(small_world(), file);
+  EXPECT_EQ(text_of(file), format_world(small_world()));
+  EXPECT_EQ(format_world(read_world(file)), format_world(small_world()));
+  const auto entries = std::distance(std::filesystem::directory_iterator(folder), {});
+  EXPECT_EQ(entries, 1) << "a temporary file was left";
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WorldFile, SaysWhichFileCannotBeWrittenOrRead) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "vernier_no_such" / "w.world.toml";
+  EXPECT_THROW(write_world(small_world(), file), Error);
+  EXPECT_THROW(read_world(file), Error);
+  EXPECT_THROW(read_world(testing::TempDir()), Error);
+}
+
+TEST(WorldFile, RefusesToWriteWhatCannotBeRead) {
+  WorldDescription world = small_world();
+  world.loose.segments_m = {{{0, 0, 0}, {0.00104, 0, 0}}};
+  EXPECT_NO_THROW(parse_world(format_world(world), "text"));
+  world.loose.segments_m = {{{0.00004, 0, 0}, {0.00104, 0, 0}}};
+  EXPECT_NO_THROW(parse_world(format_world(world), "text"));
+  world.loose.segments_m = {{{0, 0, 0}, {0.00094, 0, 0}}};
+  EXPECT_THROW(format_world(world), Error);
+  world.loose.segments_m = {{{0, 0, 0}, {1e12, 0, 0}}};
+  EXPECT_THROW(format_world(world), Error);
+}
+
+TEST(WorldFile, ReadsTheExampleOfTheDesign) {
+  const WorldDescription world = parse_world(kHead + R"([[template]]
+name = "door"
+segments = [[0,0,0, 0,0,2.05], [0.9,0,0, 0.9,0,2.05], [0,0,2.05, 0.9,0,2.05]]
+surfaces = [[[0,0,0], [0.9,0,0], [0.9,0,2.05], [0,0,2.05]]]
+[[instance]]
+template = "door"
+at_m = [4.0, 2.5, 0.0]
+yaw_deg = 90
+[[segment]]
+segment = [0, 0, 0, 1, 0, 0]
+[[surface]]
+polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+[[corner]]
+at_m = [1, 0, 0]
+[[view_dependency]]
+anything = "goes"
+)",
+                                             "text");
+  EXPECT_EQ(world.templates[0].features.segments_m.size(), 3u);
+  EXPECT_DOUBLE_EQ(world.instances[0].yaw_rad, std::numbers::pi / 2);
+  EXPECT_EQ(world.loose.segments_m.size(), 1u);
+  EXPECT_EQ(world.loose.surfaces_m.size(), 1u);
+  EXPECT_EQ(world.loose.corners_m.size(), 1u);
+}
+
+TEST(WorldFile, LooseTableComesBeforeSingleFeatures) {
+  const WorldDescription world = parse_world(kHead + R"([[segment]]
+segment = [5, 0, 0, 6, 0, 0]
+[loose]
+segments = [[0, 0, 0, 1, 0, 0]]
+)",
+                                             "text");
+  ASSERT_EQ(world.loose.segments_m.size(), 2u);
+  EXPECT_EQ(world.loose.segments_m[1].first.x(), 5);
+}
+
+struct Fault {
+  const char* text;
+  const char* message;
+};
+
+class WorldFileFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(WorldFileFault, IsNamedWithFileLineAndRemedy) {
+  EXPECT_EQ(message_of(kHead + GetParam().text), std::string("w.world.toml:") + GetParam().message);
+}
+
+const Fault kFaults[] = {
+    {"[[instanse]]\n", "3: unknown key 'instanse'; did you mean 'instance'?"},
+    {"nam = \"x\"\n", "3: unknown key 'nam'; did you mean 'name'?"},
+    {"[[template]]\nname = \"a\"\nsegmens = []\n",
+     "5: unknown key 'segmens' in [[template]]; did you mean 'segments'?"},
+    {"[loose]\npolygons = []\n", "4: unknown key 'polygons' in [loose]; did you mean 'corners'?"},
+    {"[[template]]\nsegments = []\n", "3: template 0 has no 'name'; add it"},
+    {"[[template]]\nname = \"\"\n", "4: template 0 has an empty name; name it"},
+    {"[[template]]\nname = 3\n", "4: template 0 name is not a string; put it in quotes"},
+    {"[[template]]\nname = \"a\"\n[[template]]\nname = \"a\"\n",
+     "5: template 'a' is already defined in line 3; rename one of the two"},
+    {"[[template]]\nname = \"a\"\nsegments = [\n  [0, 0, 0, 1, 0, 0],\n  [1, 2, 3, 1, 2, 3],\n]\n",
+     "7: template 'a' segment 1 has no length; move one end or remove it"},
+    {"[[segment]]\nsegment = [0, 0, 0, 0.0005, 0, 0]\n",
+     "4: loose segment 0 is shorter than 1 mm; move one end or remove it"},
+    {"[[segment]]\nsegment = [0, 0, 0, 1, 0]\n", "4: loose segment 0 has 5 numbers; it takes 6"},
+    {"[[segment]]\nsegment = [0, 0, 0, 1, 0, true]\n",
+     "4: loose segment 0 holds something that is not a number; write a number"},
+    {"[loose]\nsegments = [\n[0, 0, 0, 1, 0, 0],\n[0, 0, 0, nan, 0, 0]]\n",
+     "6: loose segment 1 holds a number that is not finite; write a finite number"},
+    {"[[corner]]\nat_m = [0, -inf, 0]\n",
+     "4: loose corner 0 holds a number that is not finite; write a finite number"},
+    {"[[segment]]\n", "3: [[segment]] has no 'segment'; add it"},
+    {"[segment]\n", "3: 'segment' is not a list of tables; write [[segment]]"},
+    {"segment = [1, 2]\n", "3: [[segment]] is not a table; write it as a table of keys"},
+    {"loose = 1\n", "3: [loose] is not a table; write it as a table of keys"},
+    {"[loose]\nsegments = 1\n", "4: loose segments is not a list; write it as [ … ]"},
+    {"[[surface]]\npolygon = [[0,0,0], [1,0,0], [1,1,0.1], [0,1,0]]\n",
+     "4: loose surface 0 is not planar to 1 mm; cut it into triangles"},
+    {"[[surface]]\npolygon = [[0,0,0], [1,0,0]]\n",
+     "4: loose surface 0 has fewer than three points; give three or more"},
+    {"[[template]]\nname = \"door\"\n[[instance]]\ntemplate = \"dor\"\nat_m = [0,0,0]\n",
+     "6: instance 0 names the unknown template 'dor'; did you mean 'door'?"},
+    {"[[instance]]\ntemplate = \"dor\"\nat_m = [0,0,0]\n",
+     "4: instance 0 names the unknown template 'dor'; define it in a [[template]]"},
+    {"[[instance]]\ntemplate = \"dor\"\n", "3: instance 0 has no 'at_m'; add it"},
+    {"[[route]]\npoints_m = [[0, 0]]\n", "4: route 0 has fewer than two points; give two or more"},
+    {"[[route]]\npoints_m = [[0, 0], [1, 1, 1]]\n", "4: route 0 point has 3 numbers; it takes 2"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, WorldFileFault, testing::ValuesIn(kFaults));
+
+TEST(WorldFile, NamesAMissingOrWrongHeader) {
+  EXPECT_EQ(message_of(""),
+            "w.world.toml:1: the file names no format; begin it with format = \"vernier/world\"");
+  EXPECT_EQ(message_of("format = \"vernier/rig\"\n"),
+            "w.world.toml:1: this is 'vernier/rig', not a world; give a file of format "
+            "vernier/world");
+  EXPECT_EQ(message_of("format = \"vernier/world\"\n"),
+            "w.world.toml:1: the file has no version; write version = 1");
+  EXPECT_EQ(message_of("format = \"vernier/world\"\nversion = 2\n"),
+            "w.world.toml:2: version 2 is not known here; this program reads version 1");
+}
+
+TEST(WorldFile, NamesTheLineOfASyntaxError) {
+  const std::string message = message_of(kHead + "name = \n");
+  EXPECT_EQ(message.rfind("w.world.toml:3: not TOML: ", 0), 0u) << message;
+  EXPECT_NE(message.find("; mend the syntax"), std::string::npos) << message;
+}
+
+TEST(WorldFile, ReadsTenThousandSegmentsQuickly) {
+  WorldDescription world;
+  for (int i = 0; i < 10000; ++i) {
+    const double x = 0.0123 * i;
+    world.loose.segments_m.push_back({{x, 1.2345, 0.5}, {x, 7.6543, 2.4321}});
+  }
+  const std::string text = format_world(world);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(parse_world(text, "text").loose.segments_m.size(), 10000u);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  RecordProperty("milliseconds", static_cast<int>(1000 * time.count()));
+  // About 40 ms alone; the bound leaves room for a busy machine and for checked builds.
+  EXPECT_LT(time.count(), 2.0);
+}
+
+}  // namespace
+}  // namespace vernier

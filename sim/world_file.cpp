@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world_file.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <sstream>
-#include <string_view>
 
-#include "calib/error.h"
+#include "calib/atomic_file.h"
+#include "sim/toml_reader.h"
 #include "sim/world_check.h"
 
 namespace vernier {
@@ -21,72 +16,14 @@ namespace {
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 
-/// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
-std::size_t edit_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row[to.size()];
-}
-
-template <typename Words>
-std::string nearest_word(std::string_view word, const Words& known) {
-  std::string best;
-  std::size_t best_distance = std::string::npos;
-  for (const auto& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
-
 /// Turns parsed TOML into a description. Every complaint carries the file and the line.
-class Reader {
+class WorldReader : private TomlReader {
  public:
-  explicit Reader(std::string place) : place_(std::move(place)) {}
-
+  using TomlReader::TomlReader;
   WorldDescription read(const toml::table& root);
 
  private:
-  using Keys = std::initializer_list<std::string_view>;
-
-  [[noreturn]] void fail(toml::source_index line,
-                         const std::string& fault,
-                         const std::string& remedy) const {
-    throw Error(place_ + ":" + std::to_string(std::max<toml::source_index>(line, 1)), fault,
-                remedy);
-  }
-  [[noreturn]] void fail(const toml::node& node,
-                         const std::string& fault,
-                         const std::string& remedy) const {
-    fail(node.source().begin.line, fault, remedy);
-  }
-
   void check_header(const toml::table& root) const;
-  void check_keys(const toml::table& table, Keys known, const std::string& owner) const;
-  const toml::node& required(const toml::table& table,
-                             const char* key,
-                             const std::string& owner) const;
-  std::string text(const toml::node& node, const std::string& what) const;
-  double number(const toml::node& node, const std::string& what) const;
-  const toml::array& list(const toml::node& node, const std::string& what) const;
-  const toml::table& table(const toml::node& node, const std::string& what) const;
-  /// The tables of [[key]], none where the key is absent.
-  std::vector<const toml::table*> tables(const toml::table& root, const char* key) const;
-  template <int N>
-  Eigen::Matrix<double, N, 1> numbers(const toml::node& node, const std::string& what) const;
-
   void read_segment(const toml::node& node, const std::string& owner, FeatureSet& into) const;
   void read_surface(const toml::node& node, const std::string& owner, FeatureSet& into) const;
   void read_corner(const toml::node& node, const std::string& owner, FeatureSet& into) const;
@@ -97,84 +34,11 @@ class Reader {
   RouteLeg read_route(const toml::table& table, const std::string& what) const;
   void read_templates(const toml::table& root, WorldDescription& world) const;
   void read_instances(const toml::table& root, WorldDescription& world) const;
-
-  std::string place_;
 };
 
-void Reader::check_keys(const toml::table& table, Keys known, const std::string& owner) const {
-  for (const auto& [key, value] : table) {
-    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-    fail(key.source().begin.line,
-         "unknown key '" + std::string(key.str()) + "'" + (owner.empty() ? "" : " in " + owner),
-         "did you mean '" + nearest_word(key.str(), known) + "'?");
-  }
-}
-
-const toml::node& Reader::required(const toml::table& table,
-                                   const char* key,
-                                   const std::string& owner) const {
-  const toml::node* node = table.get(key);
-  if (!node) fail(table, owner + " has no '" + key + "'", "add it");
-  return *node;
-}
-
-std::string Reader::text(const toml::node& node, const std::string& what) const {
-  if (!node.is_string()) fail(node, what + " is not a string", "put it in quotes");
-  return node.as_string()->get();
-}
-
-double Reader::number(const toml::node& node, const std::string& what) const {
-  double value = 0;
-  if (const auto* real = node.as_floating_point()) {
-    value = real->get();
-  } else if (const auto* whole = node.as_integer()) {
-    value = static_cast<double>(whole->get());
-  } else {
-    fail(node, what + " holds something that is not a number", "write a number");
-  }
-  if (!std::isfinite(value)) {
-    fail(node, what + " holds a number that is not finite", "write a finite number");
-  }
-  return value;
-}
-
-const toml::array& Reader::list(const toml::node& node, const std::string& what) const {
-  if (!node.is_array()) fail(node, what + " is not a list", "write it as [ … ]");
-  return *node.as_array();
-}
-
-const toml::table& Reader::table(const toml::node& node, const std::string& what) const {
-  if (!node.is_table()) fail(node, what + " is not a table", "write it as a table of keys");
-  return *node.as_table();
-}
-
-std::vector<const toml::table*> Reader::tables(const toml::table& root, const char* key) const {
-  std::vector<const toml::table*> found;
-  const toml::node* node = root.get(key);
-  if (!node) return found;
-  const std::string heading = std::string("[[") + key + "]]";
-  if (!node->is_array()) {
-    fail(*node, std::string("'") + key + "' is not a list of tables", "write " + heading);
-  }
-  for (const auto& entry : *node->as_array()) found.push_back(&table(entry, heading));
-  return found;
-}
-
-template <int N>
-Eigen::Matrix<double, N, 1> Reader::numbers(const toml::node& node, const std::string& what) const {
-  const toml::array& values = list(node, what);
-  if (values.size() != N) {
-    fail(node, what + " has " + std::to_string(values.size()) + " numbers",
-         "it takes " + std::to_string(N));
-  }
-  Eigen::Matrix<double, N, 1> result;
-  for (int i = 0; i < N; ++i) result[i] = number(*values.get(i), what);
-  return result;
-}
-
-void Reader::read_segment(const toml::node& node,
-                          const std::string& owner,
-                          FeatureSet& into) const {
+void WorldReader::read_segment(const toml::node& node,
+                               const std::string& owner,
+                               FeatureSet& into) const {
   const std::string what = owner + " segment " + std::to_string(into.segments_m.size());
   const auto ends = numbers<6>(node, what);
   const auto fault = segment_fault(ends.head<3>(), ends.tail<3>());
@@ -182,9 +46,9 @@ void Reader::read_segment(const toml::node& node,
   into.segments_m.emplace_back(ends.head<3>(), ends.tail<3>());
 }
 
-void Reader::read_surface(const toml::node& node,
-                          const std::string& owner,
-                          FeatureSet& into) const {
+void WorldReader::read_surface(const toml::node& node,
+                               const std::string& owner,
+                               FeatureSet& into) const {
   const std::string what = owner + " surface " + std::to_string(into.surfaces_m.size());
   std::vector<Eigen::Vector3d> polygon;
   for (const auto& point : list(node, what)) polygon.push_back(numbers<3>(point, what + " point"));
@@ -193,14 +57,16 @@ void Reader::read_surface(const toml::node& node,
   into.surfaces_m.push_back(std::move(polygon));
 }
 
-void Reader::read_corner(const toml::node& node, const std::string& owner, FeatureSet& into) const {
+void WorldReader::read_corner(const toml::node& node,
+                              const std::string& owner,
+                              FeatureSet& into) const {
   const std::string what = owner + " corner " + std::to_string(into.corners_m.size());
   into.corners_m.push_back(numbers<3>(node, what));
 }
 
-void Reader::read_features(const toml::table& table,
-                           const std::string& owner,
-                           FeatureSet& into) const {
+void WorldReader::read_features(const toml::table& table,
+                                const std::string& owner,
+                                FeatureSet& into) const {
   if (const auto* node = table.get("segments")) {
     for (const auto& entry : list(*node, owner + " segments")) read_segment(entry, owner, into);
   }
@@ -212,7 +78,7 @@ void Reader::read_features(const toml::table& table,
   }
 }
 
-void Reader::read_loose(const toml::table& root, FeatureSet& into) const {
+void WorldReader::read_loose(const toml::table& root, FeatureSet& into) const {
   if (const auto* node = root.get("loose")) {
     const toml::table& loose = table(*node, "[loose]");
     check_keys(loose, {"segments", "surfaces", "corners"}, "[loose]");
@@ -232,7 +98,7 @@ void Reader::read_loose(const toml::table& root, FeatureSet& into) const {
   }
 }
 
-WorldTemplate Reader::read_template(const toml::table& table, const std::string& what) const {
+WorldTemplate WorldReader::read_template(const toml::table& table, const std::string& what) const {
   check_keys(table, {"name", "segments", "surfaces", "corners"}, "[[template]]");
   WorldTemplate result;
   const toml::node& name = required(table, "name", what);
@@ -242,7 +108,7 @@ WorldTemplate Reader::read_template(const toml::table& table, const std::string&
   return result;
 }
 
-void Reader::read_templates(const toml::table& root, WorldDescription& world) const {
+void WorldReader::read_templates(const toml::table& root, WorldDescription& world) const {
   std::map<std::string, toml::source_index> lines;
   for (const auto* entry : tables(root, "template")) {
     world.templates.push_back(
@@ -257,7 +123,7 @@ void Reader::read_templates(const toml::table& root, WorldDescription& world) co
   }
 }
 
-WorldInstance Reader::read_instance(const toml::table& table, const std::string& what) const {
+WorldInstance WorldReader::read_instance(const toml::table& table, const std::string& what) const {
   check_keys(table, {"template", "at_m", "yaw_deg"}, "[[instance]]");
   WorldInstance instance;
   instance.template_name = text(required(table, "template", what), what + " template");
@@ -268,8 +134,8 @@ WorldInstance Reader::read_instance(const toml::table& table, const std::string&
   return instance;
 }
 
-void Reader::read_instances(const toml::table& root, WorldDescription& world) const {
-  std::vector<std::string> names;
+void WorldReader::read_instances(const toml::table& root, WorldDescription& world) const {
+  std::vector<std::string_view> names;
   for (const auto& entry : world.templates) names.push_back(entry.name);
   std::sort(names.begin(), names.end());
   for (const auto* entry : tables(root, "instance")) {
@@ -283,7 +149,7 @@ void Reader::read_instances(const toml::table& root, WorldDescription& world) co
   }
 }
 
-RouteLeg Reader::read_route(const toml::table& table, const std::string& what) const {
+RouteLeg WorldReader::read_route(const toml::table& table, const std::string& what) const {
   check_keys(table, {"points_m"}, "[[route]]");
   RouteLeg leg;
   const toml::node& points = required(table, "points_m", what);
@@ -295,7 +161,7 @@ RouteLeg Reader::read_route(const toml::table& table, const std::string& what) c
   return leg;
 }
 
-void Reader::check_header(const toml::table& root) const {
+void WorldReader::check_header(const toml::table& root) const {
   const toml::node* format = root.get("format");
   if (!format) fail(1, "the file names no format", "begin it with format = \"vernier/world\"");
   const std::string kind = text(*format, "format");
@@ -311,7 +177,7 @@ void Reader::check_header(const toml::table& root) const {
   }
 }
 
-WorldDescription Reader::read(const toml::table& root) {
+WorldDescription WorldReader::read(const toml::table& root) {
   check_header(root);
   // [[view_dependency]] belongs to the visibility that reads it, and is no fault here.
   check_keys(root,
@@ -332,25 +198,11 @@ WorldDescription Reader::read(const toml::table& root) {
 }  // namespace
 
 WorldDescription parse_world(const std::string& text, const std::string& place) {
-  toml::table root;
-  try {
-    root = toml::parse(std::string_view(text));
-  } catch (const toml::parse_error& error) {
-    throw Error(place + ":" + std::to_string(error.source().begin.line),
-                "not TOML: " + std::string(error.description()), "mend the syntax");
-  }
-  return Reader(place).read(root);
+  return WorldReader(place).read(parse_toml(text, place));
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  // Streaming an empty file sets failbit on the target, which is no fault of the source.
-  if (stream && stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (stream.bad() || !stream.is_open() || std::filesystem::is_directory(file)) {
-    throw Error(file.string(), "cannot be read", "check the path and its permissions");
-  }
-  return parse_world(text.str(), file.string());
+  return parse_world(read_whole(file), file.string());
 }
 
 }  // namespace vernier

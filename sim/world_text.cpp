@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <numbers>
 
+#include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "sim/world_check.h"
 #include "sim/world_file.h"
@@ -14,10 +12,11 @@
 namespace vernier {
 namespace {
 
-constexpr double steps_per_unit = 1e4;  ///< a tenth of a millimetre, or a ten-thousandth of a degree
+constexpr double steps_per_unit =
+    1e4;  ///< a tenth of a millimetre, or a ten-thousandth of a degree
 constexpr double largest = 1e9;
 
-double rounded(double value) { return std::round(value * steps) / steps; }
+double rounded(double value) { return std::round(value * steps_per_unit) / steps_per_unit; }
 
 template <int N>
 Eigen::Matrix<double, N, 1> rounded(const Eigen::Matrix<double, N, 1>& value) {
@@ -54,7 +53,7 @@ std::string number(double value) {
   if (!(std::abs(value) < largest)) {
     throw Error("world", "a number is beyond 1e9 or not finite", "check the description");
   }
-  const std::int64_t steps = std::llround(value * steps);
+  const std::int64_t steps = std::llround(value * steps_per_unit);
   const std::int64_t size = steps < 0 ? -steps : steps;
   std::string digits = std::to_string(size % 10000);
   digits.insert(0, 4 - digits.size(), '0');
@@ -122,13 +121,6 @@ void append_instance(const WorldInstance& instance, std::string& text) {
   if (yaw_deg != "0") text += "yaw_deg = " + yaw_deg + "\n";
 }
 
-bool write_whole(const std::string& text, const std::filesystem::path& file) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  return static_cast<bool>(stream);
-}
-
 }  // namespace
 
 std::string format_world(const WorldDescription& description) {
@@ -153,18 +145,7 @@ std::string format_world(const WorldDescription& description) {
 }
 
 void write_world(const WorldDescription& description, const std::filesystem::path& file) {
-  const std::string text = format_world(description);
-  // Two writers of one file must not share the temporary one.
-  std::filesystem::path temporary = file;
-  temporary += "." + std::to_string(getpid()) + ".tmp";
-  std::error_code fault;
-  const bool whole = write_whole(text, temporary);
-  if (whole) std::filesystem::rename(temporary, file, fault);
-  if (whole && !fault) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  throw Error(file.string(), "cannot be written" + (fault ? ": " + fault.message() : std::string()),
-              "check its folder, the rights to it and the space left");
+  write_atomically(file, format_world(description));
 }
 
 }  // namespace vernier

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/depth_uncertainty.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+
+double triangulated_depth_m(const Rig& rig,
+                            const Eigen::Vector2d& left_px,
+                            const Eigen::Vector2d& right_px) {
+  if (rig.cameras.size() != 2) {
+    throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+                "give a rig of two");
+  }
+  const Pose T_left_right = rig.T_camera_first[1].inverse();
+  const Eigen::Vector3d a = unproject(rig.cameras[0], left_px);
+  const Eigen::Vector3d b = T_left_right.R * unproject(rig.cameras[1], right_px);
+  // least squares for λ a = t + μ b
+  Eigen::Matrix<double, 3, 2> A;
+  A << a, -b;
+  const Eigen::Vector2d scale = (A.transpose() * A).ldlt().solve(A.transpose() * T_left_right.t);
+  return scale[0] * a.z();
+}
+
+std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
+                                                const std::vector<double>& ranges_m,
+                                                double psi_c,
+                                                int samples,
+                                                std::uint64_t seed) {
+  const RigSampler sampler(estimate);
+  const Rig& rig = estimate.rig;
+  const Eigen::MatrixXd& factor = sampler.decomposition().factor();
+  std::vector<DepthUncertainty> result;
+  for (const double range : ranges_m) {
+    const Eigen::Vector3d x(0, 0, range);
+    const Eigen::Vector2d left = project(rig.cameras[0], x);
+    const Eigen::Vector2d right = project(rig.cameras[1], rig.T_camera_first[1] * x);
+    DepthUncertainty u{range, 0, 0, 0};
+    // J D U √s column by column: central differences along the principal directions
+    constexpr double step = 1e-3;
+    for (Eigen::Index k = 0; k < factor.cols(); ++k) {
+      const auto depth = [&](double s) {
+        return triangulated_depth_m(retract(rig, s * factor.col(k)), left, right);
+      };
+      u.sigma_linear_m += std::pow(psi_c * (depth(step) - depth(-step)) / (2 * step), 2);
+    }
+    u.sigma_linear_m = std::sqrt(u.sigma_linear_m);
+    double sum = 0, squares = 0;
+    int physical = 0;
+    for (int i = 0; i < samples; ++i) {
+      const double depth = triangulated_depth_m(
+          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), left, right);
+      if (!(depth > 0)) continue;
+      ++physical;
+      sum += depth;
+      squares += (depth - range) * (depth - range);
+    }
+    const double mean = physical > 0 ? sum / physical - range : 0;
+    u.sigma_sampled_m =
+        physical > 1 ? std::sqrt(std::max(0.0, squares / physical - mean * mean)) : 0;
+    u.non_physical_share = 1 - static_cast<double>(physical) / samples;
+    result.push_back(u);
+  }
+  return result;
+}
+
+}  // namespace vernier

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <exception>
+
+#include "calib/error.h"
+#include "cli/session.h"
+
+int main(int argc, char** argv) {
+  using namespace vernier;
+  cli::Session session;
+  CLI::App app{
+      "Vernier: how wrong a stereo rig is, and what that does downstream.\n"
+      "Calibrate, sample correlated errors, and send them through a simulated building."};
+  app.name("vernier");
+  app.set_version_flag("--version", "vernier " VERNIER_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n"
+      "  vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-m 0.025 "
+      "-o rig.json\n"
+      "Each verb's --help has one of its own. Exit codes: 0 done, 1 internal error, 2 bad usage or "
+      "input,\n3 no trustworthy answer.");
+  cli::add_doctor(app, session);
+  cli::add_detect(app, session);
+  cli::add_calibrate(app, session);
+  cli::add_sample(app, session);
+  cli::add_world(app, session);
+  cli::add_simulate(app, session);
+  cli::add_study(app, session);
+  cli::add_report(app, session);
+  try {
+    app.parse(argc, argv);
+    if (session.action) session.action();
+  } catch (const CLI::Success& done) {  // --help, --version
+    return app.exit(done);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "vernier: {} (see vernier --help)\n", error.what());
+    return static_cast<int>(cli::Exit::bad_input);
+  } catch (const Error& error) {
+    fmt::print(stderr, "vernier: {}\n", error.what());
+    return static_cast<int>(cli::Exit::bad_input);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "vernier: internal error: {}\n", error.what());
+    return static_cast<int>(cli::Exit::internal_error);
+  }
+  return static_cast<int>(session.exit_code());
+}

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/session.h"
+#include "cli/study_folder.h"
+
+namespace vernier::cli {
+
+/// The parts of the report page's data (cli/page/README.md has the whole form).
+Json report_study(const Study& study, const StudyResults& results);
+Json report_world(const World& world);
+Json report_rig(const RigEstimate& estimate, const std::string& file);
+/// The view of the first trial of a study's middle cell.
+Json report_view(const Study& study);
+
+/// Fills the page's template. Without plotly in the folder the page says so and holds tables only.
+std::string assemble_page(const std::filesystem::path& folder, const Json& data);
+
+}  // namespace vernier::cli

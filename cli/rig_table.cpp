@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/rig_table.h"
+
+#include <cmath>
+
+namespace vernier::cli {
+namespace {
+
+Eigen::VectorXd deviations(const Eigen::MatrixXd& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+}  // namespace
+
+std::string direction_lines(const ScaledDecomposition& decomposition, std::size_t most) {
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, decomposition.directions().size()); ++k) {
+    const CovarianceDirection& direction = decomposition.directions()[k];
+    text += fmt::format("  {:>2}. {:4.1f} % of the scaled variance; {}\n", k + 1,
+                        100 * direction.variance_share, direction.words);
+  }
+  return text;
+}
+
+std::string rig_table(const RigEstimate& estimate) {
+  std::string text;
+  if (estimate.calibration) {
+    const CalibrationSummary& s = *estimate.calibration;
+    text += fmt::format(
+        "{} views, rms {:.4f} px a coordinate, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees "
+        "of "
+        "freedom\n",
+        s.views, s.rms_px, s.pixel_sigma_px, s.chi2, s.dof);
+  }
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  const Eigen::VectorXd values = parameters(estimate.rig);
+  const bool known = estimate.covariance.has_value();
+  text +=
+      fmt::format("{:<14} {:>14} {:>12} {:>12}\n", "parameter", "value", "sigma", "bound's sigma");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto sigma = [&](bool there, const Eigen::MatrixXd* C) {
+      return there ? fmt::format("{:.3g}", std::sqrt((*C)(k, k))) : std::string("unknown");
+    };
+    text += fmt::format("{:<14} {:>14.8g} {:>12} {:>12}\n", names[i], values[k],
+                        sigma(known, known ? &estimate.covariance->matrix : nullptr),
+                        sigma(estimate.covariance_mvb.has_value(),
+                              estimate.covariance_mvb ? &*estimate.covariance_mvb : nullptr));
+  }
+  if (known) {
+    const ScaledDecomposition decomposition(*estimate.covariance);
+    text += fmt::format("covariance: {}; condition {:.1e}, scaled {:.1e}; directions:\n",
+                        name(estimate.covariance->kind), decomposition.raw_condition(),
+                        decomposition.scaled_condition());
+    text += direction_lines(decomposition);
+  }
+  return text;
+}
+
+Json rig_json(const RigEstimate& estimate) {
+  const auto list = [](const Eigen::VectorXd& v) {
+    return std::vector<double>(v.begin(), v.end());
+  };
+  Json json{{"parameter_names", parameter_names(estimate.rig)},
+            {"parameters", list(parameters(estimate.rig))}};
+  if (estimate.calibration) {
+    const CalibrationSummary& s = *estimate.calibration;
+    json["rms_px"] = s.rms_px;
+    json["pixel_sigma_px"] = s.pixel_sigma_px;
+    json["chi2"] = s.chi2;
+    json["dof"] = s.dof;
+    json["views"] = s.views;
+    json["warnings"] = s.warnings;
+  }
+  if (estimate.covariance_mvb) json["sigma_mvb"] = list(deviations(*estimate.covariance_mvb));
+  if (estimate.covariance) {
+    json["covariance_kind"] = name(estimate.covariance->kind);
+    json["sigma"] = list(deviations(estimate.covariance->matrix));
+    json["directions"] = Json::array();
+    const ScaledDecomposition decomposition(*estimate.covariance);
+    for (const CovarianceDirection& d : decomposition.directions()) {
+      json["directions"].push_back({{"share", d.variance_share}, {"words", d.words}});
+    }
+  }
+  return json;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/session.h"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "calib/error.h"
+
+namespace vernier::cli {
+
+void Session::say(const std::string& line) const {
+  if (!quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void Session::doubt(const std::string& reason) {
+  doubts_.push_back(reason);
+  fmt::print(stderr, "vernier: doubtful: {}\n", reason);
+}
+
+void Session::result(const Json& object, const std::string& text) const {
+  if (json) {
+    Json out = object;
+    if (!doubts_.empty()) out["doubts"] = doubts_;
+    fmt::print("{}\n", out.dump());
+  } else {
+    fmt::print("{}", text);
+  }
+}
+
+Progress::Progress(const Session& session, std::string what)
+    : what_(std::move(what)),
+      quiet_(session.quiet),
+      terminal_(::isatty(STDERR_FILENO)),
+      start_(std::chrono::steady_clock::now()) {}
+
+Progress::~Progress() {
+  if (drawn_) std::fputc('\n', stderr);
+}
+
+void Progress::update(int done, int total) {
+  if (quiet_ || total == 0) return;
+  const double elapsed =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (terminal_) {
+    draw(done, total, elapsed);
+    return;
+  }
+  const int tenths = 10 * done / total;
+  if (tenths == tenths_said_) return;
+  tenths_said_ = tenths;
+  fmt::print(stderr, "{}: {} of {}, {:.0f} s\n", what_, done, total, elapsed);
+}
+
+void Progress::draw(int done, int total, double elapsed_s) {
+  constexpr int width = 30;
+  const int filled = width * done / total;
+  std::string left = "";
+  if (done > 0 && done < total) {
+    left = fmt::format("{:.0f} s left", elapsed_s * (total - done) / done);
+  }
+  fmt::print(stderr, "\r{} [{}{}] {}/{} {:<14}", what_, std::string(filled, '#'),
+             std::string(width - filled, ' '), done, total, left);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+CLI::App* add_verb(CLI::App& app,
+                   Session& session,
+                   const std::string& name,
+                   const std::string& about,
+                   const std::string& example) {
+  CLI::App* verb = app.add_subcommand(name, about);
+  verb->add_flag("-q,--quiet", session.quiet, "no progress or messages on standard error");
+  verb->add_flag("--json", session.json, "print one JSON object on standard output");
+  verb->footer("Example:\n  " + example);
+  return verb;
+}
+
+std::pair<int, int> parse_size(const std::string& text, const std::string& option) {
+  int a = 0, b = 0;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, a);
+  bool good = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  if (good) {
+    const auto second = std::from_chars(first.ptr + 1, end, b);
+    good = second.ec == std::errc() && second.ptr == end && a > 0 && b > 0;
+  }
+  if (!good) {
+    throw Error(option, "\"" + text + "\" is not two whole numbers", "write it like 9x6");
+  }
+  return {a, b};
+}
+
+std::vector<double> parse_numbers(const std::string& text,
+                                  std::size_t n,
+                                  const std::string& option) {
+  std::vector<double> values;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  while (at <= end) {
+    double value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc() || !std::isfinite(value)) break;
+    values.push_back(value);
+    at = parsed.ptr;
+    if (at == end) break;
+    if (*at != ',') {
+      values.clear();
+      break;
+    }
+    ++at;
+  }
+  if (at != end || values.size() != n) {
+    throw Error(option, "\"" + text + "\" is not " + std::to_string(n) + " numbers",
+                "separate them by commas");
+  }
+  return values;
+}
+
+}  // namespace vernier::cli

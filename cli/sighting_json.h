@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/session.h"
+#include "sim/sense.h"
+
+namespace vernier::cli {
+
+/// A view with its truth: segments as [u1, v1, u2, v2] in pixels of each eye.
+///
+///     {"pose": [x, y, heading_deg], "true": {"left": […], "right": […]},
+///      "sensed": {"left": […], "right": […], "feature": […]}, "corners": {"left": […], "right":
+///      […], "mismatched": […]}}
+Json sighting_json(const Rig& rig, const Look& seen, const StereoSighting& sighting);
+
+}  // namespace vernier::cli

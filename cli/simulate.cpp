@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <numbers>
+
+#include "calib/error.h"
+#include "calib/rig_file.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/sighting_json.h"
+#include "sim/sense.h"
+#include "sim/world_file.h"
+
+namespace vernier::cli {
+namespace {
+
+struct Options {
+  std::string world = "workshop", rig = "nominal", pose;
+  double height_m = 1.2, pitch_deg = 0;
+  std::uint64_t seed = 1;
+  std::uint32_t trial = 0;
+  std::vector<std::string> sources;
+};
+
+/// "edge_loss=0.2" settings over the defaults, "none" for all off.
+SourceSettings sources_of(const std::vector<std::string>& words) {
+  SourceSettings settings;
+  for (const std::string& word : words) {
+    if (word == "none") {
+      settings = no_sources();
+      continue;
+    }
+    const std::size_t equals = word.find('=');
+    const SourceParameter* chosen = nullptr;
+    for (const SourceParameter& parameter : source_parameters()) {
+      if (parameter.name == word.substr(0, equals)) chosen = &parameter;
+    }
+    if (!chosen || equals == std::string::npos) {
+      std::string known = "none";
+      for (const SourceParameter& parameter : source_parameters()) {
+        known += ", " + std::string(parameter.name) + "=…";
+      }
+      throw Error("--source " + word, "is no setting of a source", "use " + known);
+    }
+    settings.*chosen->value = parse_numbers(word.substr(equals + 1), 1, "--source " + word)[0];
+  }
+  check(settings, "--source");
+  return settings;
+}
+
+void run(const Options& options, Session& session) {
+  const World world = build_world(read_world(find_world(options.world)));
+  const RigFile rig = read_rig(find_rig(options.rig));
+  for (const std::string& warning : rig.warnings) session.warn(warning);
+  const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
+  constexpr double degree = std::numbers::pi / 180;
+  const PlanePose pose{at[0], at[1], at[2] * degree};
+
+  const Visibility visibility(world);
+  LookOptions looking;
+  looking.mount = {options.height_m, options.pitch_deg * degree};
+  looking.with_corners = true;
+  const Look seen = look(visibility, rig.estimate.rig, pose, looking);
+  const Sensor sensor(rig.estimate.rig, sources_of(options.sources));
+  const StereoSighting sighting = sensor.sense(seen, options.seed, options.trial, 0);
+  const Json json = sighting_json(rig.estimate.rig, seen, sighting);
+  session.result(json, fmt::format("at ({:.2f}, {:.2f}) m heading {:.1f} deg: {} edges in view of "
+                                   "both eyes, {} sensed; {} corners, {} sensed\n"
+                                   "all of them with --json\n",
+                                   at[0], at[1], at[2], seen.edges.size(), sighting.segments.size(),
+                                   seen.corners.size(), sighting.corners.size()));
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      add_verb(app, session, "simulate", "what a rig sees at a pose, through all sources of error",
+               "vernier simulate --world workshop --rig nominal --pose 10,7.5,0 "
+               "--seed 1 --json");
+  verb->add_option("--world", o->world, "world file or shipped name")->capture_default_str();
+  verb->add_option("--rig", o->rig, "rig file or shipped name")->capture_default_str();
+  verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)")->required();
+  verb->add_option("--height-m", o->height_m, "of the camera")->capture_default_str();
+  verb->add_option("--pitch-deg", o->pitch_deg, "nose down")->capture_default_str();
+  verb->add_option("--source", o->sources,
+                   "a source's setting, such as edge_loss=0.2, or none (may be repeated)");
+  verb->add_option("--seed", o->seed, "of all draws")->capture_default_str();
+  verb->add_option("--trial", o->trial, "which draw under that seed")->capture_default_str();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study.h"
+
+#include <charconv>
+#include <cstdlib>
+
+#include "calib/error.h"
+#include "cli/session.h"
+#include "cli/study_folder.h"
+#include "sim/study_store.h"
+
+namespace vernier::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> words;  ///< FILE, or status DIR, or merge DIR…
+  std::string folder, shard;
+  int threads = 0;
+};
+
+int environment_number(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  int value = otherwise;
+  if (text) std::from_chars(text, text + std::char_traits<char>::length(text), value);
+  return value;
+}
+
+/// "i/n", or the Slurm array's variables, or the whole.
+Shard shard_of(const std::string& text) {
+  if (text.empty()) {
+    const int first = environment_number("SLURM_ARRAY_TASK_MIN", 0);
+    return {environment_number("SLURM_ARRAY_TASK_ID", first) - first,
+            environment_number("SLURM_ARRAY_TASK_COUNT", 1)};
+  }
+  Shard shard;
+  const char* end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  const bool slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
+  const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
+  if (!slash || count.ec != std::errc() || count.ptr != end || shard.count < 1 || shard.index < 0 ||
+      shard.index >= shard.count) {
+    throw Error("--shard", "\"" + text + "\" is not i/n with 0 <= i < n", "write it like 0/4");
+  }
+  return shard;
+}
+
+void print(const Study& study, const fs::path& folder, Session& session) {
+  const StudyResults results = study_results(study, folder);
+  session.result(study_json(study, results), study_table(study, results));
+}
+
+void run(const Options& options, Session& session) {
+  if (options.folder.empty()) {
+    throw Error("study", "no folder for the results is given", "give -o DIR");
+  }
+  const fs::path file = options.words[0];
+  StudyRun job;
+  job.folder = options.folder;
+  job.threads = options.threads;
+  job.shard = shard_of(options.shard);
+  const Study study = load_study(file, session);
+  keep_inputs(file, job.folder);
+  {
+    Progress progress(session, "study: blocks");
+    job.progress = [&](int done, int total) { progress.update(done, total); };
+    run_study(study, job);
+  }
+  print(study, job.folder, session);
+}
+
+/// Brings the stores of several folders into one and says whether anything is missing.
+void merge(const Options& options, Session& session) {
+  if (options.folder.empty() || options.words.size() < 2) {
+    throw Error("study merge", "give the folders to merge and -o DIR", "");
+  }
+  const fs::path target = options.folder;
+  fs::create_directories(target);
+  for (const char* name : {"study.toml", "world.world.toml", "rig.json"}) {
+    fs::copy_file(fs::path(options.words[1]) / name, target / name,
+                  fs::copy_options::overwrite_existing);
+  }
+  StudyStore merged(target / "results.sqlite");
+  const Study study = open_folder(target, session);
+  for (std::size_t i = 1; i < options.words.size(); ++i) {
+    const Study part = open_folder(options.words[i], session);
+    if (part.world_fingerprint != study.world_fingerprint ||
+        part.rig_fingerprint != study.rig_fingerprint) {
+      throw Error(options.words[i], "is a study of another world or rig than " + options.words[1],
+                  "merge shards of one study");
+    }
+    for (const auto& file : store_files(options.words[i])) {
+      if (fs::equivalent(file, target / "results.sqlite")) continue;
+      const StudyStore store(file);
+      for (const StoredBlock& block : store.blocks()) merged.put(block);
+      for (const auto& [key, value] : store.notes()) merged.put_note(key, value);
+    }
+  }
+  const StudyResults results = study_results(study, target);
+  if (results.blocks_done < results.blocks_total) {
+    session.doubt(fmt::format("{} of {} blocks are missing from the merged study",
+                              results.blocks_total - results.blocks_done, results.blocks_total));
+  }
+  session.result(study_json(study, results), study_table(study, results));
+}
+
+void dispatch(const Options& options, Session& session) {
+  const std::string& first = options.words[0];
+  if (first == "status") {
+    if (options.words.size() != 2) throw Error("study status", "give one folder", "");
+    print(open_folder(options.words[1], session), options.words[1], session);
+  } else if (first == "merge") {
+    merge(options, session);
+  } else {
+    if (options.words.size() != 1) throw Error("study", "give one study file", "");
+    run(options, session);
+  }
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      add_verb(app, session, "study", "run localisation trials by the thousand; resume, merge",
+               "vernier study FILE.toml -o DIR        # run, or resume what DIR holds\n"
+               "  vernier study status DIR\n"
+               "  vernier study merge DIR1 DIR2 -o DIR");
+  verb->add_option("what", o->words, "a study file; or status DIR; or merge DIR…")->required();
+  verb->add_option("-o,--output", o->folder, "folder for the results");
+  verb->add_option("--threads", o->threads, "how many (0: all)")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  verb->add_option("--shard", o->shard, "do part i of n, such as 0/4 (default: Slurm's array)");
+  verb->callback([o, &session] { session.action = [=, &session] { dispatch(*o, session); }; });
+}
+
+}  // namespace vernier::cli

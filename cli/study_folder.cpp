@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/study_folder.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/rig_file.h"
+#include "cli/share_folder.h"
+#include "sim/world_file.h"
+
+namespace vernier::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Session& session) {
+  Study study;
+  study.file = std::move(file);
+  const std::string world_text = read_whole(world), rig_text = read_whole(rig);
+  study.world = build_world(parse_world(world_text, world.string()));
+  study.world_fingerprint = fingerprint(world_text);
+  RigFile rig_file = parse_rig(rig_text, rig.string());
+  for (const std::string& warning : rig_file.warnings) session.warn(warning);
+  study.rig = std::move(rig_file.estimate);
+  study.rig_fingerprint = fingerprint(rig_text);
+  for (const StudyCell& cell : study.file.cells) {
+    if (cell.experiment.sources.calibration > 0) required_covariance(study.rig, rig.string());
+  }
+  return study;
+}
+
+/// A number as a number, a word as a word.
+Json value_json(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return end != text.c_str() && *end == '\0' ? Json(value) : Json(text);
+}
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+Study load_study(const fs::path& file, Session& session) {
+  StudyFile study = read_study(file);
+  const fs::path world = find_world(study.world, file.parent_path());
+  const fs::path rig = find_rig(study.rig, file.parent_path());
+  return assemble(std::move(study), world, rig, session);
+}
+
+void keep_inputs(const fs::path& study_file, const fs::path& folder) {
+  const StudyFile study = read_study(study_file);
+  fs::create_directories(folder);
+  const auto copy = [&](const fs::path& from, const char* name) {
+    write_atomically(folder / name, read_whole(from));
+  };
+  copy(find_world(study.world, study_file.parent_path()), "world.world.toml");
+  copy(find_rig(study.rig, study_file.parent_path()), "rig.json");
+  copy(study_file, "study.toml");
+}
+
+Study open_folder(const fs::path& folder, Session& session) {
+  if (!fs::is_regular_file(folder / "study.toml")) {
+    throw Error(folder.string(), "is not the folder of a study",
+                "give the folder that vernier study -o wrote");
+  }
+  return assemble(read_study(folder / "study.toml"), folder / "world.world.toml",
+                  folder / "rig.json", session);
+}
+
+std::string short_label(const StudyCell& cell) {
+  std::string label = cell.label;
+  const std::string key = "sources.calibration";
+  if (const std::size_t at = label.find(key); at != std::string::npos) {
+    label.replace(at, key.size(), "ψ_c");
+  }
+  return label;
+}
+
+Json cell_json(const CellResult& cell) {
+  const CellSummary s = summarise(cell);
+  Json settings;
+  for (const auto& [key, value] : cell.cell.settings) settings[key] = value_json(value);
+  const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
+  return {{"label", short_label(cell.cell)},
+          {"settings", settings},
+          {"trials", s.trials},
+          {"success", s.success},
+          {"success_interval_95", pair(s.success_interval_95)},
+          {"success_interval_binomial_95", pair(s.success_interval_binomial_95)},
+          {"coverage", s.coverage},
+          {"success_when_answered", s.success_when_answered},
+          {"node_success", s.node_success},
+          {"recall_0_5m_5deg", s.recall_05},
+          {"recall_0_25m_2deg", s.recall_025},
+          {"median_error_m", finite(s.median_error_m)},
+          {"median_heading_error_deg", finite(s.median_heading_error_rad * 180 / std::numbers::pi)},
+          {"cpu_ms_mean", s.cpu_ms_mean},
+          {"cpu_ms_median", finite(s.cpu_ms_median)},
+          {"cpu_ms_p95", finite(s.cpu_ms_p95)},
+          {"wall_ms_mean", s.wall_ms_mean},
+          {"protocol", name(cell.cell.experiment.protocol)},
+          {"world_ceiling", finite(cell.ceiling)}};
+}
+
+Json study_json(const Study& study, const StudyResults& results) {
+  Json json{{"trials", study.file.trials},
+            {"blocks_done", results.blocks_done},
+            {"blocks_total", results.blocks_total},
+            {"cells", Json::array()}};
+  for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
+  return json;
+}
+
+std::string study_table(const Study& study, const StudyResults& results) {
+  const bool swept = !study.file.sweep_keys.empty();
+  std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
+                                 swept ? "cell" : "", "trials", "success", "95 % interval",
+                                 "covered", "ceiling", "median m", "cpu ms", "p95 ms");
+  for (const CellResult& cell : results.cells) {
+    const CellSummary s = summarise(cell);
+    text += fmt::format(
+        "{:<24} {:>6} {:>6.2f} % [{:>5.2f}, {:>6.2f}] {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} "
+        "{:>9.1f}\n",
+        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
+        100 * s.success, 100 * s.success_interval_95.low, 100 * s.success_interval_95.high,
+        100 * s.coverage, 100 * cell.ceiling, s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
+  }
+  text += fmt::format(
+      "protocol {}, world {}; success: within 1 m; interval: Wilson, clustered by "
+      "recorded map\n",
+      name(study.file.cells[0].experiment.protocol), study.world.name);
+  if (results.blocks_done < results.blocks_total) {
+    text += fmt::format("{} of {} blocks are there: run the study again to finish it\n",
+                        results.blocks_done, results.blocks_total);
+  }
+  return text;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "cli/session.h"
+#include "sim/study.h"
+
+namespace vernier::cli {
+
+/// Loads a study file with the world and rig it names (relative to it, or shipped).
+Study load_study(const std::filesystem::path& file, Session& session);
+
+/// A study's folder holds copies of study.toml, world.world.toml and rig.json beside its stores, so
+/// that it can be resumed, merged and reported wherever it is moved.
+void keep_inputs(const std::filesystem::path& study_file, const std::filesystem::path& folder);
+Study open_folder(const std::filesystem::path& folder, Session& session);
+
+/// The settings that differ between cells, and the first cell's whole settings.
+Json cell_json(const CellResult& cell);
+Json study_json(const Study& study, const StudyResults& results);
+std::string study_table(const Study& study, const StudyResults& results);
+
+/// "psi_c = 1" for the usual sweep, else the cell's label.
+std::string short_label(const StudyCell& cell);
+
+}  // namespace vernier::cli

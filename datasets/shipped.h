@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/calibrate.h"
+#include "calib/simulated_board.h"
+#include "sim/office.h"
+
+/// Recipes of the shipped world and rig.
+namespace vernier::datasets {
+
+/// An office floor of the memo's size, seed 1.
+inline WorldDescription workshop() {
+  WorldDescription world = make_office(1);
+  world.name = "workshop";
+  return world;
+}
+
+/// A pair of 640 x 480 cameras, f 525 px, baseline 0.2 m, a little barrel distortion.
+inline Rig nominal_truth() {
+  Rig rig;
+  for (const char* name : {"left", "right"}) {
+    Camera camera;
+    camera.name = name;
+    camera.parameters.resize(5);
+    camera.parameters << 525, 1, 319.5, 239.5, -0.05;
+    rig.cameras.push_back(camera);
+  }
+  rig.T_camera_first = {Pose{}, Pose{Eigen::Matrix3d::Identity(), {-0.2, 0, 0}}};
+  return rig;
+}
+
+/// What a calibration of that pair finds from 20 simulated views of a 9 x 6 board of 40 mm squares
+/// at about 0.8 m, corners at 0.2 px.
+inline RigEstimate nominal() {
+  const SimulatedBoard board =
+      simulate_board(nominal_truth(), {9, 6, 0.04}, 1, 0,
+                     {.frames = 20, .pixel_sigma_px = 0.2, .distance_m = 0.8});
+  return calibrate(board.observations, {.pixel_sigma_px = 0.2});
+}
+
+}  // namespace vernier::datasets

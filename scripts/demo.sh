@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# The whole chain on real images: calibrate, sample, look, run trials, write the page.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+out=out/demo
+vernier=build/release/vernier
+step() { echo "== $*"; }
+
+step "packages (nothing to do if they are there)"
+scripts/install_packages.sh --demo
+
+step "build of the program"
+# A build folder that is set up already keeps its settings.
+if [[ ! -f build/release/build.ninja ]]; then
+  cmake --preset release -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_BENCH=OFF
+fi
+cmake --build --preset release --parallel "$(nproc)" --target vernier_program
+
+data=/usr/share/doc/opencv-doc/examples/data
+if [[ ! -f $data/left01.jpg ]]; then data=build/opencv-doc$data; fi
+images=(--left "$data/left[0-9]*.jpg" --right "$data/right[0-9]*.jpg"
+  --board 9x6 --square-m 0.025)
+mkdir --parents "$out"
+
+step "what this build has"
+$vernier doctor
+step "calibrate 13 real stereo pairs, one distortion parameter a camera"
+$vernier calibrate "${images[@]}" -o "$out/rig.json"
+step "calibrate them again, five distortion parameters a camera"
+$vernier calibrate "${images[@]}" --model opencv5 -o "$out/rig_opencv5.json"
+step "sample 1000 rigs from the first calibration's covariance"
+$vernier sample "$out/rig.json" --psi-c 1 -n 1000 --seed 1 -o "$out/samples.csv"
+step "the world"
+$vernier world info workshop
+step "what the nominal rig sees from one place in it"
+$vernier simulate --world workshop --rig nominal --pose 10,7.5,0 --seed 1 --json >"$out/view.json"
+step "localisation trials under calibrations of three qualities"
+rm --recursive --force "$out/study" # else a second demo would have nothing left to run
+$vernier study scripts/demo_study.toml -o "$out/study"
+step "the page"
+$vernier report "$out/study" --calibration "$out/rig.json" \
+  --calibration "$out/rig_opencv5.json" -o "$out/report.html"
+
+echo "done in $((SECONDS / 60)) min $((SECONDS % 60)) s; open $PWD/$out/report.html"

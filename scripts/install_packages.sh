@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what Vernier needs on Debian bookworm. Says and does nothing where all of it is there.
+set -euo pipefail
+
+usage() {
+  cat <<'USAGE'
+usage: scripts/install_packages.sh [--demo | --test]
+  --demo   leave out what only tests and benchmarks need
+  --test   add what only the test script needs: clang-format, Python, Chromium
+USAGE
+}
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+scope=standard
+case "${1:-}" in
+  "") ;;
+  --demo) scope=demo ;;
+  --test) scope="test" ;;
+  -h | --help)
+    usage
+    exit 0
+    ;;
+  *)
+    usage >&2
+    exit 2
+    ;;
+esac
+
+packages=(
+  g++ cmake ninja-build ccache
+  libceres-dev libopencv-dev libopencv-contrib-dev libeigen3-dev libtbb-dev librandom123-dev
+  libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
+  libhwy-dev
+)
+if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev); fi
+if [[ $scope == test ]]; then packages+=(clang-format python3 chromium); fi
+
+sample_images=usr/share/doc/opencv-doc/examples/data
+has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }
+if ! has_sample_images; then packages+=(opencv-doc); fi
+
+# A page without its plots is better than no page: nothing about npm ever stops the script.
+has_page() { [[ -f cli/page/package-lock.json ]]; }
+if has_page && ! command -v npm >/dev/null && ! command -v node >/dev/null; then packages+=(npm); fi
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+as_root() {
+  if [[ $(id -u) == 0 ]]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo --preserve-env=DEBIAN_FRONTEND "$@"
+  else
+    echo "install_packages.sh: not root and no sudo; as root, run: $*" >&2
+    return 1
+  fi
+}
+
+apt() { as_root apt-get --quiet --option DPkg::Lock::Timeout=300 "$@"; }
+
+is_fresh=no
+update_lists() {
+  if [[ $is_fresh == no ]]; then apt update >&2; fi
+  is_fresh=yes
+}
+
+install_missing() {
+  local missing=() package with_npm=no
+  for package in "${packages[@]}"; do
+    if is_installed "$package"; then continue; fi
+    if [[ $package == npm ]]; then with_npm=yes; else missing+=("$package"); fi
+  done
+  export DEBIAN_FRONTEND=noninteractive
+  if ((${#missing[@]} > 0)); then
+    if ! command -v apt-get >/dev/null; then
+      echo "install_packages.sh: this is no Debian; install the likes of: ${missing[*]}" >&2
+      return 1
+    fi
+    echo "installing ${missing[*]}" >&2
+    update_lists
+    apt install --yes --no-install-recommends "${missing[@]}" >&2
+  fi
+  if [[ $with_npm == yes ]]; then
+    update_lists || true
+    apt install --yes --no-install-recommends npm >&2 || true
+  fi
+}
+
+# Minimal images leave /usr/share/doc out when they unpack a package: then unpack it beside.
+fetch_sample_images() {
+  if has_sample_images; then return; fi
+  echo "unpacking the sample images of opencv-doc into build/opencv-doc" >&2
+  local folder
+  folder=$(mktemp --directory)
+  if ! (cd "$folder" && apt-get --quiet download opencv-doc >&2); then
+    update_lists
+    (cd "$folder" && apt-get --quiet download opencv-doc >&2)
+  fi
+  mkdir --parents build/opencv-doc
+  dpkg-deb --extract "$folder"/opencv-doc_*.deb build/opencv-doc
+  rm --recursive --force "$folder"
+}
+
+install_page() {
+  if ! has_page; then return; fi
+  local wanted=runtime stamp=cli/page/node_modules/.installed options=(--omit=dev)
+  if [[ $scope == test ]]; then
+    wanted=all
+    options=()
+  fi
+  # "all" holds "runtime"; a lock file newer than the stamp calls for both again.
+  if [[ -f $stamp && ! cli/page/package-lock.json -nt $stamp ]]; then
+    if [[ $(<"$stamp") == all || $(<"$stamp") == "$wanted" ]]; then return; fi
+  fi
+  if ! command -v npm >/dev/null; then
+    echo "warning: no npm here, so the report's page will hold tables only" >&2
+    return
+  fi
+  echo "installing the page's plots with npm" >&2
+  if (cd cli/page && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error \
+    "${options[@]}" >&2); then
+    echo "$wanted" >"$stamp"
+  else
+    echo "warning: npm failed, so the report's page will hold tables only" >&2
+  fi
+}
+
+install_missing
+fetch_sample_images
+install_page

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/interval.h"
+#include "sim/study_file.h"
+
+namespace vernier {
+
+/// A study with everything it names loaded.
+struct Study {
+  StudyFile file;
+  World world;
+  RigEstimate rig;
+  std::string world_fingerprint, rig_fingerprint;  ///< of the files' content
+};
+
+/// A short fingerprint of a text (FNV-1a, 64 bits, hexadecimal), to tell contents apart.
+std::string fingerprint(const std::string& text);
+
+/// Which part of the blocks this process does: block i belongs to shard i mod count.
+struct Shard {
+  int index = 0, count = 1;
+};
+
+struct StudyRun {
+  std::filesystem::path folder;  ///< results are kept, and resumed from, here
+  int threads = 0;               ///< 0: as many as there are
+  Shard shard;
+  std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
+};
+
+/// Trials of a block: they share one recorded map.
+inline constexpr int trials_per_block = 50;
+
+/// Runs what is missing of this shard. Blocks run in parallel, each on one thread, so results do
+/// not depend on the number of threads; a killed run goes on where it was.
+void run_study(const Study& study, const StudyRun& run);
+
+/// A cell's results.
+struct CellResult {
+  StudyCell cell;
+  std::vector<TrialResult> trials;  ///< ascending
+  std::vector<ClusterCount> maps;   ///< by block
+  double ceiling = 1;               ///< the world's, for this cell's protocol and mount
+};
+
+/// How much of the study the folder holds.
+struct StudyResults {
+  std::vector<CellResult> cells;
+  int blocks_done = 0, blocks_total = 0;
+};
+
+/// Reads all stores of the folder. Throws Error where two shards disagree on a block.
+StudyResults study_results(const Study& study, const std::filesystem::path& folder);
+
+/// Figures of a cell.
+struct CellSummary {
+  int trials = 0;
+  double success = 0;
+  Interval success_interval_95;           ///< Wilson with the effective number: clusters by map
+  Interval success_interval_binomial_95;  ///< Wilson as if trials were independent
+  double coverage = 0;                    ///< share answered
+  double success_when_answered = 0;
+  double node_success = 0;               ///< of the map's node instead of the refined pose
+  double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
+  double median_error_m = 0;             ///< over answered trials
+  double median_heading_error_rad = 0;
+  double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
+};
+CellSummary summarise(const CellResult& cell);
+
+/// Two cells on the same trials: successes of one, of the other, McNemar's exact p-value.
+struct PairedComparison {
+  int both = 0, only_a = 0, only_b = 0, neither = 0;
+  double mcnemar_p = 1;
+};
+PairedComparison compare(const CellResult& a, const CellResult& b);
+
+}  // namespace vernier

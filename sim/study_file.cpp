@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study_file.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "sim/toml_reader.h"
+
+namespace vernier {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+std::string text_of(const toml::node& node) {
+  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
+  if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
+  if (const auto* text = node.as_string()) return text->get();
+  std::ostringstream out;
+  node.visit([&](const auto& value) { out << value; });
+  return out.str();
+}
+
+class StudyReader : private TomlReader {
+ public:
+  using TomlReader::TomlReader;
+
+  StudyFile read(const toml::table& root);
+
+ private:
+  /// A table of the root, or nothing where it is left out.
+  const toml::table* section(const toml::table& root, const char* name) const {
+    const toml::node* node = root.get(name);
+    return node ? &table(*node, fmt::format("[{}]", name)) : nullptr;
+  }
+  double number_in(const toml::node& node, const std::string& what, double low, double high) const;
+  template <class Parse>
+  auto word(const toml::node& node, const std::string& what, Parse parse) const {
+    try {
+      return parse(text(node, what));
+    } catch (const Error& error) {
+      fail(node, error.what(), "");
+    }
+  }
+
+  void read_study_section(const toml::table& root, StudyFile& study) const;
+  void read_files(const toml::table& root, StudyFile& study) const;
+  ExperimentSettings read_experiment(const toml::table& root) const;
+  void read_sources(const toml::table& table, SourceSettings& sources) const;
+  void read_map(const toml::table& table, ExperimentSettings& settings) const;
+  void read_sweep(const toml::table& root, StudyFile& study) const;
+  void add_cells(const toml::table& root, StudyFile& study) const;
+};
+
+double StudyReader::number_in(const toml::node& node,
+                              const std::string& what,
+                              double low,
+                              double high) const {
+  const double value = number(node, what);
+  if (!(value >= low && value <= high)) {
+    fail(node, fmt::format("{} = {} is out of range", what, value),
+         fmt::format("give {} to {}", low, high));
+  }
+  return value;
+}
+
+void StudyReader::read_study_section(const toml::table& root, StudyFile& study) const {
+  const toml::node& node = required(root, "study", "the file");
+  const toml::table& section = table(node, "[study]");
+  check_keys(section, {"trials", "seed", "protocol"}, "[study]");
+  if (const auto* trials = section.get("trials")) {
+    study.trials = static_cast<int>(integer(*trials, "study.trials"));
+    if (study.trials < 1 || study.trials > 10'000'000) {
+      fail(*trials, fmt::format("study.trials = {} is out of range", study.trials),
+           "give 1 to 10000000");
+    }
+  }
+}
+
+void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
+  if (const auto* world = section(root, "world")) {
+    check_keys(*world, {"file"}, "[world]");
+    study.world = text(required(*world, "file", "[world]"), "world.file");
+  }
+  if (const auto* rig = section(root, "rig")) {
+    check_keys(*rig, {"file"}, "[rig]");
+    study.rig = text(required(*rig, "file", "[rig]"), "rig.file");
+  }
+}
+
+void StudyReader::read_sources(const toml::table& table, SourceSettings& sources) const {
+  Keys keys{"lateral_shift_mode"};
+  for (const SourceParameter& parameter : source_parameters()) keys.push_back(parameter.name);
+  check_keys(table, keys, "[sources]");
+  for (const SourceParameter& parameter : source_parameters()) {
+    if (const auto* node = table.get(parameter.name)) {
+      sources.*parameter.value = number_in(*node, fmt::format("sources.{}", parameter.name),
+                                           parameter.low, parameter.high);
+    }
+  }
+  if (const auto* node = table.get("lateral_shift_mode")) {
+    const std::string mode = text(*node, "sources.lateral_shift_mode");
+    if (mode != "common" && mode != "independent") {
+      fail(*node, fmt::format("lateral_shift_mode is \"{}\"", mode), "use common or independent");
+    }
+    sources.lateral_shift_mode = mode == "common" ? ShiftMode::common : ShiftMode::independent;
+  }
+}
+
+void StudyReader::read_map(const toml::table& table, ExperimentSettings& settings) const {
+  check_keys(table, {"path", "spacing_m", "headings", "rig"}, "[map]");
+  if (const auto* node = table.get("path")) {
+    if (text(*node, "map.path") != "default") {
+      fail(*node, "map.path is not \"default\"",
+           "give the world another [[route]], or leave this out");
+    }
+  }
+  if (const auto* node = table.get("spacing_m")) {
+    settings.map_spacing_m = number_in(*node, "map.spacing_m", 0.01, 100);
+  }
+  if (const auto* node = table.get("headings")) {
+    if (node->is_string()) {
+      if (text(*node, "map.headings") != "path") {
+        fail(*node, "map.headings is neither \"path\" nor a number", "");
+      }
+      settings.map_headings = 0;
+    } else {
+      const auto count = integer(*node, "map.headings");
+      if (count < 1 || count > 360) fail(*node, "map.headings is not 1 to 360", "");
+      settings.map_headings = static_cast<int>(count);
+    }
+  }
+  if (const auto* node = table.get("rig")) {
+    const std::string which = text(*node, "map.rig");
+    if (which != "recalibrated" && which != "same") {
+      fail(*node, fmt::format("map.rig is \"{}\"", which), "use recalibrated or same");
+    }
+    settings.map_rig = which == "same" ? MapRig::same : MapRig::recalibrated;
+  }
+}
+
+ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
+  ExperimentSettings settings;
+  const toml::table& study = *root.get("study")->as_table();
+  if (const auto* seed = study.get("seed")) {
+    const auto value = integer(*seed, "study.seed");
+    if (value < 0) fail(*seed, "study.seed is negative", "give 0 or more");
+    settings.seed = static_cast<std::uint64_t>(value);
+  }
+  if (const auto* protocol = study.get("protocol")) {
+    settings.protocol =
+        word(*protocol, "study.protocol", [](const std::string& w) { return query_protocol(w); });
+  }
+  if (const auto* sources = section(root, "sources")) read_sources(*sources, settings.sources);
+  if (const auto* map = section(root, "map")) read_map(*map, settings);
+  if (const auto* camera = section(root, "camera")) {
+    check_keys(*camera, {"height_m", "pitch_deg"}, "[camera]");
+    if (const auto* height = camera->get("height_m")) {
+      settings.mount.height_m = number_in(*height, "camera.height_m", 0.01, 100);
+    }
+    if (const auto* pitch = camera->get("pitch_deg")) {
+      settings.mount.pitch_rad = degree * number_in(*pitch, "camera.pitch_deg", -89, 89);
+    }
+  }
+  if (const auto* localiser = section(root, "localiser")) {
+    check_keys(*localiser, {"method", "looks"}, "[localiser]");
+    if (const auto* method = localiser->get("method")) {
+      settings.method = text(*method, "localiser.method");
+      const std::vector<std::string> known = localiser_names();
+      if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
+        fail(*method, fmt::format("there is no localiser \"{}\"", settings.method),
+             "use pgh or pgh_baseline");
+      }
+    }
+    if (const auto* looks = localiser->get("looks")) {
+      if (integer(*looks, "localiser.looks") != 1) {
+        fail(*looks, "localiser.looks is not 1", "this version takes one look a query");
+      }
+    }
+  }
+  return settings;
+}
+
+void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
+  const auto* sweep = section(root, "sweep");
+  if (!sweep) return;
+  // toml++ keeps tables sorted by key; the file's order decides which sweep is slowest.
+  std::vector<std::pair<toml::source_position, std::string>> keys;
+  for (const auto& [key, value] : *sweep) {
+    keys.emplace_back(key.source().begin, std::string(key.str()));
+  }
+  std::sort(keys.begin(), keys.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first.line, a.first.column) < std::pair(b.first.line, b.first.column);
+  });
+  for (const auto& [position, key] : keys) {
+    const toml::node& node = *sweep->get(key);
+    if (key.find('.') == std::string::npos || node.is_table()) {
+      fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", key),
+           "write \"sources.calibration\" = [0.1, 1, 10]");
+    }
+    std::vector<std::string> values;
+    for (const toml::node& value : list(node, "sweep." + key)) values.push_back(text_of(value));
+    if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list some values");
+    study.sweep_keys.push_back(key);
+    study.sweep_values.push_back(std::move(values));
+  }
+}
+
+/// Every setting in effect, by its dotted key: what tells one cell from another.
+std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
+  std::map<std::string, std::string> all;
+  for (const SourceParameter& p : source_parameters()) {
+    all[fmt::format("sources.{}", p.name)] = fmt::format("{}", s.sources.*p.value);
+  }
+  const bool common = s.sources.lateral_shift_mode == ShiftMode::common;
+  all["sources.lateral_shift_mode"] = common ? "common" : "independent";
+  all["camera.height_m"] = fmt::format("{}", s.mount.height_m);
+  all["camera.pitch_deg"] = fmt::format("{}", s.mount.pitch_rad / degree);
+  all["map.spacing_m"] = fmt::format("{}", s.map_spacing_m);
+  all["map.headings"] = s.map_headings == 0 ? "path" : fmt::format("{}", s.map_headings);
+  all["map.rig"] = s.map_rig == MapRig::same ? "same" : "recalibrated";
+  all["localiser.method"] = s.method;
+  all["study.protocol"] = name(s.protocol);
+  all["study.seed"] = fmt::format("{}", s.seed);
+  return all;
+}
+
+void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
+  const toml::table* sweep = section(root, "sweep");
+  std::size_t count = 1;
+  for (const auto& values : study.sweep_values) count *= values.size();
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    toml::table changed = root;
+    changed.erase("sweep");
+    std::string label;
+    std::size_t rest = cell, block = count;
+    for (std::size_t k = 0; k < study.sweep_keys.size(); ++k) {
+      block /= study.sweep_values[k].size();
+      const std::size_t i = rest / block;
+      rest %= block;
+      const std::string& key = study.sweep_keys[k];
+      const std::size_t dot = key.find('.');
+      const std::string section_name = key.substr(0, dot), entry = key.substr(dot + 1);
+      if (!changed.contains(section_name)) changed.insert(section_name, toml::table{});
+      toml::table& into = *changed.get(section_name)->as_table();
+      // the node brings its line with it, so that a complaint points at the sweep
+      sweep->get(key)->as_array()->get(i)->visit(
+          [&](const auto& value) { into.insert_or_assign(entry, value); });
+      label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
+    }
+    StudyCell result;
+    result.experiment = read_experiment(changed);
+    result.settings = settings_of(result.experiment);
+    result.label = label.empty() ? "as set" : label;
+    study.cells.push_back(std::move(result));
+  }
+}
+
+StudyFile StudyReader::read(const toml::table& root) {
+  check_keys(root, {"study", "world", "rig", "sources", "camera", "map", "localiser", "sweep"}, "");
+  StudyFile study;
+  read_study_section(root, study);
+  read_files(root, study);
+  read_experiment(root);  // the file's own values first, with their own lines
+  read_sweep(root, study);
+  add_cells(root, study);
+  return study;
+}
+
+}  // namespace
+
+StudyFile parse_study(const std::string& text, const std::string& place) {
+  return StudyReader(place).read(parse_toml(text, place));
+}
+
+StudyFile read_study(const std::filesystem::path& file) {
+  return parse_study(read_whole(file), file.string());
+}
+
+}  // namespace vernier

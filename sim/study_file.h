@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/experiment.h"
+
+namespace vernier {
+
+/// One combination of the swept settings.
+struct StudyCell {
+  std::string label;  ///< swept keys and values, such as "sources.calibration = 10"
+  std::map<std::string, std::string> settings;  ///< every setting in effect, by dotted key
+  ExperimentSettings experiment;
+};
+
+/// What a study file says (docs/file-formats.md).
+struct StudyFile {
+  int trials = 900;  ///< a cell
+  std::string world = "workshop";
+  std::string rig = "nominal";
+  std::vector<std::string> sweep_keys;                 ///< first is slowest
+  std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list a key
+  std::vector<StudyCell> cells;                        ///< all combinations
+};
+
+/// Reads a study. Everything but [study] has a default. Throws Error with file, line and key for
+/// TOML that is malformed, an unknown key (naming the nearest known one), a value of the wrong
+/// type or out of its range, or a sweep over a key that does not exist.
+StudyFile read_study(const std::filesystem::path& file);
+StudyFile parse_study(const std::string& text, const std::string& place);
+
+}  // namespace vernier

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study_store.h"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "calib/error.h"
+#include "localise/bhattacharyya.h"
+
+namespace vernier {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* schema_version = "1";
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Json pose_json(const PlanePose& pose) { return {pose.x_m, pose.y_m, pose.heading_rad}; }
+PlanePose pose_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+std::string trials_text(const std::vector<TrialResult>& trials) {
+  Json rows = Json::array();
+  for (const TrialResult& t : trials) {
+    rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
+                    pose_json(t.node), number(t.error_m), number(t.node_error_m),
+                    number(t.heading_error_rad), t.lines, t.score, t.runner_up, t.cpu_ms,
+                    t.wall_ms});
+  }
+  return rows.dump();
+}
+
+std::vector<TrialResult> parse_trials(const std::string& text) {
+  std::vector<TrialResult> trials;
+  for (const Json& row : Json::parse(text)) {
+    TrialResult t;
+    t.trial = row.at(0).get<std::uint32_t>();
+    t.status = static_cast<LocalisationStatus>(row.at(1).get<int>());
+    t.truth = pose_of(row.at(2));
+    t.answer = pose_of(row.at(3));
+    t.node = pose_of(row.at(4));
+    t.error_m = number(row.at(5));
+    t.node_error_m = number(row.at(6));
+    t.heading_error_rad = number(row.at(7));
+    t.lines = row.at(8).get<int>();
+    t.score = row.at(9).get<double>();
+    t.runner_up = row.at(10).get<double>();
+    t.cpu_ms = row.at(11).get<double>();
+    t.wall_ms = row.at(12).get<double>();
+    trials.push_back(t);
+  }
+  return trials;
+}
+
+}  // namespace
+
+struct StudyStore::Connection {
+  std::string place;
+  sqlite3* db = nullptr;
+
+  ~Connection() { sqlite3_close(db); }
+
+  [[noreturn]] void fail() const {
+    throw Error(place, std::string("study store: ") + sqlite3_errmsg(db),
+                "check that the file is a store, and the disk");
+  }
+  void run(const char* sql) const {
+    if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  }
+
+  /// A prepared statement that finishes itself.
+  class Statement {
+   public:
+    Statement(const Connection& connection, const char* sql) : connection_(connection) {
+      if (sqlite3_prepare_v2(connection.db, sql, -1, &statement_, nullptr) != SQLITE_OK) {
+        connection.fail();
+      }
+    }
+    ~Statement() { sqlite3_finalize(statement_); }
+    Statement(const Statement&) = delete;
+    Statement& operator=(const Statement&) = delete;
+
+    Statement& bind(int index, const std::string& value) {
+      sqlite3_bind_text(statement_, index, value.data(), static_cast<int>(value.size()),
+                        SQLITE_TRANSIENT);
+      return *this;
+    }
+    Statement& bind(int index, int value) {
+      sqlite3_bind_int(statement_, index, value);
+      return *this;
+    }
+    bool step() {
+      const int status = sqlite3_step(statement_);
+      if (status != SQLITE_ROW && status != SQLITE_DONE) connection_.fail();
+      return status == SQLITE_ROW;
+    }
+    std::string text(int column) const {
+      const auto* bytes = sqlite3_column_text(statement_, column);
+      return bytes ? reinterpret_cast<const char*>(bytes) : "";
+    }
+    int integer(int column) const { return sqlite3_column_int(statement_, column); }
+
+   private:
+    const Connection& connection_;
+    sqlite3_stmt* statement_ = nullptr;
+  };
+};
+
+StudyStore::StudyStore(const std::filesystem::path& file)
+    : connection_(std::make_unique<Connection>()) {
+  connection_->place = file.string();
+  if (sqlite3_open(file.c_str(), &connection_->db) != SQLITE_OK) connection_->fail();
+  sqlite3_busy_timeout(connection_->db, 10'000);
+  connection_->run(
+      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"
+      "CREATE TABLE IF NOT EXISTS note (key TEXT PRIMARY KEY, value TEXT);"
+      "CREATE TABLE IF NOT EXISTS block (cell TEXT, block INTEGER, trials INTEGER,"
+      " answered INTEGER, successes INTEGER, results TEXT, PRIMARY KEY (cell, block));");
+  const std::string version = note("schema");
+  if (version.empty()) {
+    put_note("schema", schema_version);
+  } else if (version != schema_version) {
+    throw Error(file.string(), "a store of schema " + version + ", this program writes 1",
+                "use another folder");
+  }
+  const std::string here(target_name()), there = note("instruction_set");
+  if (there.empty()) {
+    put_note("instruction_set", here);
+  } else if (there != here) {
+    throw Error(file.string(),
+                "written with instruction set " + there + ", this processor has " + here +
+                    ": the results would differ in their last bits",
+                "go on in another folder");
+  }
+}
+
+StudyStore::~StudyStore() = default;
+StudyStore::StudyStore(StudyStore&&) noexcept = default;
+
+void StudyStore::put(const StoredBlock& block) {
+  int answered = 0, successes = 0;
+  for (const TrialResult& trial : block.trials) {
+    answered += trial.answered();
+    successes += trial.success();
+  }
+  Connection::Statement(*connection_, "INSERT OR REPLACE INTO block VALUES (?, ?, ?, ?, ?, ?)")
+      .bind(1, block.cell)
+      .bind(2, block.block)
+      .bind(3, static_cast<int>(block.trials.size()))
+      .bind(4, answered)
+      .bind(5, successes)
+      .bind(6, trials_text(block.trials))
+      .step();
+}
+
+std::vector<StoredBlock> StudyStore::blocks() const {
+  Connection::Statement rows(*connection_,
+                             "SELECT cell, block, results FROM block ORDER BY cell, block");
+  std::vector<StoredBlock> blocks;
+  while (rows.step()) blocks.push_back({rows.text(0), rows.integer(1), parse_trials(rows.text(2))});
+  return blocks;
+}
+
+void StudyStore::put_note(const std::string& key, const std::string& value) {
+  Connection::Statement(*connection_, "INSERT OR REPLACE INTO note VALUES (?, ?)")
+      .bind(1, key)
+      .bind(2, value)
+      .step();
+}
+
+std::string StudyStore::note(const std::string& key) const {
+  Connection::Statement row(*connection_, "SELECT value FROM note WHERE key = ?");
+  row.bind(1, key);
+  return row.step() ? row.text(0) : "";
+}
+
+std::vector<std::pair<std::string, std::string>> StudyStore::notes() const {
+  Connection::Statement rows(*connection_, "SELECT key, value FROM note ORDER BY key");
+  std::vector<std::pair<std::string, std::string>> notes;
+  while (rows.step()) notes.emplace_back(rows.text(0), rows.text(1));
+  return notes;
+}
+
+std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  if (std::filesystem::is_directory(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (entry.path().extension() == ".sqlite") files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace vernier

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/toml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+/// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
+std::size_t edit_distance(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[to.size()];
+}
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& place) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw Error(place + ":" + std::to_string(error.source().begin.line),
+                "not TOML: " + std::string(error.description()), "mend the syntax");
+  }
+}
+
+std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
+  std::string best;
+  std::size_t best_distance = std::string::npos;
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+void TomlReader::fail(toml::source_index line,
+                      const std::string& fault,
+                      const std::string& remedy) const {
+  throw Error(place_ + ":" + std::to_string(std::max<toml::source_index>(line, 1)), fault, remedy);
+}
+
+void TomlReader::fail(const toml::node& node,
+                      const std::string& fault,
+                      const std::string& remedy) const {
+  fail(node.source().begin.line, fault, remedy);
+}
+
+void TomlReader::check_keys(const toml::table& table,
+                            const Keys& known,
+                            const std::string& owner) const {
+  for (const auto& [key, value] : table) {
+    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    fail(key.source().begin.line,
+         "unknown key '" + std::string(key.str()) + "'" + (owner.empty() ? "" : " in " + owner),
+         "did you mean '" + nearest_word(key.str(), known) + "'?");
+  }
+}
+
+const toml::node& TomlReader::required(const toml::table& table,
+                                       const char* key,
+                                       const std::string& owner) const {
+  const toml::node* node = table.get(key);
+  if (!node) fail(table, owner + " has no '" + key + "'", "add it");
+  return *node;
+}
+
+std::string TomlReader::text(const toml::node& node, const std::string& what) const {
+  if (!node.is_string()) fail(node, what + " is not a string", "put it in quotes");
+  return node.as_string()->get();
+}
+
+double TomlReader::number(const toml::node& node, const std::string& what) const {
+  double value = 0;
+  if (const auto* real = node.as_floating_point()) {
+    value = real->get();
+  } else if (const auto* whole = node.as_integer()) {
+    value = static_cast<double>(whole->get());
+  } else {
+    fail(node, what + " holds something that is not a number", "write a number");
+  }
+  if (!std::isfinite(value)) {
+    fail(node, what + " holds a number that is not finite", "write a finite number");
+  }
+  return value;
+}
+
+const toml::array& TomlReader::list(const toml::node& node, const std::string& what) const {
+  if (!node.is_array()) fail(node, what + " is not a list", "write it as [ … ]");
+  return *node.as_array();
+}
+
+const toml::table& TomlReader::table(const toml::node& node, const std::string& what) const {
+  if (!node.is_table()) fail(node, what + " is not a table", "write it as a table of keys");
+  return *node.as_table();
+}
+
+std::vector<const toml::table*> TomlReader::tables(const toml::table& root, const char* key) const {
+  std::vector<const toml::table*> found;
+  const toml::node* node = root.get(key);
+  if (!node) return found;
+  const std::string heading = std::string("[[") + key + "]]";
+  if (!node->is_array()) {
+    fail(*node, std::string("'") + key + "' is not a list of tables", "write " + heading);
+  }
+  for (const auto& entry : *node->as_array()) found.push_back(&table(entry, heading));
+  return found;
+}
+
+std::int64_t TomlReader::integer(const toml::node& node, const std::string& what) const {
+  if (!node.is_integer()) fail(node, what + " is not a whole number", "write it without a point");
+  return node.as_integer()->get();
+}
+
+}  // namespace vernier

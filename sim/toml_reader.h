@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <Eigen/Core>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Internal to sim/: reading TOML with complaints that name file and line. Not installed.
+namespace vernier {
+
+/// Parses TOML; throws Error(place:line) for bad syntax.
+toml::table parse_toml(std::string_view text, const std::string& place);
+
+/// The known word with the least edit distance.
+std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
+
+/// Typed access to parsed TOML. Every complaint carries the file and the line.
+class TomlReader {
+ public:
+  explicit TomlReader(std::string place) : place_(std::move(place)) {}
+
+  using Keys = std::vector<std::string_view>;
+
+  [[noreturn]] void fail(toml::source_index line,
+                         const std::string& fault,
+                         const std::string& remedy) const;
+  [[noreturn]] void fail(const toml::node& node,
+                         const std::string& fault,
+                         const std::string& remedy) const;
+
+  /// Refuses keys that are not known, naming the nearest that is.
+  void check_keys(const toml::table& table, const Keys& known, const std::string& owner) const;
+  const toml::node& required(const toml::table& table,
+                             const char* key,
+                             const std::string& owner) const;
+  std::string text(const toml::node& node, const std::string& what) const;
+  double number(const toml::node& node, const std::string& what) const;
+  std::int64_t integer(const toml::node& node, const std::string& what) const;
+  const toml::array& list(const toml::node& node, const std::string& what) const;
+  const toml::table& table(const toml::node& node, const std::string& what) const;
+  /// The tables of [[key]], none where the key is absent.
+  std::vector<const toml::table*> tables(const toml::table& root, const char* key) const;
+
+  template <int N>
+  Eigen::Matrix<double, N, 1> numbers(const toml::node& node, const std::string& what) const {
+    const toml::array& values = list(node, what);
+    if (values.size() != N) {
+      fail(node, what + " has " + std::to_string(values.size()) + " numbers",
+           "it takes " + std::to_string(N));
+    }
+    Eigen::Matrix<double, N, 1> result;
+    for (int i = 0; i < N; ++i) result[i] = number(*values.get(i), what);
+    return result;
+  }
+
+  const std::string& place() const { return place_; }
+
+ private:
+  std::string place_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// node page_test.mjs [--screenshots DIR] [PAGE.html ...]
+//
+// Opens report pages in Chromium as a reader would, from a file, and fails for any error on the
+// console, any request, a missing section, a plot without traces, text such as NaN, or a page
+// wider than its window. Always checks pages of the sample data (with plots, without plotly, with
+// hardly any data) and then the pages given. Needs `npm ci` in cli/page; exit code 77 without.
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import os from "node:os";
+import path from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const page_folder = path.join(here, "../../cli/page");
+const require = createRequire(path.join(page_folder, "package.json"));
+
+/** The page that the program would write for `report` (JSON text). */
+function assemble(report, { plotly }) {
+  const read = (...parts) => fs.readFileSync(path.join(page_folder, ...parts), "utf8");
+  const scripts = fs.readdirSync(path.join(page_folder, "js")).filter((f) => f.endsWith(".js"));
+  const parts = {
+    CSS: read("report.css"),
+    PLOTLY: plotly ? `<script>${fs.readFileSync(
+      require.resolve("plotly.js-cartesian-dist-min"), "utf8")}</script>` : "",
+    DATA: `<script type="application/json" id="data">${report.replaceAll("<", "\\u003c")}</script>`,
+    JS: scripts.sort().map((file) => read("js", file)).join("\n"),
+  };
+  return read("report.html").replace(/<!--VERNIER:([A-Z]+)-->/g, (_, name) => parts[name]);
+}
+
+/** Pages to check: file, and whether it must have plots. */
+function sample_pages(folder) {
+  const sample = fs.readFileSync(path.join(here, "report_sample.json"), "utf8");
+  const full = JSON.parse(sample);
+  const study = full.study;
+  const made = {
+    "sample": [sample, true],
+    "sample-without-plotly": [sample, false],
+    "title-only": [JSON.stringify({ title: "Only a </script><b>title</b>" }), true],
+    "rig-only": [JSON.stringify({ title: "A rig", rig: bare_rig(full.rig) }), true],
+    "one-cell": [JSON.stringify({ ...full, view: undefined, rig: undefined, study: { ...study,
+      sweep: null, world_ceiling: null, comparisons: [],
+      cells: [bare_cell(study.cells[2])] } }), true],
+    "no-sweep": [JSON.stringify({ title: "Methods", study: { ...study, sweep: null } }), true],
+    "sweep-with-zero": [JSON.stringify({ title: "Zero", study: with_zero(study) }), true],
+  };
+  return Object.entries(made).map(([name, [report, plotly]]) => {
+    const file = path.join(folder, `${name}.html`);
+    fs.writeFileSync(file, assemble(report, { plotly }));
+    return { file, plotly };
+  });
+}
+
+const bare_rig = (rig) => ({ ...rig, sigma_mvb: null, kind: "mvb", calibration: null,
+  residuals: null, values: rig.values.map(() => null) });
+
+const bare_cell = (cell) => ({ ...cell, success_interval_95: null, median_error_m: null,
+  cpu_ms_p95: null, world_ceiling: null });
+
+function with_zero(study) {
+  const cells = study.cells.map((cell, i) => i ? cell
+    : { ...cell, label: "ψ_c = 0", settings: { ...cell.settings, "sources.calibration": 0 } });
+  return { ...study, cells };
+}
+
+// Runs in the page.
+function inspect() {
+  const report = JSON.parse(document.getElementById("data").textContent);
+  const cells = report.study?.cells ?? [];
+  const wanted = [
+    [cells.length, "headline"], [cells.length > 1, "sweep"], [cells.length, "cells"],
+    [cells.length && report.study.comparisons?.length, "comparisons"],
+    [report.world || cells.some((cell) => cell.trial_list?.length), "plan"],
+    [report.view, "view"], [report.rig, "rig"], [report.program || report.study, "making"],
+  ].filter(([needed]) => needed).map(([, id]) => id);
+  const drawn = (place) => {
+    const traces = [...place.querySelectorAll(".scatterlayer .trace, .heatmaplayer .hm")];
+    return traces.length >= place.data.length && place.data.length > 0
+      && traces.every((trace) => trace.querySelector("path[d], image"));
+  };
+  const plots = [...document.querySelectorAll(".plot")];
+  document.querySelectorAll("details").forEach((closed) => { closed.open = true; });
+  const svg_text = [...document.querySelectorAll("svg text")].map((text) => text.textContent);
+  return {
+    missing: wanted.filter((id) => !document.querySelector(`#${id} h2`)?.textContent.trim()),
+    order: [...document.querySelectorAll("main > section")].map((one) => one.id).join() ===
+      wanted.join(),
+    plots: plots.length,
+    empty: plots.filter((place) => !place.data || !drawn(place))
+      .map((place) => place.getAttribute("aria-label")),
+    unnamed: plots.filter((place) => !place.getAttribute("aria-label")).length,
+    text: [document.title, document.body.innerText, ...svg_text].join("\n"),
+    too_wide: document.documentElement.scrollWidth - window.innerWidth,
+    notice: document.body.innerText.includes("plotly was not installed"),
+  };
+}
+
+async function check_page(browser, { file, plotly }, width, screenshots) {
+  const faults = [];
+  const address = pathToFileURL(path.resolve(file)).href;
+  const page = await browser.newPage({ viewport: { width, height: 900 } });
+  page.on("console", (m) => ["error", "warning"].includes(m.type()) && faults.push(m.text()));
+  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
+  page.on("request", (request) => {
+    const url = request.url();
+    if (url !== address && !/^(data|blob):/.test(url)) faults.push(`request of ${url}`);
+  });
+  await page.goto(address, { waitUntil: "load" });
+  await page.waitForTimeout(300);
+  const seen = await page.evaluate(inspect);
+  faults.push(...seen.missing.map((id) => `section ${id} has no heading`));
+  faults.push(...seen.empty.map((name) => `nothing drawn in "${name}"`));
+  if (!seen.order) faults.push("sections are not in their order");
+  if (seen.unnamed) faults.push(`${seen.unnamed} plots have no spoken name`);
+  if (!plotly && seen.plots) faults.push("a plot without plotly");
+  if (seen.notice === plotly) faults.push(`notice of missing plots: ${seen.notice}`);
+  if (seen.too_wide > 0) faults.push(`page is ${seen.too_wide} px wider than its window`);
+  for (const match of seen.text.matchAll(/^.*\b(NaN|undefined|null|Infinity|\[object)\b.*$/gm)) {
+    faults.push(`text "${match[0].trim().slice(0, 100)}"`);
+  }
+  if (plotly) faults.push(...await choose_another_cell(page));
+  if (screenshots) {
+    const name = `${path.basename(file, ".html")}-${width}.png`;
+    await page.screenshot({ path: path.join(screenshots, name), fullPage: true });
+  }
+  await page.close();
+  return { faults, plots: seen.plots };
+}
+
+/** Another cell must change the plan. */
+async function choose_another_cell(page) {
+  const button = page.locator("#plan .chooser button[aria-pressed=false]").last();
+  if (!await button.count()) return [];
+  const points = () => page.evaluate(() =>
+    JSON.stringify(document.querySelector("#plan .plot").data.map((trace) => trace.x)));
+  const before = await points();
+  const chosen = page.locator("#plan .chooser button[aria-pressed=true]");
+  const name = await chosen.textContent();
+  await button.click();
+  const same = await points() === before;
+  await page.locator("#plan .chooser button", { hasText: name }).first().click();
+  return same ? ["choosing another cell leaves the plan as it is"] : [];
+}
+
+function arguments_of(words) {
+  const at = words.indexOf("--screenshots");
+  const screenshots = at < 0 ? null : words.splice(at, 2)[1];
+  return { screenshots, files: words };
+}
+
+/** Pages from the program have plots where they carry plotly. */
+function given_page(file) {
+  return { file, plotly: fs.readFileSync(file, "utf8").includes("plotly.js") };
+}
+
+async function main() {
+  let chromium;
+  try {
+    ({ chromium } = require("playwright-core"));
+    require.resolve("plotly.js-cartesian-dist-min");
+  } catch {
+    console.log("skipped: run npm ci in cli/page");
+    return 77;
+  }
+  const { screenshots, files } = arguments_of(process.argv.slice(2));
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "vernier-page-"));
+  const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+  let failed = 0;
+  try {
+    for (const one of [...sample_pages(folder), ...files.map(given_page)]) {
+      for (const width of [1200, 700]) {
+        const { faults, plots } = await check_page(browser, one, width, screenshots);
+        console.log(`${faults.length ? "FAIL" : "ok"} ${path.basename(one.file)} at ${width} px, `
+          + `${plots} plots`);
+        faults.forEach((fault) => console.log(`     ${fault}`));
+        failed += faults.length > 0;
+      }
+    }
+  } finally {
+    await browser.close();
+    fs.rmSync(folder, { recursive: true });
+  }
+  return failed ? 1 : 0;
+}
+
+process.exitCode = await main();

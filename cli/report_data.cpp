@@ -63,12 +63,26 @@ Json depth_json(const RigEstimate& estimate) {
   return rows;
 }
 
-std::string replace_once(std::string page, const std::string& mark, const std::string& text) {
-  const std::size_t at = page.find(mark);
-  if (at == std::string::npos) {
-    throw Error("report page", "its template has no " + mark, "install the program again");
+/// Fills the template's marks in one pass, so that what is put in is never searched again.
+std::string fill(const std::string& page,
+                 const std::vector<std::pair<std::string, std::string>>& parts) {
+  std::string filled;
+  std::size_t at = 0;
+  while (at < page.size()) {
+    std::size_t next = page.size();
+    const std::pair<std::string, std::string>* which = nullptr;
+    for (const auto& part : parts) {
+      const std::size_t found = page.find(part.first, at);
+      if (found < next) {
+        next = found;
+        which = &part;
+      }
+    }
+    filled.append(page, at, next - at);
+    if (which) filled += which->second;
+    at = which ? next + which->first.size() : page.size();
   }
-  return page.replace(at, mark.size(), text);
+  return filled;
 }
 
 /// Scripts of the page in the order of their names.
@@ -229,9 +243,13 @@ Json report_view(const Study& study) {
 }
 
 std::string assemble_page(const fs::path& folder, const Json& data) {
-  std::string json = data.dump();
-  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) {
-    json.insert(at + 1, "\\");
+  std::string json;
+  for (const char c : data.dump()) {  // no "<" may end or open anything in the page
+    if (c == '<') {
+      json += "\\u003c";
+    } else {
+      json += c;
+    }
   }
   std::string plotly;
   for (const fs::path& file :
@@ -241,14 +259,12 @@ std::string assemble_page(const fs::path& folder, const Json& data) {
       plotly = "<script>" + read_whole(file) + "</script>";
     }
   }
-  std::string page = read_whole(folder / "report.html");
-  page = replace_once(page, "<!--VERNIER:CSS-->",
-                      "<style>" + read_whole(folder / "report.css") + "</style>");
-  page = replace_once(page, "<!--VERNIER:DATA-->",
-                      "<script type=\"application/json\" id=\"data\">" + json + "</script>");
-  const fs::path scripts = fs::is_directory(folder / "js") ? folder / "js" : folder;
-  page = replace_once(page, "<!--VERNIER:JS-->", "<script>" + scripts_in(scripts) + "</script>");
-  return replace_once(page, "<!--VERNIER:PLOTLY-->", plotly);
+  return fill(read_whole(folder / "report.html"),
+              {{"<!--VERNIER:CSS-->", read_whole(folder / "report.css")},
+               {"<!--VERNIER:PLOTLY-->", plotly},
+               {"<!--VERNIER:DATA-->",
+                "<script type=\"application/json\" id=\"data\">" + json + "</script>"},
+               {"<!--VERNIER:JS-->", scripts_in(folder / "js")}});
 }
 
 }  // namespace vernier::cli

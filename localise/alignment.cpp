@@ -11,6 +11,9 @@
 namespace vernier {
 namespace {
 
+/// Level lines whose heights differ by more are not the same.
+constexpr double level_height_m = 0.15;
+
 /// An upright line on the plan.
 struct Upright {
   Eigen::Vector2d at_m;
@@ -66,7 +69,7 @@ double agreement(const Upright& query,
 double agreement(const Level& query, const Level& node, double position_sigma_m) {
   const double sine =
       std::abs(query.direction.x() * node.direction.y() - query.direction.y() * node.direction.x());
-  if (sine > 0.35 || std::abs(query.height_m - node.height_m) > 0.15) return 0;
+  if (sine > 0.35 || std::abs(query.height_m - node.height_m) > level_height_m) return 0;
   const Eigen::Vector2d between = 0.5 * (node.a_m + node.b_m) - query.a_m;
   const double along = between.dot(query.direction);
   if (along < -0.5 * node.length_m || along > query.length_m + 0.5 * node.length_m) return 0;
@@ -75,84 +78,152 @@ double agreement(const Level& query, const Level& node, double position_sigma_m)
   return std::exp(-0.5 * across * across / (sigma * sigma) - 0.5 * sine * sine / 0.02);
 }
 
-double score(const Plan& query, const Plan& node, const PlanePose& T, double position_sigma_m) {
-  const Eigen::Rotation2Dd R(T.heading_rad);
-  const Eigen::Vector2d t(T.x_m, T.y_m);
-  double sum = 0;
-  for (const Upright& q : query.uprights) {
-    const Eigen::Vector2d at = R * q.at_m + t;
-    double best = 0;
-    for (const Upright& n : node.uprights) {
-      best = std::max(best, agreement(q, at, n, position_sigma_m));
+/// For every line of the query the lines of the node that it may come to lie on while the pose is
+/// refined: those near it at the start.
+class Neighbours {
+ public:
+  Neighbours(const Plan& query, const Plan& node, const PlanePose& T, double position_sigma_m)
+      : query_(query), node_(node), position_sigma_m_(position_sigma_m) {
+    constexpr double travel_m = 0.5;  // farther than refinement ever goes
+    const Eigen::Rotation2Dd R(T.heading_rad);
+    const Eigen::Vector2d t(T.x_m, T.y_m);
+    uprights_.resize(query.uprights.size());
+    for (std::size_t i = 0; i < query.uprights.size(); ++i) {
+      const Upright& q = query.uprights[i];
+      const Eigen::Vector2d at = R * q.at_m + t;
+      for (std::size_t k = 0; k < node.uprights.size(); ++k) {
+        const double sigma = position_sigma_m + 0.7 * (q.sigma_m + node.uprights[k].sigma_m);
+        const double reach = travel_m + 3 * sigma;
+        if ((node.uprights[k].at_m - at).squaredNorm() < reach * reach) {
+          uprights_[i].push_back(static_cast<int>(k));
+        }
+      }
     }
-    sum += best;
+    levels_.resize(query.levels.size());
+    for (std::size_t i = 0; i < query.levels.size(); ++i) {
+      const Level& q = query.levels[i];
+      const Eigen::Vector2d middle = R * (0.5 * (q.a_m + q.b_m)) + t;
+      for (std::size_t k = 0; k < node.levels.size(); ++k) {
+        const Level& n = node.levels[k];
+        const double sigma = position_sigma_m + 0.5 * (q.sigma_m + n.sigma_m);
+        const double reach = travel_m + 0.5 * (q.length_m + 2 * n.length_m) + 3 * sigma;
+        if (std::abs(q.height_m - n.height_m) <= level_height_m &&
+            (0.5 * (n.a_m + n.b_m) - middle).squaredNorm() < reach * reach) {
+          levels_[i].push_back(static_cast<int>(k));
+        }
+      }
+    }
   }
-  for (const Level& q : query.levels) {
-    const Level moved{R * q.a_m + t, R * q.b_m + t, R * q.direction,
-                      q.length_m,    q.height_m,    q.sigma_m};
-    double best = 0;
-    for (const Level& n : node.levels) best = std::max(best, agreement(moved, n, position_sigma_m));
-    sum += best;
+
+  /// Sum over the query's lines of their best agreement with a line of the node.
+  double score(const PlanePose& T) const {
+    const Eigen::Rotation2Dd R(T.heading_rad);
+    const Eigen::Vector2d t(T.x_m, T.y_m);
+    double sum = 0;
+    for (std::size_t i = 0; i < uprights_.size(); ++i) {
+      const Eigen::Vector2d at = R * query_.uprights[i].at_m + t;
+      double best = 0;
+      for (const int k : uprights_[i]) {
+        best =
+            std::max(best, agreement(query_.uprights[i], at, node_.uprights[k], position_sigma_m_));
+      }
+      sum += best;
+    }
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      const Level& q = query_.levels[i];
+      const Level moved{R * q.a_m + t, R * q.b_m + t, R * q.direction,
+                        q.length_m,    q.height_m,    q.sigma_m};
+      double best = 0;
+      for (const int k : levels_[i]) {
+        best = std::max(best, agreement(moved, node_.levels[k], position_sigma_m_));
+      }
+      sum += best;
+    }
+    return sum;
   }
-  return sum;
-}
+
+ private:
+  const Plan &query_, &node_;
+  double position_sigma_m_;
+  std::vector<std::vector<int>> uprights_, levels_;
+};
 
 /// Votes of pairs of upright lines for the shift, at one turn.
 class ShiftVotes {
  public:
-  explicit ShiftVotes(const AlignmentOptions& o)
+  ShiftVotes(const Plan& query, const Plan& node, const AlignmentOptions& o)
       : options_(o),
-        side_(2 * static_cast<int>(std::round(o.max_shift_m / o.shift_step_m)) + 1),
-        votes_(static_cast<std::size_t>(side_) * side_) {}
-
-  /// The shift with most votes at this turn, and its votes.
-  std::pair<Eigen::Vector2d, double> best(const Plan& query, const Plan& node, double turn) {
-    std::fill(votes_.begin(), votes_.end(), 0.0f);
-    const Eigen::Rotation2Dd R(turn);
+        half_(static_cast<int>(std::round(o.max_shift_m / o.shift_step_m))),
+        stride_(2 * half_ + 3),
+        votes_(static_cast<std::size_t>(stride_) * stride_) {
     for (const Upright& q : query.uprights) {
-      const Eigen::Vector2d at = R * q.at_m;
       for (const Upright& n : node.uprights) {
         const double shorter = std::min(q.high_m - q.low_m, n.high_m - n.low_m);
         if (overlap(q, n) < 0.3 * shorter) continue;
-        add(n.at_m - at, 1 / (1 + (q.sigma_m + n.sigma_m) / 0.15));
+        pairs_.push_back(
+            {q.at_m, n.at_m, static_cast<float>(1 / (1 + (q.sigma_m + n.sigma_m) / 0.15))});
       }
     }
-    const auto top = std::max_element(votes_.begin(), votes_.end()) - votes_.begin();
-    const double half = side_ / 2;
-    return {Eigen::Vector2d(top % side_ - half, top / side_ - half) * options_.shift_step_m,
-            votes_[top]};
+  }
+
+  /// The shift with most votes at this turn, and its votes; neighbouring cells count half.
+  std::pair<Eigen::Vector2d, double> best(double turn) {
+    std::fill(votes_.begin(), votes_.end(), 0.0f);
+    const double c = std::cos(turn) / options_.shift_step_m;
+    const double s = std::sin(turn) / options_.shift_step_m;
+    const double scale = 1 / options_.shift_step_m;
+    const double limit = half_ + 0.5;
+    for (const Pair& p : pairs_) {
+      const double x = scale * p.node.x() - (c * p.query.x() - s * p.query.y());
+      const double y = scale * p.node.y() - (s * p.query.x() + c * p.query.y());
+      if (!(std::abs(x) < limit && std::abs(y) < limit)) continue;
+      votes_[cell(static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y)))] += p.weight;
+    }
+    Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+    double most = 0;
+    for (int y = -half_; y <= half_; ++y) {
+      for (int x = -half_; x <= half_; ++x) {
+        float sum = votes_[cell(x, y)];
+        for (int dy = -1; dy <= 1; ++dy) {
+          const float* row = &votes_[cell(x - 1, y + dy)];
+          sum += row[0] + row[1] + row[2];
+        }
+        if (0.5 * sum > most) {
+          most = 0.5 * sum;
+          shift = Eigen::Vector2d(x, y) * options_.shift_step_m;
+        }
+      }
+    }
+    return {shift, most};
   }
 
  private:
-  void add(const Eigen::Vector2d& shift, double weight) {
-    const Eigen::Vector2d cell = shift / options_.shift_step_m;
-    const int x = static_cast<int>(std::lround(cell.x())) + side_ / 2;
-    const int y = static_cast<int>(std::lround(cell.y())) + side_ / 2;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (x + dx < 0 || y + dy < 0 || x + dx >= side_ || y + dy >= side_) continue;
-        votes_[(y + dy) * side_ + x + dx] += static_cast<float>(weight * (dx || dy ? 0.5 : 1.0));
-      }
-    }
+  struct Pair {
+    Eigen::Vector2d query, node;
+    float weight;
+  };
+  /// Cells have a border of one all around, always empty.
+  std::size_t cell(int x, int y) const {
+    return static_cast<std::size_t>(y + half_ + 1) * stride_ + x + half_ + 1;
   }
 
   AlignmentOptions options_;
-  int side_;
+  int half_, stride_;
   std::vector<float> votes_;
+  std::vector<Pair> pairs_;
 };
 
 /// Coordinate ascent with halving steps.
-PlanePose ascend(
-    const Plan& query, const Plan& node, PlanePose T, double position_sigma_m, double& best) {
+PlanePose ascend(const Neighbours& lines, PlanePose T, double& best) {
   std::array<double, 3> step{0.1, 0.1, 0.03};
-  best = score(query, node, T, position_sigma_m);
+  best = lines.score(T);
   for (int round = 0; round < 14; ++round) {
     bool better = false;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {-1.0, 1.0}) {
         PlanePose trial = T;
         (axis == 0 ? trial.x_m : axis == 1 ? trial.y_m : trial.heading_rad) += sign * step[axis];
-        const double value = score(query, node, trial, position_sigma_m);
+        const double value = lines.score(trial);
         if (value > best) {
           best = value;
           T = trial;
@@ -173,13 +244,13 @@ Alignment align(const PlaceView& query_view,
                 const PlaceView& node_view,
                 const AlignmentOptions& options) {
   const Plan query = plan_of(query_view), node = plan_of(node_view);
-  ShiftVotes votes(options);
+  ShiftVotes votes(query, node, options);
   PlanePose start;
   double most = 0;
   const int turns = static_cast<int>(std::round(options.max_turn_rad / options.turn_step_rad));
   for (int i = -turns; i <= turns; ++i) {
     const double turn = i * options.turn_step_rad;
-    const auto [shift, count] = votes.best(query, node, turn);
+    const auto [shift, count] = votes.best(turn);
     if (count > most) {
       most = count;
       start = {shift.x(), shift.y(), turn};
@@ -187,7 +258,8 @@ Alignment align(const PlaceView& query_view,
   }
   Alignment result;
   double matched = 0;
-  result.query_in_node = ascend(query, node, start, options.position_sigma_m, matched);
+  const Neighbours lines(query, node, start, options.position_sigma_m);
+  result.query_in_node = ascend(lines, start, matched);
   // A few lines more on both sides keep small views from scoring by chance.
   result.score = matched / std::sqrt((query.count() + 5) * (node.count() + 5));
   return result;

@@ -17,14 +17,14 @@ namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
 
-/// What line `other` enters into the histogram of a reference line: an angle, and one or two
+/// What line `other` enters into the histogram of a reference line: an angle, and up to four
 /// stretches of distance, each with its share of the line.
 struct Entry {
   double angle_rad = 0;
   int band = 0;
   double weight = 0;
   int stretches = 0;
-  double low[2] = {}, high[2] = {}, share[2] = {};
+  double low[4] = {}, high[4] = {}, share[4] = {};
 
   void add(double from, double to, double part) {
     low[stretches] = std::min(from, to);
@@ -122,8 +122,9 @@ std::vector<int> longest(const std::vector<double>& lengths, int most) {
   return order;
 }
 
-/// Distances from the line (p, unit u) of the points of a segment: they fall to the point nearest
-/// the line and rise from there, so the segment is cut there.
+/// Distances from the line (p, unit u) of the points of a segment: a hyperbola that falls to the
+/// point nearest the line and rises from there. Each branch is taken as two stretches in which the
+/// distance grows evenly.
 void add_stretches(const Eigen::Vector3d& p,
                    const Eigen::Vector3d& u,
                    const PlaceLine& other,
@@ -132,12 +133,22 @@ void add_stretches(const Eigen::Vector3d& p,
     const Eigen::Vector3d y = x - p;
     return y - u * u.dot(y);
   };
-  const Eigen::Vector3d a = across(other.a_m), b = across(other.b_m), d = b - a;
+  const Eigen::Vector3d a = across(other.a_m), d = across(other.b_m) - a;
   const double dd = d.squaredNorm();
-  const double nearest = dd > 1e-12 ? std::clamp(-a.dot(d) / dd, 0.0, 1.0) : 0.0;
-  const double least = (a + nearest * d).norm();
-  if (nearest > 0) entry.add(a.norm(), least, nearest);
-  if (nearest < 1) entry.add(least, b.norm(), 1 - nearest);
+  if (dd < 1e-12) {
+    entry.add(a.norm(), a.norm(), 1);
+    return;
+  }
+  const double nearest = std::clamp(-a.dot(d) / dd, 0.0, 1.0);
+  const auto branch = [&](double from, double to) {
+    if (!(to > from)) return;
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    const double at_middle = (a + middle * d).norm();
+    entry.add((a + from * d).norm(), at_middle, half);
+    entry.add(at_middle, (a + to * d).norm(), half);
+  };
+  branch(0, nearest);
+  branch(nearest, 1);
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/rooms.h"
+
+namespace vernier {
+namespace {
+
+TEST(Align, FindsAKnownMotion) {
+  const auto room = test::random_room(12);
+  const PlanePose truth{0.35, -0.2, 0.21};
+  const Alignment a = align({test::seen_from(room, truth), {}}, {room, {}});
+  EXPECT_LT(distance_m(a.query_in_node, truth), 0.01);
+  EXPECT_LT(std::abs(heading_difference_rad(a.query_in_node, truth)), 0.005);
+  EXPECT_GT(a.score, 0.7);
+}
+
+TEST(Align, AnotherRoomScoresLower) {
+  const auto room = test::random_room(12);
+  const double same = align({test::seen_from(room, {0.2, 0.1, 0.1}), {}}, {room, {}}).score;
+  const double other = align({test::random_room(13), {}}, {room, {}}).score;
+  EXPECT_LT(other, 0.6 * same);
+}
+
+TEST(Align, NothingInViewScoresZero) {
+  EXPECT_EQ(align({}, {test::random_room(1), {}}).score, 0);
+  EXPECT_EQ(align({}, {}).score, 0);
+}
+
+}  // namespace
+}  // namespace vernier

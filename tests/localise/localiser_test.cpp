@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/localiser.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/error.h"
+#include "localise/rank.h"
+#include "tests/support/rooms.h"
+
+namespace vernier {
+namespace {
+
+/// Ten rooms side by side, 10 m apart.
+TopologicalMap ten_rooms() {
+  std::vector<MapNode> nodes;
+  for (int i = 0; i < 10; ++i) {
+    nodes.push_back({{10.0 * i, 0, 0.3 * i}, {test::random_room(100 + i), {}}});
+  }
+  return make_map(std::move(nodes));
+}
+
+TEST(RankNodes, TheRoomItselfIsFirst) {
+  const TopologicalMap map = ten_rooms();
+  for (int i = 0; i < 10; ++i) {
+    const auto query = spatial_histograms(
+        test::seen_from(test::random_room(100 + i), {0.2, 0.1, 0.2}), map.options);
+    const auto ranked = rank_nodes(map, query);
+    EXPECT_EQ(ranked[0].node, i);
+    EXPECT_GT(ranked[0].score, ranked[1].score);
+    EXPECT_LE(ranked[0].score, 1 + 1e-5);
+  }
+}
+
+TEST(PghLocaliser, AnswersWithNodeAndMetricPose) {
+  const TopologicalMap map = ten_rooms();
+  const auto localiser = make_localiser("pgh", map);
+  const PlanePose step{0.3, -0.2, 0.15};
+  const LocalisationAnswer answer =
+      localiser->localise({test::seen_from(test::random_room(107), step), {}});
+  EXPECT_EQ(answer.status, LocalisationStatus::answered);
+  EXPECT_EQ(answer.node, 7);
+  EXPECT_LT(distance_m(answer.pose, compose(map.nodes[7].pose, step)), 0.02);
+  EXPECT_GT(answer.score, answer.runner_up);
+}
+
+TEST(PghLocaliser, AbstainsWithTooFewLines) {
+  const TopologicalMap map = ten_rooms();
+  const LocalisationAnswer answer =
+      make_localiser("pgh", map)->localise({test::random_room(100, 3), {}});
+  EXPECT_EQ(answer.status, LocalisationStatus::too_few_lines);
+  EXPECT_EQ(answer.node, -1);
+}
+
+TEST(BaselineLocaliser, FindsAnImageItHasSeen) {
+  std::vector<MapNode> nodes;
+  for (int i = 0; i < 6; ++i) {
+    MapNode node{{10.0 * i, 0, 0}, {}};
+    for (int k = 0; k < 25; ++k) {
+      Draws d({.seed = static_cast<std::uint64_t>(i), .feature = static_cast<std::uint32_t>(k)});
+      const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
+      node.view.image_lines.push_back(
+          {a, a + Eigen::Vector2d(d.uniform(-80, 80), d.uniform(-80, 80))});
+    }
+    nodes.push_back(node);
+  }
+  const TopologicalMap map = make_map(nodes);
+  const auto localiser = make_localiser("pgh_baseline", map);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(localiser->localise(map.nodes[i].view).node, i);
+}
+
+TEST(MakeLocaliser, UnknownMethodNamesTheKnown) {
+  const TopologicalMap map;
+  try {
+    make_localiser("sift", map);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "localiser \"sift\": there is no such method; use pgh or pgh_baseline");
+  }
+}
+
+}  // namespace
+}  // namespace vernier

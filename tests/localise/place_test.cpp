@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/place.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace vernier {
+namespace {
+
+TEST(PlanePoses, DifferencesAndComposition) {
+  const PlanePose a{1, 2, 3.1}, b{1, 2, -3.1};
+  EXPECT_NEAR(heading_difference_rad(a, b), 6.2 - 2 * std::numbers::pi, 1e-12);
+  const PlanePose c = compose({1, 0, std::numbers::pi / 2}, {2, 0, 0.1});
+  EXPECT_NEAR(c.x_m, 1, 1e-12);
+  EXPECT_NEAR(c.y_m, 2, 1e-12);
+}
+
+TEST(CameraMounts, AxesAndPitch) {
+  const Pose level = T_robot_camera({1.2, 0});
+  EXPECT_LT((level * Eigen::Vector3d(0, 0, 2) - Eigen::Vector3d(2, 0, 1.2)).norm(), 1e-14);
+  EXPECT_LT((level * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, -1, 1.2)).norm(), 1e-14);
+  const Pose down = T_robot_camera({1.2, 0.1});
+  EXPECT_LT((down * Eigen::Vector3d(0, 0, 1)).z(), 1.2);  // nose down looks lower
+}
+
+TEST(PlaceViews, NearlyUprightLinesBecomeUpright) {
+  // camera frame: x right, y down, z forward; ends' depths differ within their error
+  const SpaceSegment s{{0.5, -0.5, 3.0}, {0.5, 0.9, 3.1}, 0.05, true};
+  const StereoSegment image{{{400, 150}, {402, 390}}, {}, 0};
+  const PlaceView view = place_view({&s, 1}, {&image, 1}, {1.2, 0});
+  ASSERT_EQ(view.lines.size(), 1u);
+  EXPECT_EQ(view.lines[0].kind, LineKind::vertical);
+  EXPECT_EQ(view.lines[0].a_m.x(), view.lines[0].b_m.x());
+  EXPECT_EQ(view.lines[0].a_m.y(), view.lines[0].b_m.y());
+}
+
+TEST(PlaceViews, UnreliableAndFarLinesAreLeftOut) {
+  const SpaceSegment bad[] = {{{0, 0, 3}, {0, 1, 3}, 0.05, false},
+                              {{0, 0, 3}, {0, 1, 3}, 0.9, true},
+                              {{0, 0, 20}, {0, 1, 20}, 0.1, true}};
+  const StereoSegment images[3] = {};
+  const PlaceView view = place_view(bad, images, {});
+  EXPECT_TRUE(view.lines.empty());
+  EXPECT_EQ(view.image_lines.size(), 3u);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -39,7 +39,7 @@ std::vector<int> frames_of(const BoardObservations& observations);
 
 /// Sorts the views by frame, then camera, and checks that the observations can be calibrated from:
 /// sizes given, camera and corner indices in range, no camera twice in a frame, pixels finite and
-/// within twice the image, at least four corners a view. Throws Error naming frame, camera, corner.
+/// inside the image, at least four corners a view. Throws Error naming frame, camera, corner.
 void check_and_sort(BoardObservations& observations);
 
 }  // namespace vernier

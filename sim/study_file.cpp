@@ -72,7 +72,6 @@ double StudyReader::number_in(const toml::node& node,
 void StudyReader::read_study_section(const toml::table& root, StudyFile& study) const {
   const toml::node& node = required(root, "study", "the file");
   const toml::table& section = table(node, "[study]");
-  check_keys(section, {"trials", "seed", "protocol"}, "[study]");
   if (const auto* trials = section.get("trials")) {
     study.trials = static_cast<int>(integer(*trials, "study.trials"));
     if (study.trials < 1 || study.trials > 10'000'000) {
@@ -147,6 +146,7 @@ void StudyReader::read_map(const toml::table& table, ExperimentSettings& setting
 ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
   ExperimentSettings settings;
   const toml::table& study = *root.get("study")->as_table();
+  check_keys(study, {"trials", "seed", "protocol"}, "[study]");
   if (const auto* seed = study.get("seed")) {
     const auto value = integer(*seed, "study.seed");
     if (value < 0) fail(*seed, "study.seed is negative", "give 0 or more");
@@ -199,6 +199,15 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   });
   for (const auto& [position, key] : keys) {
     const toml::node& node = *sweep->get(key);
+    const std::string head = key.substr(0, key.find('.'));
+    const Keys sections{"study", "sources", "camera", "map", "localiser"};
+    if (key.find('.') != std::string::npos &&
+        (std::find(sections.begin(), sections.end(), head) == sections.end() ||
+         key == "study.trials")) {
+      fail(
+          node, "'" + key + "' cannot be swept",
+          "sweep a key of [sources], [camera], [map] or [localiser], study.protocol or study.seed");
+    }
     if (key.find('.') == std::string::npos || node.is_table()) {
       fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", key),
            "write \"sources.calibration\" = [0.1, 1, 10]");

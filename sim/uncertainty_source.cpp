@@ -43,33 +43,38 @@ class LateralShift : public UncertaintySource {
   std::string_view name() const override { return "lateral_shift_px"; }
 
   void apply(const SensingContext& context, SensedView& view) const override {
-    const auto centres = object_centres(context.rig, view);
+    const auto centres = object_centres(view);
     SensingContext any_frame = context;
     any_frame.frame = 0;
     for (SensedEdge& edge : view.edges) {
+      // judged before either eye's line moves
+      const double side = outward(context.rig, edge, centres.at(edge.truth.object));
       for (int eye = 0; eye < 2; ++eye) {
-        const auto stream =
-            static_cast<std::uint32_t>(mode_ == ShiftMode::independent ? eye + 1 : 0);
-        const auto segment = static_cast<std::uint32_t>(edge.truth.segment);
-        Draws of_edge = draws_of(any_frame, DrawSource::lateral_shift, segment, stream);
-        const double size = size_ * of_edge.uniform(0.5, 1.5);
-        double sign = of_edge.uniform() < 0.5 ? -1 : 1;
-        if (mode_ == ShiftMode::common && edge.truth.object > 0) {
-          // eye 3 of the stream belongs to surfaces
-          Draws of_surface = draws_of(any_frame, DrawSource::lateral_shift,
-                                      static_cast<std::uint32_t>(edge.truth.object), 3);
-          sign = (of_surface.uniform() < 0.5 ? -1 : 1) *
-                 outward(context.rig, edge, centres.at(edge.truth.object));
-        }
-        displace(context.rig, edge, eye, sign * size);
+        displace(context.rig, edge, eye, draw_shift(any_frame, edge, eye, side));
       }
     }
   }
 
  private:
+  /// Along the left normal of the image line, pixels; `side` is +1 where that points outward.
+  double draw_shift(const SensingContext& any_frame,
+                    const SensedEdge& edge,
+                    int eye,
+                    double side) const {
+    const bool independent = mode_ == ShiftMode::independent;
+    const auto stream = static_cast<std::uint32_t>(independent ? eye + 1 : 0);
+    Draws of_edge = draws_of(any_frame, DrawSource::lateral_shift,
+                             static_cast<std::uint32_t>(edge.truth.segment), stream);
+    const double size = size_ * of_edge.uniform(0.5, 1.5);
+    if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
+    // eye 3 of the stream belongs to surfaces
+    Draws of_surface = draws_of(any_frame, DrawSource::lateral_shift,
+                                static_cast<std::uint32_t>(edge.truth.object), 3);
+    return (of_surface.uniform() < 0.5 ? -size : size) * side;
+  }
+
   /// Mean of an object's seen end points: inside it, near enough.
-  static std::unordered_map<std::int32_t, Eigen::Vector3d> object_centres(const Rig&,
-                                                                          const SensedView& view) {
+  static std::unordered_map<std::int32_t, Eigen::Vector3d> object_centres(const SensedView& view) {
     std::unordered_map<std::int32_t, std::pair<Eigen::Vector3d, int>> sums;
     for (const SensedEdge& edge : view.edges) {
       auto& [sum, count] =

@@ -95,7 +95,7 @@ TEST(Office, WorkshopHasTheSizeOfTheMemo) {
   EXPECT_EQ(box.low_m, Vector3d(0, 0, 0));
   EXPECT_EQ(box.high_m, Vector3d(20, 15, 2.5));
   EXPECT_GE(workshop().segments.size(), 7500u);
-  EXPECT_LE(workshop().segments.size(), 9000u);
+  EXPECT_LE(workshop().segments.size(), 12000u);
   EXPECT_GE(workshop().corners.size(), 4000u);
   EXPECT_LT(format_world(make_office(1)).size(), 700000u);
 }

@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""The program from outside: outputs, exit codes, one-line complaints, nothing half-written.
+
+    cli_test.py PROGRAM [unittest's options]
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = None
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+IMAGES = pathlib.Path('/usr/share/doc/opencv-doc/examples/data')
+
+
+def vernier(*words, **more):
+    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, **more)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def works(self, *words, **more):
+        done = vernier(*words, **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def complains(self, *words, of, leaves=()):
+        """Exit code 2, one line on standard error that holds `of`, nothing on standard output."""
+        done = vernier(*words)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, '')
+        lines = done.stderr.strip().splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith('vernier: '), lines[0])
+        self.assertIn(of, lines[0])
+        for path in leaves:
+            self.assertFalse(path.exists(), f'{path} was left behind')
+        self.assertEqual(list(self.folder.glob('*.tmp')), [])
+
+
+class Help(Case):
+    def test_every_verb_has_help_with_an_example(self):
+        text = self.works('--help').stdout
+        self.assertIn('Example:', text)
+        listed = text.split('Subcommands:')[1].split('Example:')[0]
+        verbs = re.findall(r'^  (\w+) ', listed, re.M)
+        self.assertGreaterEqual(len(verbs), 8)
+        for verb in verbs:
+            self.assertIn('Example:', self.works(verb, '--help').stdout, verb)
+        for verb in ('make', 'info'):
+            self.assertIn('Example:', self.works('world', verb, '--help').stdout)
+
+    def test_version(self):
+        self.assertRegex(self.works('--version').stdout, r'^vernier \d+\.\d+\.\d+\n$')
+
+    def test_bad_usage(self):
+        self.complains('frobnicate', of='frobnicate')
+        self.complains('calibrate', of='--output')
+        self.complains('sample', 'nominal', '-n', '0', '-o', 'x.csv', of='count')
+
+    def test_doctor(self):
+        found = json.loads(self.works('doctor', '--json').stdout)['findings']
+        self.assertIn('Ceres', [f['what'] for f in found])
+
+
+@unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
+class RealPairs(Case):
+    def calibrate(self, *more):
+        return self.works('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                          IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '--square-m', '0.025',
+                          '-o', self.folder / 'rig.json', '--json', *more)
+
+    def test_bounds_of_the_real_set(self):
+        radial = json.loads(self.calibrate().stdout)
+        self.assertEqual(radial['views'], 13)
+        self.assertLessEqual(radial['rms_px'], 0.20)
+        self.assertLessEqual(json.loads(self.calibrate('--model', 'opencv5').stdout)['rms_px'], 0.16)
+
+    def test_detect_then_calibrate_is_the_same(self):
+        direct = json.loads(self.calibrate().stdout)
+        self.works('detect', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                   IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '-o', self.folder / 'corners.vnl')
+        again = self.works('calibrate', '--corners', self.folder / 'corners.vnl', '--board', '9x6',
+                           '--square-m', '0.025', '--size', '640x480', '-o',
+                           self.folder / 'again.json', '--json')
+        self.assertEqual(json.loads(again.stdout)['parameters'], direct['parameters'])
+
+    def test_rig_file_and_samples(self):
+        self.calibrate()
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertEqual((rig['format'], rig['version']), ('vernier/rig', 1))
+        self.assertEqual(rig['parameter_names'][:5],
+                         ['left.f_px', 'left.ax', 'left.ox_px', 'left.oy_px', 'left.k1'])
+        self.assertEqual(len(rig['covariance']['matrix']), 16)
+        done = self.works('sample', self.folder / 'rig.json', '--psi-c', '1', '-n', '100', '--seed',
+                          '1', '-o', self.folder / 'samples.csv')
+        self.assertIn('of this direction is the', done.stdout)
+        lines = (self.folder / 'samples.csv').read_text().splitlines()
+        self.assertEqual(lines[0].split(','), rig['parameter_names'])
+        self.assertEqual(len(lines), 101)
+        twice = self.folder / 'twice.csv'
+        self.works('sample', self.folder / 'rig.json', '--psi-c', '2', '-n', '100', '--seed', '1',
+                   '-o', twice)
+        for one, two in zip(lines[1:], twice.read_text().splitlines()[1:]):
+            one, two = float(one.split(',')[0]), float(two.split(',')[0])
+            self.assertAlmostEqual(two - rig['parameters'][0], 2 * (one - rig['parameters'][0]),
+                                   places=9)
+
+    def test_wrong_board_size(self):
+        self.complains('calibrate', '--left', IMAGES / 'left0[12].jpg', '--right',
+                       IMAGES / 'right0[12].jpg', '--board', '11x8', '--square-m', '0.025', '-o',
+                       self.folder / 'rig.json', of='no board of 11x8',
+                       leaves=[self.folder / 'rig.json'])
+
+
+class BadInput(Case):
+    def test_missing_images(self):
+        self.complains('calibrate', '--left', self.folder / 'l*.png', '--right',
+                       self.folder / 'r*.png', '--board', '9x6', '--square-m', '0.025', '-o',
+                       self.folder / 'rig.json', of='no file matches',
+                       leaves=[self.folder / 'rig.json'])
+
+    def test_an_image_that_is_none(self):
+        for name in ('left1.png', 'right1.png'):
+            (self.folder / name).write_bytes(b'\x89PNG\r\n but cut off')
+        self.complains('calibrate', '--left', self.folder / 'left*.png', '--right',
+                       self.folder / 'right*.png', '--board', '9x6', '--square-m', '0.025', '-o',
+                       self.folder / 'rig.json', of='not an image')
+
+    def test_observations_with_a_bad_line(self):
+        rows = ['frame,camera,row,col,X,Y,Z,qx,qy']
+        rows += [f'0,0,0,{i},{i},0,0,10,10' for i in range(35)] + ['0,0,1,0,0,1,0,nan,10']
+        (self.folder / 'o.csv').write_text('\n'.join(rows))
+        self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                       '-o', self.folder / 'rig.json', of='o.csv:37:')
+
+    def test_two_kinds_of_input(self):
+        self.complains('calibrate', '--corners', 'a', '--observations', 'b', '-o', 'c',
+                       of='exactly one kind')
+
+    def test_toml_typo(self):
+        (self.folder / 's.toml').write_text('[study]\ntrials = 10\nprotocoll = "path"\n')
+        self.complains('study', self.folder / 's.toml', '-o', self.folder / 'out',
+                       of="s.toml:3: unknown key 'protocoll' in [study]; did you mean 'protocol'?",
+                       leaves=[self.folder / 'out'])
+
+    def test_zero_length_segment(self):
+        (self.folder / 'w.world.toml').write_text(
+            'format = "vernier/world"\nversion = 1\n[loose]\nsegments = [\n'
+            '  [0,0,0, 1,0,0],\n  [2,0,0, 2,0,0],\n]\n')
+        self.complains('world', 'info', self.folder / 'w.world.toml', of='w.world.toml:6:')
+
+    def test_rig_without_covariance(self):
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        for key in ('covariance', 'covariance_mvb'):
+            del rig[key]
+        (self.folder / 'bare.json').write_text(json.dumps(rig))
+        self.complains('sample', self.folder / 'bare.json', '-n', '5', '-o',
+                       self.folder / 's.csv', of='the rig has no covariance',
+                       leaves=[self.folder / 's.csv'])
+        (self.folder / 's.toml').write_text('[study]\ntrials = 5\n[rig]\nfile = "bare.json"\n')
+        self.complains('study', self.folder / 's.toml', '-o', self.folder / 'out',
+                       of='the rig has no covariance')
+
+    def test_unknown_names(self):
+        self.complains('world', 'info', 'atlantis', of='shipped: workshop')
+        self.complains('sample', 'ideal', '-o', 'x.csv', of='shipped: nominal')
+        self.complains('simulate', '--pose', '1,2', of='is not 3 numbers')
+        self.complains('simulate', '--pose', '1,2,3', '--source', 'edge_los=1', of='edge_loss')
+        self.complains('report', self.folder, '-o', self.folder / 'r.html',
+                       of='is not the folder of a study')
+
+    def test_output_that_cannot_be_written(self):
+        self.complains('world', 'make', '-o', self.folder / 'no' / 'such' / 'w.toml',
+                       of='cannot be written')
+
+
+class Doubt(Case):
+    def test_large_residuals_exit_3_and_say_why(self):
+        """A board whose corners are 3 px off: a result, with exit code 3 and the reason."""
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        rows = ['frame,camera,row,col,X,Y,Z,qx,qy']
+        points = rig['evidence']['board']['points_m']
+        for view in rig['evidence']['observations']:
+            camera = 0 if view['camera'] == 'left' else 1
+            for i, ((x, y, z), (u, v)) in enumerate(zip(points, view['pixels_px'])):
+                off = 3 * (-1) ** (i + view['frame'])
+                rows.append(f"{view['frame']},{camera},{i // 9},{i % 9},{x},{y},{z},{u + off},{v}")
+        (self.folder / 'o.csv').write_text('\n'.join(rows))
+        done = vernier('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                       '-o', self.folder / 'rig.json', '--json')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('doubtful: residuals of', done.stderr)
+        self.assertIn('doubts', json.loads(done.stdout))
+        self.assertTrue((self.folder / 'rig.json').exists())
+
+
+class Simulation(Case):
+    def test_simulate_is_repeatable_and_none_is_exact(self):
+        words = ('simulate', '--pose', '10,7.5,0', '--seed', '4', '--json')
+        one, two = self.works(*words).stdout, self.works(*words).stdout
+        self.assertEqual(one, two)
+        exact = json.loads(self.works(*words, '--source', 'none').stdout)
+        self.assertEqual(exact['sensed']['left'], exact['true']['left'])
+        self.assertEqual(exact['sensed']['right'], exact['true']['right'])
+        self.assertGreater(len(exact['true']['left']), 50)
+
+    def test_world_make_is_repeatable(self):
+        for name in ('a', 'b'):
+            self.works('world', 'make', '--seed', '7', '-o', self.folder / name)
+        self.assertEqual((self.folder / 'a').read_bytes(), (self.folder / 'b').read_bytes())
+        info = json.loads(self.works('world', 'info', 'workshop', '--json').stdout)
+        self.assertGreaterEqual(info['segments'], 7000)
+        self.assertGreaterEqual(info['repeated_share'], 0.4)
+        self.assertEqual(info['size_m'], [20, 15, 2.5])
+
+
+class Study(Case):
+    def study(self, trials=60):
+        file = self.folder / 's.toml'
+        file.write_text(f'[study]\ntrials = {trials}\nprotocol = "near_path"\n[map]\n'
+                        'spacing_m = 2\n[sweep]\n"sources.calibration" = [0.1, 10]\n')
+        return file
+
+    @staticmethod
+    def untimed(text):
+        cells = json.loads(text)['cells']
+        return [{k: v for k, v in c.items() if '_ms_' not in k} for c in cells]
+
+    def test_json_contract_threads_and_merge(self):
+        file = self.study()
+        one = self.works('study', file, '-o', self.folder / 'one', '--threads', '1', '--json')
+        two = self.works('study', file, '-o', self.folder / 'two', '--threads', '2', '--json', '-q')
+        self.assertEqual(two.stderr, '')
+        self.assertEqual(self.untimed(one.stdout), self.untimed(two.stdout))
+        cell = json.loads(one.stdout)['cells'][1]
+        for key in ('settings', 'trials', 'success', 'success_interval_95', 'coverage',
+                    'success_when_answered', 'median_error_m', 'cpu_ms_mean', 'cpu_ms_median',
+                    'cpu_ms_p95', 'wall_ms_mean', 'protocol', 'world_ceiling'):
+            self.assertIn(key, cell)
+        self.assertEqual(cell['settings']['sources.calibration'], 10)
+        for i in range(2):
+            self.works('study', file, '-o', self.folder / f'part{i}', '--shard', f'{i}/2', '-q')
+        merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
+                            self.folder / 'merged', '--json')
+        self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
+
+    def test_a_merge_with_a_missing_shard_is_doubtful(self):
+        self.works('study', self.study(), '-o', self.folder / 'part0', '--shard', '0/2', '-q')
+        done = vernier('study', 'merge', self.folder / 'part0', '-o', self.folder / 'merged')
+        self.assertEqual(done.returncode, 3)
+        self.assertIn('blocks are missing', done.stderr)
+
+    def test_killed_and_resumed(self):
+        file = self.study(200)
+        running = subprocess.Popen([PROGRAM, 'study', file, '-o', self.folder / 'killed',
+                                    '--threads', '1'], stderr=subprocess.PIPE, text=True)
+        for line in running.stderr:
+            if re.search(r'blocks: [1-9]', line):
+                break
+        running.kill()
+        running.wait()
+        running.stderr.close()
+        resumed = self.works('study', file, '-o', self.folder / 'killed', '--json')
+        self.assertRegex(resumed.stderr, r'0 of [1-7],')  # at least one block was kept
+        whole = self.works('study', file, '-o', self.folder / 'whole', '--json')
+        self.assertEqual(self.untimed(resumed.stdout), self.untimed(whole.stdout))
+
+    def test_report_is_one_page_without_requests(self):
+        self.works('study', self.study(20), '-o', self.folder / 'out', '-q')
+        page = self.folder / 'report.html'
+        self.works('report', self.folder / 'out', '-o', page)
+        text = page.read_text()
+        self.assertNotIn('<!--VERNIER', text)
+        self.assertNotRegex(text, r'<(script|link|img)[^>]+(src|href)=')
+
+
+if __name__ == '__main__':
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

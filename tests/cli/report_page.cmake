@@ -1,0 +1,18 @@
+# Makes a page from a small study with the program itself and gives it to the browser test.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+file(WRITE ${FOLDER}/small.toml
+     "[study]\ntrials = 20\nprotocol = \"near_path\"\n[map]\nspacing_m = 2\n"
+     "[sweep]\n\"sources.calibration\" = [0.1, 10]\n")
+execute_process(COMMAND ${VERNIER} study ${FOLDER}/small.toml -o ${FOLDER}/study -q
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${VERNIER} report ${FOLDER}/study --calibration nominal
+                        -o ${FOLDER}/report.html
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html
+                RESULT_VARIABLE status)
+if(status EQUAL 77)
+  message("report page: skipped: no playwright-core (npm ci in cli/page) or no Chromium")
+elseif(NOT status EQUAL 0)
+  message(FATAL_ERROR "the page's test failed")
+endif()

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "datasets/shipped.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/atomic_file.h"
+#include "calib/rig_file.h"
+#include "sim/route.h"
+#include "sim/world_file.h"
+
+namespace vernier {
+namespace {
+
+const std::string folder = VERNIER_SOURCE_DIR "/datasets/";
+
+TEST(Workshop, IsWhatItsRecipeMakes) {
+  EXPECT_EQ(format_world(datasets::workshop()), read_whole(folder + "worlds/workshop.world.toml"));
+}
+
+TEST(Workshop, IsOfTheMemosSize) {
+  const World world = build_world(read_world(folder + "worlds/workshop.world.toml"));
+  EXPECT_GE(world.segments.size(), 7000u);
+  EXPECT_GE(world.corners.size(), 1000u);
+  EXPECT_GE(repeated_share(world), 0.4);
+  const WorldExtent box = extent(world);
+  EXPECT_LT((box.high_m - box.low_m - Eigen::Vector3d(20, 15, 2.5)).norm(), 1e-6);
+  EXPECT_GT(map_places(world.route, 0.5).size(), 150u);
+}
+
+// Its covariance comes from our own calibration, so a better solver may move it in the last digits:
+// the file is what studies read, the recipe must agree with it far within the errors it states.
+TEST(Nominal, IsWhatItsRecipeMakes) {
+  const RigEstimate shipped = read_rig(folder + "rigs/nominal.rig.json").estimate;
+  const RigEstimate made = datasets::nominal();
+  const Eigen::VectorXd sd = shipped.covariance->matrix.diagonal().cwiseSqrt();
+  EXPECT_LT(difference(made.rig, shipped.rig).cwiseQuotient(sd).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT(((made.covariance_mvb->array() - shipped.covariance_mvb->array()) /
+             (sd * sd.transpose()).array())
+                .abs()
+                .maxCoeff(),
+            1e-6);
+  EXPECT_NEAR(shipped.rig.cameras[0].f_px(), 525, 5);
+  EXPECT_NEAR(shipped.rig.T_camera_first[1].t.norm(), 0.2, 0.002);
+}
+
+}  // namespace
+}  // namespace vernier

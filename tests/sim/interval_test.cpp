@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/interval.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace vernier {
+namespace {
+
+// Known figures: 835 and 256 of 900.
+TEST(Wilson, KnownIntervals) {
+  const Interval high = wilson_interval(835, 900), low = wilson_interval(256, 900);
+  EXPECT_NEAR(high.low, 0.9090, 5e-5);
+  EXPECT_NEAR(high.high, 0.9429, 5e-5);
+  EXPECT_NEAR(low.low, 0.2559, 5e-5);
+  EXPECT_NEAR(low.high, 0.3148, 5e-5);
+}
+
+TEST(Wilson, StaysInsideZeroAndOne) {
+  EXPECT_EQ(wilson_interval(0, 0).high, 1);
+  EXPECT_NEAR(wilson_interval(0, 20).low, 0, 1e-15);
+  EXPECT_NEAR(wilson_interval(20, 20).high, 1, 1e-15);
+  EXPECT_GT(wilson_interval(20, 20).low, 0.8);
+}
+
+TEST(DesignEffect, OneForEvenClustersAndLargeForUnevenOnes) {
+  const std::vector<ClusterCount> even(6, {45, 50});
+  EXPECT_EQ(design_effect(even), 1);
+  const std::vector<ClusterCount> uneven{{50, 50}, {50, 50}, {50, 50}, {20, 50}};
+  EXPECT_GT(design_effect(uneven), 10);
+  EXPECT_EQ(design_effect(std::vector<ClusterCount>{{3, 5}}), 1);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/query_protocol.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calib/error.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+namespace {
+
+/// Least distance on the floor and in heading from the route, by dense sampling.
+std::pair<double, double> from_route(const PlanePose& query) {
+  const auto& route = test::small_office().route;
+  double nearest = 1e9, turn = 0;
+  for (double s = 0; s < route_length_m(route); s += 0.005) {
+    const PlanePose p = route_point(route, s).pose;
+    // on two legs at once the one of like heading counts
+    const double d = distance_m(p, query) + 1e-3 * std::abs(heading_difference_rad(p, query));
+    if (d < nearest) {
+      nearest = d;
+      turn = std::abs(heading_difference_rad(p, query));
+    }
+  }
+  return {nearest, turn};
+}
+
+TEST(QueryProtocol, QueriesStayInTheirSpan) {
+  for (const auto protocol : {QueryProtocol::near_path, QueryProtocol::path}) {
+    const ProtocolSpan reach = span(protocol);
+    for (std::uint32_t trial = 0; trial < 40; ++trial) {
+      const PlanePose q = draw_query(test::small_office_visibility(), protocol, 1.2, 5, trial);
+      const auto [distance, turn] = from_route(q);
+      EXPECT_LE(distance, reach.across_m + 0.02);
+      EXPECT_TRUE(is_free(test::small_office(), {q.x_m, q.y_m}, 0.12, 1.4));
+    }
+  }
+}
+
+TEST(QueryProtocol, TheSameTrialAsksInTheSamePlace) {
+  const auto draw = [](std::uint32_t trial) {
+    return draw_query(test::small_office_visibility(), QueryProtocol::path, 1.2, 5, trial);
+  };
+  EXPECT_EQ(draw(3).x_m, draw(3).x_m);
+  EXPECT_NE(draw(3).x_m, draw(4).x_m);
+}
+
+TEST(QueryProtocol, WallsAreNotFree) {
+  const World& world = test::small_office();
+  const Eigen::Vector2d outside(-0.05, 3);
+  EXPECT_FALSE(is_free(world, outside, 0.12, 1.4));
+  const Eigen::Vector2d on_route = world.route[0].points_m[0];
+  EXPECT_TRUE(is_free(world, on_route, 0.12, 1.4));
+}
+
+TEST(QueryProtocol, NamesRoundTrip) {
+  EXPECT_EQ(query_protocol("anywhere"), QueryProtocol::anywhere);
+  EXPECT_THROW(query_protocol("somewhere"), Error);
+}
+
+}  // namespace
+}  // namespace vernier

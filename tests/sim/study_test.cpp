@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "sim/study_store.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+namespace {
+
+class StudyRuns : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("vernier_study_" + std::to_string(::getpid()));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  static Study study(int trials, const std::string& sweep = "[0.1, 10]") {
+    Study s;
+    s.file = parse_study("[study]\ntrials = " + std::to_string(trials) +
+                             "\nprotocol = \"near_path\"\n[map]\nspacing_m = 1\n"
+                             "[sweep]\n\"sources.calibration\" = " +
+                             sweep + "\n",
+                         "s.toml");
+    s.world = test::small_office();
+    s.rig = test::nominal_rig();
+    s.world_fingerprint = "office";
+    s.rig_fingerprint = "nominal";
+    return s;
+  }
+
+  /// Everything but the timings.
+  static std::string words(const StudyResults& results) {
+    std::string text;
+    for (const CellResult& cell : results.cells) {
+      for (TrialResult t : cell.trials) {
+        char line[400];
+        std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %a %d %a\n", t.trial,
+                      static_cast<int>(t.status), t.truth.x_m, t.truth.heading_rad, t.answer.x_m,
+                      t.answer.y_m, t.answer.heading_rad, t.error_m, t.score, t.lines, t.runner_up);
+        text += line;
+      }
+    }
+    return text;
+  }
+
+  StudyResults run(const Study& s, const std::string& name, int threads, Shard shard = {}) {
+    run_study(s, {folder_ / name, threads, shard, {}});
+    return study_results(s, folder_ / name);
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
+  const Study s = study(120);
+  const std::string one = words(run(s, "one", 1)), two = words(run(s, "two", 2));
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
+  const Study s = study(120);
+  const std::string whole = words(run(s, "whole", 2));
+  run(s, "sharded", 1, {0, 3});
+  run(s, "sharded", 1, {2, 3});
+  EXPECT_LT(study_results(s, folder_ / "sharded").blocks_done, 6);
+  EXPECT_EQ(words(run(s, "sharded", 1, {1, 3})), whole);
+
+  // half the trials first, then all of them in the same folder
+  run(study(60), "resumed", 2);
+  int blocks_run = 0;
+  run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }});
+  EXPECT_EQ(blocks_run, 4);  // the first block of each cell was whole already
+  EXPECT_EQ(words(study_results(s, folder_ / "resumed")), whole);
+  run_study(s, {folder_ / "resumed", 2, {}, [&](int, int total) { EXPECT_EQ(total, 0); }});
+}
+
+TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
+  const StudyResults results = run(study(100), "paired", 2);
+  const CellResult &a = results.cells[0], &b = results.cells[1];
+  for (std::size_t i = 0; i < a.trials.size(); ++i) {
+    EXPECT_EQ(a.trials[i].truth.x_m, b.trials[i].truth.x_m);
+  }
+  const PairedComparison c = compare(a, b);
+  EXPECT_EQ(c.both + c.only_a + c.only_b + c.neither, 100);
+  const CellSummary small = summarise(a), large = summarise(b);
+  EXPECT_LT(small.median_error_m, large.median_error_m);  // psi_c 0.1 against 10
+  EXPECT_GE(small.success_interval_95.high, small.success);
+  EXPECT_LE(small.success_interval_95.low, small.success_interval_binomial_95.low + 1e-12);
+  EXPECT_EQ(small.trials, 100);
+  EXPECT_GT(small.cpu_ms_mean, 0);
+}
+
+TEST(McNemar, IsTheExactBinomialTail) {
+  CellResult a, b;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    TrialResult good, bad;
+    good.trial = bad.trial = i;
+    good.status = bad.status = LocalisationStatus::answered;
+    good.error_m = 0.1;
+    bad.error_m = 3;
+    a.trials.push_back(good);
+    b.trials.push_back(i < 2 ? good : bad);
+  }
+  const PairedComparison c = compare(a, b);
+  EXPECT_EQ(c.only_a, 8);
+  EXPECT_EQ(c.only_b, 0);
+  EXPECT_NEAR(c.mcnemar_p, 2.0 / 256, 1e-12);
+}
+
+}  // namespace
+}  // namespace vernier

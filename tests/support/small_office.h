@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "datasets/shipped.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+
+namespace vernier::test {
+
+/// An office of a few rooms, made once: small enough for unit tests, of another seed than any
+/// world that judges a method.
+inline const World& small_office() {
+  static const World world = [] {
+    OfficeOptions options;
+    options.size_m = {9, 10, 2.5};
+    return build_world(make_office(31, options));
+  }();
+  return world;
+}
+
+inline const Visibility& small_office_visibility() {
+  static const Visibility visibility(small_office());
+  return visibility;
+}
+
+inline const RigEstimate& nominal_rig() {
+  static const RigEstimate rig = datasets::nominal();
+  return rig;
+}
+
+}  // namespace vernier::test

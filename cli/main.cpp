@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
       "Calibrate, sample correlated errors, and send them through a simulated building."};
   app.name("vernier");
   app.set_version_flag("--version", "vernier " VERNIER_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "Example:\n"
       "  vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-m 0.025 "
@@ -31,7 +31,11 @@ int main(int argc, char** argv) {
   cli::add_report(app, session);
   try {
     app.parse(argc, argv);
-    if (session.action) session.action();
+    if (!session.action) {
+      fmt::print(stderr, "vernier: no verb given (see vernier --help)\n");
+      return static_cast<int>(cli::Exit::bad_input);
+    }
+    session.action();
   } catch (const CLI::Success& done) {  // --help, --version
     return app.exit(done);
   } catch (const CLI::ParseError& error) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/study_folder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -128,10 +129,12 @@ std::string study_table(const Study& study, const StudyResults& results) {
         100 * s.success, 100 * s.success_interval_95.low, 100 * s.success_interval_95.high,
         100 * s.coverage, 100 * cell.ceiling, s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
   }
-  text += fmt::format(
-      "protocol {}, world {}; success: within 1 m; interval: Wilson, clustered by "
-      "recorded map\n",
-      name(study.file.cells[0].experiment.protocol), study.world.name);
+  const auto& keys = study.file.sweep_keys;
+  const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
+  const auto protocol = name(study.file.cells[0].experiment.protocol);
+  text +=
+      fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
+                  swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
   if (results.blocks_done < results.blocks_total) {
     text += fmt::format("{} of {} blocks are there: run the study again to finish it\n",
                         results.blocks_done, results.blocks_total);

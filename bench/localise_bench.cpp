@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+// Comparing histograms: the kernel beside the plain loop of square roots that a direct reading of
+// the Bhattacharyya coefficient gives, and beside Eigen's matrix product; then a whole query.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "calib/random.h"
+#include "datasets/shipped.h"
+#include "localise/bhattacharyya.h"
+#include "localise/rank.h"
+#include "sim/experiment.h"
+
+namespace {
+
+using namespace vernier;
+
+/// 80 lines of a query against 80 of a node, 720 bins, as in the defaults.
+HistogramRows rows(std::uint64_t seed, int count) {
+  HistogramRows H(count, 720);
+  Draws draws({.seed = seed});
+  for (Eigen::Index i = 0; i < H.size(); ++i) H.data()[i] = static_cast<float>(draws.uniform());
+  for (int r = 0; r < count; ++r) H.row(r).normalize();
+  return H;
+}
+
+void kernel(benchmark::State& state) {
+  const HistogramRows Q = rows(1, 80), S = rows(2, 80);
+  for (auto _ : state) benchmark::DoNotOptimize(best_matches(Q, S));
+  state.SetLabel(std::string(target_name()));
+}
+
+void eigen_product(benchmark::State& state) {
+  const HistogramRows Q = rows(1, 80), S = rows(2, 80);
+  for (auto _ : state) {
+    const HistogramRows G = Q * S.transpose();
+    Eigen::VectorXf a = G.rowwise().maxCoeff(), b = G.colwise().maxCoeff();
+    benchmark::DoNotOptimize(a.data());
+    benchmark::DoNotOptimize(b.data());
+  }
+}
+
+void plain_square_roots(benchmark::State& state) {
+  const HistogramRows Q = rows(1, 80).cwiseAbs2(), S = rows(2, 80).cwiseAbs2();
+  for (auto _ : state) {
+    Eigen::VectorXf best = Eigen::VectorXf::Zero(80);
+    for (int q = 0; q < 80; ++q) {
+      for (int s = 0; s < 80; ++s) {
+        float sum = 0;
+        for (int k = 0; k < 720; ++k) sum += std::sqrt(Q(q, k) * S(s, k));
+        best[q] = std::max(best[q], sum);
+      }
+    }
+    benchmark::DoNotOptimize(best.data());
+  }
+}
+
+BENCHMARK(kernel)->Unit(benchmark::kMicrosecond);
+BENCHMARK(eigen_product)->Unit(benchmark::kMicrosecond);
+BENCHMARK(plain_square_roots)->Unit(benchmark::kMicrosecond);
+
+/// The shipped world, its map and ten queries.
+struct Scene {
+  World world = build_world(datasets::workshop());
+  Visibility visibility{world};
+  RigEstimate rig = datasets::nominal();
+  ExperimentSettings settings;
+  std::unique_ptr<LocalisationExperiment> experiment;
+  TopologicalMap map;
+  std::vector<PlaceView> queries;
+
+  Scene() {
+    settings.protocol = QueryProtocol::near_path;
+    auto looks = std::make_shared<MapLooks>(map_looks(visibility, rig.rig, settings));
+    experiment = std::make_unique<LocalisationExperiment>(visibility, rig, looks, settings);
+    map = experiment->record_map(0, rig.rig);
+    for (int i = 0; i < 10; ++i) queries.push_back(map.nodes[17 * i].view);
+  }
+};
+
+const Scene& scene() {
+  static const Scene scene;
+  return scene;
+}
+
+void histograms_of_a_view(benchmark::State& state) {
+  scene();
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(spatial_histograms(scene().queries[i++ % 10].lines));
+  }
+}
+
+void whole_query(benchmark::State& state, const char* method) {
+  const auto localiser = make_localiser(method, scene().map);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(localiser->localise(scene().queries[i++ % 10]));
+  }
+}
+
+BENCHMARK(histograms_of_a_view)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_query, pgh, "pgh")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_query, pgh_baseline, "pgh_baseline")->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+// What a simulated look costs, in parts.
+#include <benchmark/benchmark.h>
+
+#include "datasets/shipped.h"
+#include "sim/ceiling.h"
+#include "sim/route.h"
+#include "sim/sense.h"
+
+namespace {
+
+using namespace vernier;
+
+const World& world() {
+  static const World world = build_world(datasets::workshop());
+  return world;
+}
+const Visibility& visibility() {
+  static const Visibility visibility(world());
+  return visibility;
+}
+const RigEstimate& rig() {
+  static const RigEstimate rig = datasets::nominal();
+  return rig;
+}
+const std::vector<PlanePose>& places() {
+  static const std::vector<PlanePose> places = map_places(world().route, 0.5);
+  return places;
+}
+
+void hidden_lines_of_one_eye(benchmark::State& state) {
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Pose T = T_left_world(places()[i++ % places().size()], {});
+    benchmark::DoNotOptimize(visibility().visible_runs(rig().rig.cameras[0], T));
+  }
+}
+
+void look_of_both_eyes(benchmark::State& state) {
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(look(visibility(), rig().rig, places()[i++ % places().size()]));
+  }
+}
+
+void all_sources(benchmark::State& state) {
+  const Sensor sensor(rig().rig, {});
+  const Look seen = look(visibility(), rig().rig, places()[40]);
+  std::uint32_t trial = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, 1, trial++, 0));
+}
+
+void aliases_of_a_pose(benchmark::State& state) {
+  const AliasFinder finder(visibility(), rig().rig, {});
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(finder.aliases(places()[i++ % places().size()]));
+  }
+}
+
+BENCHMARK(hidden_lines_of_one_eye)->Unit(benchmark::kMillisecond);
+BENCHMARK(look_of_both_eyes)->Unit(benchmark::kMillisecond);
+BENCHMARK(all_sources)->Unit(benchmark::kMillisecond);
+BENCHMARK(aliases_of_a_pose)->Unit(benchmark::kMillisecond);
+
+}  // namespace

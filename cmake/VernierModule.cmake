@@ -16,6 +16,7 @@ function(vernier_module name)
                                          -ffp-contract=off
                                          # GCC 12 reports overlaps inside std::string that are none
                                          $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME vernier_${name}
                                            POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen ${ARG_DEPENDS})

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "calib/board_detection.h"
 #include "calib/calibrate.h"
@@ -51,7 +52,9 @@ TEST_P(OracleCase, ParametersAgreeWithMrcal) {
   for (Eigen::Index i = 0; i < ours.size(); ++i) {
     worst = std::max(worst, std::abs(ours[i] - theta[i]) / stdev[i]);
   }
-  RecordProperty("worst_difference_in_sigma", std::to_string(worst));
+  std::ostringstream text;
+  text << worst;
+  RecordProperty("worst_difference_in_sigma", text.str());
   EXPECT_LT(worst, 1e-4);
   EXPECT_NEAR(estimate.calibration->chi2, solution["cost_norm2"].get<double>(),
               1e-8 * solution["cost_norm2"].get<double>());

@@ -81,15 +81,17 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
-  const StudyResults results = run(study(100), "paired", 2);
-  const CellResult &a = results.cells[0], &b = results.cells[1];
+  const StudyResults results = run(study(100, "[0.1, 1, 10]"), "paired", 2);
+  const CellResult &a = results.cells[0], &b = results.cells[2];
   for (std::size_t i = 0; i < a.trials.size(); ++i) {
     EXPECT_EQ(a.trials[i].truth.x_m, b.trials[i].truth.x_m);
   }
   const PairedComparison c = compare(a, b);
   EXPECT_EQ(c.both + c.only_a + c.only_b + c.neither, 100);
   const CellSummary small = summarise(a), large = summarise(b);
-  EXPECT_LT(small.median_error_m, large.median_error_m);  // psi_c 0.1 against 10
+  const double middle = summarise(results.cells[1]).median_error_m;
+  EXPECT_LT(small.median_error_m, middle);  // psi_c 0.1, 1, 10
+  EXPECT_LT(middle, large.median_error_m);
   EXPECT_GE(small.success_interval_95.high, small.success);
   EXPECT_LE(small.success_interval_95.low, small.success_interval_binomial_95.low + 1e-12);
   EXPECT_EQ(small.trials, 100);

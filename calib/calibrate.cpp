@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/small_sample_covariance.h"
 #include "calib/view_linearisation.h"
 
 namespace vernier {
@@ -125,16 +126,31 @@ ceres::Solver::Options solver_options(int max_iterations) {
   return options;
 }
 
-std::vector<std::string> warnings_of(const RigEstimate& estimate, std::size_t frames) {
-  std::vector<std::string> warnings;
-  if (estimate.covariance->kind == CovarianceKind::mvb) {
-    warnings.push_back(
-        fmt::format("covariance is the minimum variance bound: {} frames are too few for the "
-                    "clustered one, and "
-                    "on real images the bound is too small (about 2 times on 13 pairs)",
-                    frames));
+constexpr double frames_per_parameter = 3;  // enough for the clustered covariance as it is
+
+/// The covariance to be sampled, from the normal equations in units of one pixel.
+Covariance honest_covariance(const ReducedNormalEquations& unit,
+                             const Eigen::MatrixXd& unit_bound,
+                             const std::vector<std::string>& names) {
+  const auto frames = static_cast<double>(unit.scores.cols());
+  if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
+    return {CovarianceKind::clustered, names,
+            clustered_sandwich(unit, unit_bound, frames_per_parameter)};
   }
-  return warnings;
+  return {CovarianceKind::jackknife, names, small_sample_covariance(unit, unit_bound).matrix};
+}
+
+/// What the two covariances together say.
+std::vector<std::string> warnings_of(const RigEstimate& estimate) {
+  const Eigen::ArrayXd ratio =
+      (estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array())
+          .sqrt();
+  const double typical = std::exp(ratio.log().mean());
+  if (typical < 1.3) return {};
+  return {
+      fmt::format("residuals of one view depend on each other: standard deviations are {:.1f} "
+                  "times those of the minimum variance bound",
+                  typical)};
 }
 
 }  // namespace
@@ -194,13 +210,10 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   const std::vector<std::string> names = parameter_names(state.rig);
   const Eigen::MatrixXd unit_bound = minimum_variance_bound(unit, names);
   estimate.covariance_mvb = variance * unit_bound;
-  estimate.covariance = Covariance{CovarianceKind::mvb, names, *estimate.covariance_mvb};
-  constexpr double frames_per_parameter = 3;
-  if (static_cast<double>(frames) >= frames_per_parameter * static_cast<double>(names.size())) {
-    estimate.covariance->kind = CovarianceKind::clustered;
-    estimate.covariance->matrix = clustered_sandwich(unit, unit_bound, frames_per_parameter);
-  }
-  summary.warnings = warnings_of(estimate, frames);
+  estimate.covariance = options.white_noise
+                            ? Covariance{CovarianceKind::mvb, names, *estimate.covariance_mvb}
+                            : honest_covariance(unit, unit_bound, names);
+  summary.warnings = warnings_of(estimate);
   estimate.calibration = std::move(summary);
   estimate.evidence =
       CalibrationEvidence{std::move(observations), state.frames, state.T_first_board};

@@ -79,9 +79,10 @@ ReducedNormalEquations reduced_normal_equations(const BoardObservations& observa
     }
     const Eigen::Matrix<double, 6, Eigen::Dynamic> half =
         C.matrixL().solve(blocks.B.transpose());  // L⁻¹ BᵀA
-    result.information += blocks.A;
     result.held_poses_diagonal += blocks.A.diagonal();
-    result.information.noalias() -= half.transpose() * half;
+    result.frame_information.emplace_back(blocks.A);
+    result.frame_information.back().noalias() -= half.transpose() * half;
+    result.information += result.frame_information.back();
     const Eigen::Matrix<double, 6, 1> half_b = C.matrixL().solve(blocks.b);
     result.scores.col(f) = blocks.a - half.transpose() * half_b;
     result.chi2 += result.frame_chi2[f];

@@ -21,9 +21,10 @@ struct ReducedNormalEquations {
   Eigen::MatrixXd information;          ///< S, parameters x parameters
   Eigen::VectorXd held_poses_diagonal;  ///< diagonal of Σ AᵀA: the information were poses known
   Eigen::MatrixXd scores;               ///< parameters x frames, one g_f a column
-  double chi2 = 0;                      ///< Σ r²
-  std::vector<double> frame_chi2;       ///< one a frame
-  int residuals = 0;                    ///< count of r
+  std::vector<Eigen::MatrixXd> frame_information;  ///< each frame's term of S
+  double chi2 = 0;                                 ///< Σ r²
+  std::vector<double> frame_chi2;                  ///< one a frame
+  int residuals = 0;                               ///< count of r
 };
 
 /// `pixel_sigma_px` is the standard deviation of a pixel coordinate.

@@ -36,7 +36,7 @@ inline RigEstimate nominal() {
   const SimulatedBoard board =
       simulate_board(nominal_truth(), {9, 6, 0.04}, 1, 0,
                      {.frames = 20, .pixel_sigma_px = 0.2, .distance_m = 0.8});
-  return calibrate(board.observations, {.pixel_sigma_px = 0.2});
+  return calibrate(board.observations, {.pixel_sigma_px = 0.2, .white_noise = true});
 }
 
 }  // namespace vernier::datasets

@@ -60,6 +60,18 @@ TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
   EXPECT_LT(ratio.maxCoeff(), 2.0);
 }
 
+TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 6, 0, {.frames = 13});
+  const RigEstimate estimate = calibrate(board.observations);
+  EXPECT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
+  const Eigen::ArrayXd ratio =
+      estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array();
+  EXPECT_GT(ratio.minCoeff(), 0.6);  // white noise
+  EXPECT_LT(ratio.maxCoeff(), 1.7);
+  EXPECT_EQ(calibrate(board.observations, {.white_noise = true}).covariance->kind,
+            CovarianceKind::mvb);
+}
+
 TEST(Calibrate, TwoViewsAreTooFew) {
   auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
   std::erase_if(observations.views, [](const BoardView& view) { return view.frame > 1; });

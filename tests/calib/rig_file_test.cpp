@@ -77,7 +77,7 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
   EXPECT_NE(complaint_of(replaced(text, "\"parameters\":[", "\"parameters\":[7,"))
                 .find("rig.json: parameters: 17 values for 16 names"),
             std::string::npos);
-  EXPECT_NE(complaint_of(replaced(text, "\"kind\":\"mvb\"", "\"kind\":\"best\""))
+  EXPECT_NE(complaint_of(replaced(text, "\"kind\":\"jackknife\"", "\"kind\":\"best\""))
                 .find("covariance kind \"best\""),
             std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <array>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -72,8 +73,40 @@ bool find_corners(const cv::Mat& grey, const Chessboard& board, std::vector<cv::
                                      cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
 }
 
-void add_detection(const BoardDetection& found, int camera, PairDetections& result) {
-  auto& size = result.observations.size_px[camera];
+BoardView view_of(const BoardDetection& found) {
+  BoardView view;
+  view.frame = parse_image_name(found.image).frame;
+  view.camera = found.camera;
+  view.image = found.image.string();  // with its folder, which may be what tells the cameras apart
+  view.pixels_px = found.corners_px;
+  for (std::size_t i = 0; i < found.corners_px.size(); ++i) view.ids.push_back(static_cast<int>(i));
+  return view;
+}
+
+/// Throws Error where no frame has an image of both cameras.
+void check_frames_pair(const std::array<std::vector<std::filesystem::path>, 2>& images,
+                       const std::string& place) {
+  std::array<std::vector<int>, 2> frames;
+  for (int camera = 0; camera < 2; ++camera) {
+    for (const auto& image : images[camera]) {
+      frames[camera].push_back(parse_image_name(image).frame);
+    }
+  }
+  const auto on_right = [&](int frame) {
+    return std::find(frames[1].begin(), frames[1].end(), frame) != frames[1].end();
+  };
+  if (std::none_of(frames[0].begin(), frames[0].end(), on_right)) {
+    throw Error(place,
+                "no left image has the frame number of a right one (left: " +
+                    std::to_string(frames[0].front()) + " in " + images[0].front().string() +
+                    ", right: " + std::to_string(frames[1].front()) + " in " +
+                    images[1].front().string() + ")",
+                "the last number in a name is the frame; give a pair the same");
+  }
+}
+
+void add_detection(const BoardDetection& found, PairDetections& result) {
+  auto& size = result.observations.size_px[found.camera];
   if (size == Eigen::Vector2i::Zero()) size = found.size_px;
   if (size != found.size_px) {
     throw Error(found.image.string(),
@@ -86,13 +119,7 @@ void add_detection(const BoardDetection& found, int camera, PairDetections& resu
     result.refused.push_back(found);
     return;
   }
-  BoardView view;
-  view.frame = parse_image_name(found.image).frame;
-  view.camera = camera;
-  view.image = found.image.filename().string();
-  view.pixels_px = found.corners_px;
-  for (std::size_t i = 0; i < found.corners_px.size(); ++i) view.ids.push_back(static_cast<int>(i));
-  result.observations.views.push_back(std::move(view));
+  result.observations.views.push_back(view_of(found));
 }
 
 }  // namespace
@@ -107,7 +134,7 @@ BoardDetection detect_board(const std::filesystem::path& image, const Chessboard
   if (grey.empty()) {
     throw Error(image.string(), "is not an image that can be read", "check the file");
   }
-  BoardDetection result{image, {grey.cols, grey.rows}, {}, ""};
+  BoardDetection result{image, {grey.cols, grey.rows}, {}, "", 0};
   std::vector<cv::Point2f> corners;
   if (!find_corners(grey, board, corners)) {
     result.reason =
@@ -138,12 +165,16 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
 PairDetections detect_pairs(const std::string& left_pattern,
                             const std::string& right_pattern,
                             const Chessboard& board) {
+  const std::array images{matching_files(left_pattern), matching_files(right_pattern)};
+  check_frames_pair(images, left_pattern + " and " + right_pattern);
   PairDetections result;
   result.observations.target_m = target_points(board);
   result.observations.size_px.assign(2, Eigen::Vector2i::Zero());
   for (int camera = 0; camera < 2; ++camera) {
-    for (const auto& image : matching_files(camera == 0 ? left_pattern : right_pattern)) {
-      add_detection(detect_board(image, board), camera, result);
+    for (const auto& image : images[camera]) {
+      BoardDetection found = detect_board(image, board);
+      found.camera = camera;
+      add_detection(found, result);
     }
   }
   if (result.observations.views.empty()) {
@@ -154,6 +185,14 @@ PairDetections detect_pairs(const std::string& left_pattern,
   }
   check_and_sort(result.observations);
   return result;
+}
+
+void write_corners(const PairDetections& found,
+                   const Chessboard& board,
+                   const std::filesystem::path& file) {
+  BoardObservations all = found.observations;
+  for (const BoardDetection& image : found.refused) all.views.push_back(view_of(image));
+  write_corners(all, board, file);
 }
 
 }  // namespace vernier

@@ -17,6 +17,7 @@ struct BoardDetection {
   Eigen::Vector2i size_px{0, 0};
   std::vector<Eigen::Vector2d> corners_px;  ///< row by row; empty where no board was found
   std::string reason;                       ///< why not, where not
+  int camera = 0;                           ///< of a pair: 0 left, 1 right
 };
 
 /// Finds a chessboard: OpenCV's two finders in turn, then always sub-pixel refinement by the
@@ -41,5 +42,10 @@ struct PairDetections {
 PairDetections detect_pairs(const std::string& left_pattern,
                             const std::string& right_pattern,
                             const Chessboard& board);
+
+/// A corners file of all the images, with a line of dashes for each that was refused.
+void write_corners(const PairDetections& found,
+                   const Chessboard& board,
+                   const std::filesystem::path& file);
 
 }  // namespace vernier

@@ -81,11 +81,12 @@ Eigen::Vector2d project(const Camera& camera,
       camera.model);
 }
 
-Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
+std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
   const double* a = camera.parameters.data();
+  if (!(a[0] > 0 && a[1] > 0)) return std::nullopt;
   const Eigen::Vector2d target((pixel[0] - a[2]) / (a[0] * a[1]), (pixel[1] - a[3]) / a[0]);
   return std::visit(
-      [&](auto m) -> Eigen::Vector3d {
+      [&](auto m) -> std::optional<Eigen::Vector3d> {
         Eigen::Vector2d x = target;
         auto d = m.distort(x, a + core_parameter_count);
         for (int iteration = 0; iteration < 50; ++iteration) {
@@ -93,25 +94,28 @@ Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
           if (!(miss.norm() > 1e-15 * (1 + target.norm()))) break;
           Eigen::Vector2d step = d.by_x.inverse() * miss;
           // Halve the step until it helps, so that a start beyond the fold cannot run away.
-          double previous = miss.norm();
           for (int halving = 0; halving < 20; ++halving, step *= 0.5) {
             d = m.distort(x - step, a + core_parameter_count);
-            if ((d.x - target).norm() < previous) break;
+            if ((d.x - target).norm() < miss.norm()) break;
           }
           x -= step;
           if (step.norm() < 1e-16 * (1 + x.norm())) break;
         }
         d = m.distort(x, a + core_parameter_count);
-        if (!((d.x - target).norm() < 1e-10) || d.by_x.determinant() <= 0 || d.by_x.trace() <= 0) {
-          throw Error("camera \"" + camera.name + "\"",
-                      "its distortion cannot be inverted at pixel (" + std::to_string(pixel[0]) +
-                          ", " + std::to_string(pixel[1]) + ")",
-                      "the coefficients fold the image there: calibrate with corners that reach "
-                      "the image's edge, or use a model with fewer coefficients");
-        }
-        return {x[0], x[1], 1};
+        const bool found = (d.x - target).norm() < 1e-10;
+        if (!found || d.by_x.determinant() <= 0 || d.by_x.trace() <= 0) return std::nullopt;
+        return Eigen::Vector3d(x[0], x[1], 1);
       },
       camera.model);
+}
+
+Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
+  if (const auto ray = try_unproject(camera, pixel)) return *ray;
+  throw Error("camera \"" + camera.name + "\"",
+              "its distortion cannot be inverted at pixel (" + std::to_string(pixel[0]) + ", " +
+                  std::to_string(pixel[1]) + ")",
+              "the coefficients fold the image there: calibrate with corners that reach the "
+              "image's edge, or use a model with fewer coefficients");
 }
 
 bool in_image(const Camera& camera, const Eigen::Vector2d& pixel) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -63,6 +64,9 @@ Eigen::Vector2d project(const Camera& camera,
 /// The ray (x / z, y / z, 1) that projects to `pixel`: Newton's method on the distortion, to
 /// rounding. Throws Error where the model cannot be inverted (beyond its fold).
 Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel);
+
+/// The same, or nothing where the model cannot be inverted.
+std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::Vector2d& pixel);
 
 /// Whether the pixel lies in the image: within half a pixel of the outermost pixel centres.
 bool in_image(const Camera& camera, const Eigen::Vector2d& pixel);

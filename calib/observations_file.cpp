@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <sstream>
+#include <set>
+#include <tuple>
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
@@ -65,16 +66,13 @@ Number parse_number(std::string_view field, const std::string& place, std::strin
 }
 
 /// One size stands for every camera.
-void share_size(BoardObservations& observations) {
-  std::size_t cameras = observations.size_px.size();
-  for (const BoardView& view : observations.views) {
-    cameras = std::max<std::size_t>(cameras, view.camera + 1);
-  }
+void share_size(BoardObservations& observations, std::size_t cameras) {
   if (observations.size_px.size() == 1) {
     observations.size_px.resize(cameras, Eigen::Vector2i(observations.size_px[0]));
   }
 }
 
+constexpr int camera_limit = 1024;  // a wrong column read as the camera must not reserve memory
 constexpr std::string_view observation_header = "frame,camera,row,col,X,Y,Z,qx,qy";
 
 struct CornerRow {
@@ -99,7 +97,112 @@ CornerRow parse_row(std::string_view line, const std::string& place) {
   if (!r.target_m.allFinite() || !r.pixel_px.allFinite()) {
     throw Error(place, "a coordinate is not finite", "correct or remove the line");
   }
+  if (r.frame < 0) {
+    throw Error(place, fmt::format("frame is {}, below 0", r.frame), "number frames from 0");
+  }
+  if (r.camera < 0 || r.camera >= camera_limit) {
+    throw Error(place, fmt::format("camera is {}, not within 0 to {}", r.camera, camera_limit - 1),
+                "number cameras from 0");
+  }
   return r;
+}
+
+/// What a file of observations has said so far.
+class ObservationRows {
+ public:
+  void add(const CornerRow& row, const std::string& place) {
+    const int id = id_of(row, place);
+    if (!seen_.insert({row.frame, row.camera, id}).second) {
+      throw Error(place,
+                  fmt::format("frame {}, camera {}, corner (row {}, col {}) appears a second time",
+                              row.frame, row.camera, row.row, row.col),
+                  "remove one of the lines");
+    }
+    BoardView& view = views_[{row.frame, row.camera}];
+    view.frame = row.frame;
+    view.camera = row.camera;
+    view.ids.push_back(id);
+    view.pixels_px.push_back(row.pixel_px);
+    cameras_ = std::max<std::size_t>(cameras_, row.camera + 1);
+  }
+
+  BoardObservations take(const std::vector<Eigen::Vector2i>& size_px) {
+    BoardObservations observations{size_px, std::move(target_m_), {}};
+    for (auto& [key, view] : views_) observations.views.push_back(std::move(view));
+    share_size(observations, cameras_);
+    return observations;
+  }
+
+ private:
+  int id_of(const CornerRow& row, const std::string& place) {
+    const auto [id, is_new] =
+        ids_.try_emplace({row.row, row.col}, static_cast<int>(target_m_.size()));
+    if (is_new) {
+      target_m_.push_back(row.target_m);
+    } else if (target_m_[id->second] != row.target_m) {
+      throw Error(place,
+                  fmt::format("corner (row {}, col {}) has another place on the target than before",
+                              row.row, row.col),
+                  "one target a file");
+    }
+    return id->second;
+  }
+
+  std::vector<Eigen::Vector3d> target_m_;
+  std::map<std::pair<int, int>, int> ids_;  // by row and column
+  std::map<std::pair<int, int>, BoardView> views_;
+  std::set<std::tuple<int, int, int>> seen_;  // frame, camera, corner
+  std::size_t cameras_ = 0;
+};
+
+/// The images' cameras in order of first appearance, which is how a corners file numbers them.
+class CameraOrder {
+ public:
+  int index(const std::string& camera) {
+    const auto at = std::find(cameras_.begin(), cameras_.end(), camera);
+    const auto index = at - cameras_.begin();
+    if (at == cameras_.end()) cameras_.push_back(camera);
+    return static_cast<int>(index);
+  }
+  std::size_t size() const { return cameras_.size(); }
+
+ private:
+  std::vector<std::string> cameras_;
+};
+
+/// Throws Error for an image whose name read_corners would not take for the same image.
+void check_image_name(const BoardView& view, CameraOrder& cameras) {
+  if (view.image.empty()) {
+    throw Error(fmt::format("frame {}, camera {}", view.frame, view.camera),
+                "its image has no name", "corners files need one");
+  }
+  if (view.image.find_first_of(" \t\r\n") != std::string::npos || view.image.front() == '#') {
+    throw Error(view.image, "a corners file cannot hold a name with blanks or a leading #",
+                "rename the image or its folder");
+  }
+  const int camera = cameras.index(parse_image_name(view.image).camera);
+  if (camera != view.camera) {
+    throw Error(
+        view.image,
+        fmt::format("by its name it would be read as camera {}, not {}", camera, view.camera),
+        "name one camera's images alike but for their last number, and each camera's "
+        "differently, like left01.png, right01.png");
+  }
+}
+
+void check_counts(const std::map<std::string, int>& corners_of,
+                  const Chessboard& board,
+                  const std::filesystem::path& file) {
+  const int corners = board.columns * board.rows;
+  for (const auto& [image, read] : corners_of) {
+    // An image without a board has one line of dashes.
+    if (read != corners && read != 1) {
+      throw Error(file.string(),
+                  fmt::format("{} has {} corners, the board {}x{} has {}", image, read,
+                              board.columns, board.rows, corners),
+                  "check --board: it counts inner corners");
+    }
+  }
 }
 
 }  // namespace
@@ -112,34 +215,14 @@ BoardObservations read_observations(const std::filesystem::path& file,
     throw Error(file.string() + ":1", "the first line is not the header of an observations file",
                 fmt::format("it must begin with {}", observation_header));
   }
-  BoardObservations observations;
-  observations.size_px = size_px;
-  std::map<std::pair<int, int>, int> id_of;
-  std::map<std::pair<int, int>, BoardView> views;
+  ObservationRows rows;
   while (lines.next(line)) {
-    if (line.empty()) continue;
-    const CornerRow row = parse_row(line, lines.place());
-    const auto [id, is_new] =
-        id_of.try_emplace({row.row, row.col}, static_cast<int>(observations.target_m.size()));
-    if (is_new) {
-      observations.target_m.push_back(row.target_m);
-    } else if (observations.target_m[id->second] != row.target_m) {
-      throw Error(lines.place(),
-                  fmt::format("corner (row {}, col {}) has another place on the target than before",
-                              row.row, row.col),
-                  "one target a file");
-    }
-    BoardView& view = views[{row.frame, row.camera}];
-    view.frame = row.frame;
-    view.camera = row.camera;
-    view.ids.push_back(id->second);
-    view.pixels_px.push_back(row.pixel_px);
+    if (!line.empty()) rows.add(parse_row(line, lines.place()), lines.place());
   }
-  for (auto& [key, view] : views) observations.views.push_back(std::move(view));
+  BoardObservations observations = rows.take(size_px);
   if (observations.views.empty()) {
     throw Error(file.string(), "no corner in it", "give an observations file with data");
   }
-  share_size(observations);
   check_and_sort(observations);
   return observations;
 }
@@ -198,7 +281,7 @@ BoardObservations read_corners(const std::filesystem::path& file,
   observations.size_px = size_px;
   observations.target_m = target_points(board);
   const int corners = board.columns * board.rows;
-  std::vector<std::string> cameras;
+  CameraOrder cameras;
   std::map<std::string, int> count;  // corners read of each image, found or not
   Lines lines(file);
   std::string_view line;
@@ -212,10 +295,8 @@ BoardObservations read_corners(const std::filesystem::path& file,
     const auto [counted, is_new] = count.try_emplace(image, 0);
     if (is_new) {
       const ImageName name = parse_image_name(image);
-      auto camera = std::find(cameras.begin(), cameras.end(), name.camera);
-      if (camera == cameras.end()) camera = cameras.insert(camera, name.camera);
-      observations.views.push_back(
-          {name.frame, static_cast<int>(camera - cameras.begin()), image, {}, {}});
+      // Images without a board count too, or a first one would hand its camera's place to another.
+      observations.views.push_back({name.frame, cameras.index(name.camera), image, {}, {}});
     } else if (observations.views.back().image != image) {
       throw Error(lines.place(), image + " appears a second time",
                   "keep an image's lines together");
@@ -231,20 +312,12 @@ BoardObservations read_corners(const std::filesystem::path& file,
     view.pixels_px.emplace_back(parse_number<double>(fields[1], lines.place(), "x"),
                                 parse_number<double>(fields[2], lines.place(), "y"));
   }
-  for (const auto& [image, read] : count) {
-    // An image without a board has one line of dashes.
-    if (read != corners && read != 1) {
-      throw Error(file.string(),
-                  fmt::format("{} has {} corners, the board {}x{} has {}", image, read,
-                              board.columns, board.rows, corners),
-                  "check --board: it counts inner corners");
-    }
-  }
+  check_counts(count, board, file);
   std::erase_if(observations.views, [](const BoardView& view) { return view.ids.size() < 4; });
   if (observations.views.empty()) {
     throw Error(file.string(), "no board in it", "give a corners file with data");
   }
-  share_size(observations);
+  share_size(observations, cameras.size());
   check_and_sort(observations);
   return observations;
 }
@@ -253,7 +326,19 @@ void write_corners(const BoardObservations& observations,
                    const Chessboard& board,
                    const std::filesystem::path& file) {
   std::string text = "# filename x y level\n";
-  for (const BoardView& view : observations.views) {
+  std::vector<const BoardView*> views;
+  for (const BoardView& view : observations.views) views.push_back(&view);
+  std::stable_sort(views.begin(), views.end(), [](const BoardView* a, const BoardView* b) {
+    return std::pair(a->camera, a->frame) < std::pair(b->camera, b->frame);
+  });
+  CameraOrder cameras;
+  for (const BoardView* each : views) {
+    const BoardView& view = *each;
+    check_image_name(view, cameras);
+    if (view.ids.empty()) {
+      text += fmt::format("{} - - -\n", view.image);
+      continue;
+    }
     std::vector<const Eigen::Vector2d*> pixel(board.columns * board.rows, nullptr);
     for (std::size_t i = 0; i < view.ids.size(); ++i) pixel[view.ids[i]] = &view.pixels_px[i];
     for (const Eigen::Vector2d* p : pixel) {

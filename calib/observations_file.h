@@ -10,7 +10,8 @@
 namespace vernier {
 
 /// Reads `frame,camera,row,col,X,Y,Z,qx,qy` (further columns ignored, target metres, pixels).
-/// Every (row, col) must have one place on the target. Throws Error with file and line.
+/// Every (row, col) must have one place on the target, and one line a frame and camera; frames are
+/// 0 or above, cameras 0 to 1023. Throws Error with file and line.
 BoardObservations read_observations(const std::filesystem::path& file,
                                     const std::vector<Eigen::Vector2i>& size_px);
 
@@ -26,6 +27,9 @@ BoardObservations read_corners(const std::filesystem::path& file,
                                const Chessboard& board,
                                const std::vector<Eigen::Vector2i>& size_px);
 
+/// Writes camera after camera, so that reading counts them alike; a view without corners is one
+/// line of dashes. Throws Error for an image whose name would not read back: one that is empty,
+/// holds blanks, begins with '#', has no number, or does not go with its camera.
 void write_corners(const BoardObservations& observations,
                    const Chessboard& board,
                    const std::filesystem::path& file);

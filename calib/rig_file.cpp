@@ -117,29 +117,6 @@ void check_parameters(const Node& root, const Rig& rig) {
   }
 }
 
-Covariance parse_covariance(const Node& root, const Rig& rig) {
-  Covariance covariance;
-  const Node stated = root.at("parameter_names");
-  for (std::size_t i = 0; i < stated.array().size(); ++i) {
-    covariance.names.push_back(stated.at(i).text());
-  }
-  if (covariance.names != parameter_names(rig)) {
-    throw Error(stated.place(), "are not the rig's parameters in their order",
-                "see docs/file-formats.md");
-  }
-  check_parameters(root, rig);
-  const Node node = root.at("covariance");
-  covariance.kind = covariance_kind(node.at("kind").text());
-  covariance.matrix = node.at("matrix").matrix();
-  if (covariance.matrix.rows() != static_cast<Eigen::Index>(covariance.names.size())) {
-    throw Error(node.at("matrix").place(),
-                fmt::format("is {0}x{0} for {1} parameters", covariance.matrix.rows(),
-                            covariance.names.size()),
-                "");
-  }
-  return covariance;
-}
-
 std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
   std::vector<std::string> texts;
   if (!node.has(key)) return texts;
@@ -147,6 +124,31 @@ std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
     texts.push_back(node.at(key).at(i).text());
   }
   return texts;
+}
+
+void check_names(const Node& root, const Rig& rig) {
+  const Node stated = root.at("parameter_names");
+  if (parse_texts(root, "parameter_names") != parameter_names(rig)) {
+    throw Error(stated.place(), "are not the rig's parameters in their order",
+                "see docs/file-formats.md");
+  }
+}
+
+/// The matrix below `node`, one row a parameter of the rig.
+Eigen::MatrixXd parse_parameter_matrix(const Node& node, const Rig& rig) {
+  const Node stated = node.at("matrix");
+  const Eigen::MatrixXd matrix = stated.matrix();
+  const std::size_t n = parameter_names(rig).size();
+  if (matrix.rows() != static_cast<Eigen::Index>(n)) {
+    throw Error(stated.place(), fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), n),
+                "give one row and column a parameter");
+  }
+  return matrix;
+}
+
+Covariance parse_covariance(const Node& node, const Rig& rig) {
+  return {covariance_kind(node.at("kind").text()), parameter_names(rig),
+          parse_parameter_matrix(node, rig)};
 }
 
 CalibrationSummary parse_summary(const Node& node) {
@@ -195,9 +197,12 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   RigFile file;
   RigEstimate& estimate = file.estimate;
   estimate.rig = parse_cameras(root.at("cameras"));
-  if (root.has("covariance")) estimate.covariance = parse_covariance(root, estimate.rig);
+  const bool covariance = root.has("covariance");
+  if (covariance || root.has("parameter_names")) check_names(root, estimate.rig);
+  if (covariance || root.has("parameters")) check_parameters(root, estimate.rig);
+  if (covariance) estimate.covariance = parse_covariance(root.at("covariance"), estimate.rig);
   if (root.has("covariance_mvb")) {
-    estimate.covariance_mvb = root.at("covariance_mvb").at("matrix").matrix();
+    estimate.covariance_mvb = parse_parameter_matrix(root.at("covariance_mvb"), estimate.rig);
   }
   if (root.has("calibration")) estimate.calibration = parse_summary(root.at("calibration"));
   if (root.has("evidence")) {
@@ -238,7 +243,8 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
   }
   if (!estimate.other_keys.empty()) json.update(Json::parse(estimate.other_keys));
-  return json.dump() + "\n";
+  // Names of images come from the file system, which does not promise UTF-8.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void write_rig(const RigEstimate& estimate,

@@ -15,7 +15,10 @@ Node Node::at(const std::string& key) const {
 }
 
 Node Node::at(std::size_t index) const {
-  return {array().at(index), place_ + "[" + std::to_string(index) + "]"};
+  if (index >= array().size()) {
+    throw Error(place_, "has only " + std::to_string(json_.size()) + " entries", "");
+  }
+  return {json_[index], place_ + "[" + std::to_string(index) + "]"};
 }
 
 double Node::number() const {
@@ -108,6 +111,36 @@ Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
   return json;
 }
 
+namespace {
+
+BoardView parse_view(const Node& v, const Rig& rig) {
+  BoardView view;
+  view.frame = v.at("frame").integer();
+  const std::string camera = v.at("camera").text();
+  view.camera = -1;
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    if (rig.cameras[c].name == camera) view.camera = static_cast<int>(c);
+  }
+  if (view.camera < 0) throw Error(v.at("camera").place(), "the rig has no such camera", "");
+  if (v.has("image")) view.image = v.at("image").text();
+  const Node pixels = v.at("pixels_px");
+  if (v.has("ids") && v.at("ids").array().size() != pixels.array().size()) {
+    throw Error(v.at("ids").place(),
+                "holds " + std::to_string(v.at("ids").size()) + " corners for " +
+                    std::to_string(pixels.size()) + " pixels",
+                "give one a pixel");
+  }
+  for (std::size_t k = 0; k < pixels.array().size(); ++k) {
+    const Eigen::VectorXd q = pixels.at(k).vector();
+    if (q.size() != 2) throw Error(pixels.at(k).place(), "is not a pixel", "");
+    view.pixels_px.emplace_back(q);
+    view.ids.push_back(v.has("ids") ? v.at("ids").at(k).integer() : static_cast<int>(k));
+  }
+  return view;
+}
+
+}  // namespace
+
 CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   CalibrationEvidence evidence;
   BoardObservations& observations = evidence.observations;
@@ -118,24 +151,7 @@ CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   }
   const Node views = node.at("observations");
   for (std::size_t i = 0; i < views.array().size(); ++i) {
-    const Node v = views.at(i);
-    BoardView view;
-    view.frame = v.at("frame").integer();
-    const std::string camera = v.at("camera").text();
-    view.camera = -1;
-    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-      if (rig.cameras[c].name == camera) view.camera = static_cast<int>(c);
-    }
-    if (view.camera < 0) throw Error(v.at("camera").place(), "the rig has no such camera", "");
-    if (v.has("image")) view.image = v.at("image").text();
-    const Node pixels = v.at("pixels_px");
-    for (std::size_t k = 0; k < pixels.array().size(); ++k) {
-      const Eigen::VectorXd q = pixels.at(k).vector();
-      if (q.size() != 2) throw Error(pixels.at(k).place(), "is not a pixel", "");
-      view.pixels_px.emplace_back(q);
-      view.ids.push_back(v.has("ids") ? v.at("ids").at(k).integer() : static_cast<int>(k));
-    }
-    observations.views.push_back(std::move(view));
+    observations.views.push_back(parse_view(views.at(i), rig));
   }
   const Node poses = node.at("view_poses");
   for (std::size_t i = 0; i < poses.array().size(); ++i) {

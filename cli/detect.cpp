@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board_detection.h"
 #include "calib/error.h"
-#include "calib/observations_file.h"
 #include "cli/session.h"
 
 namespace vernier::cli {
@@ -16,7 +15,7 @@ void run(const Options& options, Session& session) {
   const auto [columns, rows] = parse_size(options.board, "--board");
   const Chessboard board{columns, rows, 1.0};
   const PairDetections found = detect_pairs(options.left, options.right, board);
-  write_corners(found.observations, board, options.output);
+  write_corners(found, board, options.output);
   Json refused = Json::array();
   std::string text =
       fmt::format("{} boards found in {} frames, written to {}\n", found.observations.views.size(),

@@ -29,10 +29,21 @@ Finding file_finding(const std::string& what, const fs::path& path, const std::s
   return {what, there ? "found" : "missing: " + remedy, there};
 }
 
+/// The sample images where Debian installs them, or unpacked below the current folder.
+Finding image_finding() {
+  const fs::path below = "usr/share/doc/opencv-doc/examples/data";
+  for (const fs::path& folder : {"/" / below, "build/opencv-doc" / below}) {
+    if (fs::exists(folder / "left01.jpg")) {
+      return {"real chessboard pairs", "found in " + folder.string()};
+    }
+  }
+  return {"real chessboard pairs",
+          "missing: install Debian's opencv-doc, or unpack it into build/opencv-doc", false};
+}
+
 std::vector<Finding> findings() {
   const fs::path share = share_folder();
   const char* data = std::getenv("VERNIER_DATA");
-  const fs::path images = "/usr/share/doc/opencv-doc/examples/data/left01.jpg";
   const bool plotly = fs::exists(share / "page" / "plotly-cartesian.min.js") ||
                       fs::exists(share / "page" / "node_modules" / "plotly.js-cartesian-dist-min");
   return {
@@ -54,7 +65,7 @@ std::vector<Finding> findings() {
       file_finding("report page", share / "page" / "report.html", "install again"),
       {"report plots (plotly)",
        plotly ? "found" : "missing: run npm ci in cli/page; pages hold tables only", plotly},
-      file_finding("real chessboard pairs", images, "install Debian's opencv-doc"),
+      image_finding(),
       {"VERNIER_DATA",
        data ? (fs::is_directory(data) ? "found" : "names no folder")
             : "not set: tests on larger data sets are skipped",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "calib/error.h"
 #include "cli/session.h"
@@ -43,6 +44,10 @@ int main(int argc, char** argv) {
     return static_cast<int>(cli::Exit::bad_input);
   } catch (const Error& error) {
     fmt::print(stderr, "vernier: {}\n", error.what());
+    return static_cast<int>(cli::Exit::bad_input);
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "vernier: {}: {}; check the path and the rights to it\n",
+               error.path1().string(), error.code().message());
     return static_cast<int>(cli::Exit::bad_input);
   } catch (const std::exception& error) {
     fmt::print(stderr, "vernier: internal error: {}\n", error.what());

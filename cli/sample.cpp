@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/sampler.h"
 
+#include <cmath>
+
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
@@ -18,6 +20,20 @@ struct Options {
   int count = 1000;
   std::uint64_t seed = 1;
 };
+
+/// CLI::NonNegativeNumber lets "nan" pass.
+std::string finite_and_not_negative(const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return "";
+  return "\"" + text + "\" is not a finite number of 0 or more";
+}
+
+/// Without it -1 would wrap round to the largest seed.
+std::string not_negative(const std::string& text) {
+  return text.find('-') == std::string::npos
+             ? ""
+             : "\"" + text + "\" is not a whole number of 0 or more";
+}
 
 void run(const Options& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);
@@ -66,12 +82,12 @@ void add_sample(CLI::App& app, Session& session) {
                             "vernier sample rig.json --psi-c 1 -n 1000 --seed 1 -o samples.csv");
   verb->add_option("rig", o->rig, "rig file, or a shipped name (nominal)")->required();
   verb->add_option("--psi-c", o->psi_c, "factor on all standard deviations")
-      ->check(CLI::NonNegativeNumber)
+      ->check(finite_and_not_negative)
       ->capture_default_str();
   verb->add_option("-n,--count", o->count, "how many")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", o->seed, "of the draws")->capture_default_str();
+  verb->add_option("--seed", o->seed, "of the draws")->check(not_negative)->capture_default_str();
   verb->add_option("-o,--output", o->output, "CSV, header = parameter names")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

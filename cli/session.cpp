@@ -114,7 +114,8 @@ std::vector<double> parse_numbers(const std::string& text,
     }
     ++at;
   }
-  if (at != end || values.size() != n) {
+  const bool open = !text.empty() && text.back() == ',';
+  if (open || at != end || values.size() != n) {
     throw Error(option, "\"" + text + "\" is not " + std::to_string(n) + " numbers",
                 "separate them by commas");
   }

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <map>
 
 #include "calib/error.h"
 #include "cli/session.h"
@@ -71,33 +72,57 @@ void run(const Options& options, Session& session) {
   print(study, job.folder, session);
 }
 
+/// The parts of a study must be of one: the same settings, world and rig.
+void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Session& session) {
+  const Study first = open_folder(parts[0], session);
+  for (const fs::path& part : parts) {
+    if (fs::exists(target) && fs::equivalent(part, target)) {
+      throw Error(part.string(), "is the folder to merge into as well", "give another -o DIR");
+    }
+    const Study study = open_folder(part, session);
+    bool same = study.world_fingerprint == first.world_fingerprint &&
+                study.rig_fingerprint == first.rig_fingerprint &&
+                study.file.trials == first.file.trials &&
+                study.file.cells.size() == first.file.cells.size();
+    for (std::size_t i = 0; same && i < study.file.cells.size(); ++i) {
+      same = study.file.cells[i].settings == first.file.cells[i].settings;
+    }
+    if (!same) {
+      throw Error(part.string(), "is another study than " + parts[0].string(),
+                  "merge parts of one study");
+    }
+  }
+}
+
 /// Brings the stores of several folders into one and says whether anything is missing.
 void merge(const Options& options, Session& session) {
   if (options.folder.empty() || options.words.size() < 2) {
     throw Error("study merge", "give the folders to merge and -o DIR", "");
   }
   const fs::path target = options.folder;
+  const std::vector<fs::path> parts(options.words.begin() + 1, options.words.end());
+  check_parts(parts, target, session);
+  std::map<std::pair<std::string, int>, StoredBlock> blocks;
+  std::map<std::string, std::string> notes;
+  for (const fs::path& part : parts) {
+    for (const auto& file : store_files(part)) {
+      const StudyStore store(file);
+      for (StoredBlock& block : store.blocks()) {
+        auto& kept = blocks[{block.cell, block.block}];
+        kept = longer_block(std::move(block), std::move(kept), file.string());
+      }
+      for (const auto& [key, value] : store.notes()) notes[key] = value;
+    }
+  }
   fs::create_directories(target);
   for (const char* name : {"study.toml", "world.world.toml", "rig.json"}) {
-    fs::copy_file(fs::path(options.words[1]) / name, target / name,
-                  fs::copy_options::overwrite_existing);
+    fs::copy_file(parts[0] / name, target / name, fs::copy_options::overwrite_existing);
   }
   StudyStore merged(target / "results.sqlite");
+  for (const auto& [key, block] : blocks) merged.put(block);
+  for (const auto& [key, value] : notes) merged.put_note(key, value);
+
   const Study study = open_folder(target, session);
-  for (std::size_t i = 1; i < options.words.size(); ++i) {
-    const Study part = open_folder(options.words[i], session);
-    if (part.world_fingerprint != study.world_fingerprint ||
-        part.rig_fingerprint != study.rig_fingerprint) {
-      throw Error(options.words[i], "is a study of another world or rig than " + options.words[1],
-                  "merge shards of one study");
-    }
-    for (const auto& file : store_files(options.words[i])) {
-      if (fs::equivalent(file, target / "results.sqlite")) continue;
-      const StudyStore store(file);
-      for (const StoredBlock& block : store.blocks()) merged.put(block);
-      for (const auto& [key, value] : store.notes()) merged.put_note(key, value);
-    }
-  }
   const StudyResults results = study_results(study, target);
   if (results.blocks_done < results.blocks_total) {
     session.doubt(fmt::format("{} of {} blocks are missing from the merged study",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace vernier {
@@ -84,7 +85,7 @@ class Neighbours {
  public:
   Neighbours(const Plan& query, const Plan& node, const PlanePose& T, double position_sigma_m)
       : query_(query), node_(node), position_sigma_m_(position_sigma_m) {
-    constexpr double travel_m = 0.5;  // farther than refinement ever goes
+    constexpr double travel_m = 0.5;  // refinement seldom goes farther; lines beyond do not count
     const Eigen::Rotation2Dd R(T.heading_rad);
     const Eigen::Vector2d t(T.x_m, T.y_m);
     uprights_.resize(query.uprights.size());
@@ -117,32 +118,56 @@ class Neighbours {
 
   /// Sum over the query's lines of their best agreement with a line of the node.
   double score(const PlanePose& T) const {
+    double sum = 0;
+    visit_best(T, [&](double agreed, int) { sum += agreed; });
+    return sum;
+  }
+
+  /// The smaller of that sum and its counterpart over the node's lines.
+  double mutual_score(const PlanePose& T) const {
+    std::vector<double> of_node(node_.uprights.size() + node_.levels.size(), 0.0);
+    double of_query = 0;
+    visit_best(T, [&](double agreed, int line) {
+      of_query += agreed;
+      if (line >= 0) of_node[line] = std::max(of_node[line], agreed);
+    });
+    return std::min(of_query, std::accumulate(of_node.begin(), of_node.end(), 0.0));
+  }
+
+ private:
+  /// Calls visit(agreement, node line) with every query line's best partner, -1 where none agrees;
+  /// level lines of the node count on from its uprights.
+  template <class Visit>
+  void visit_best(const PlanePose& T, Visit visit) const {
     const Eigen::Rotation2Dd R(T.heading_rad);
     const Eigen::Vector2d t(T.x_m, T.y_m);
-    double sum = 0;
+    const auto best_of = [&](const std::vector<int>& lines, int offset, auto agreement_with) {
+      double best = 0;
+      int which = -1;
+      for (const int k : lines) {
+        const double agreed = agreement_with(k);
+        if (agreed > best) {
+          best = agreed;
+          which = offset + k;
+        }
+      }
+      visit(best, which);
+    };
     for (std::size_t i = 0; i < uprights_.size(); ++i) {
       const Eigen::Vector2d at = R * query_.uprights[i].at_m + t;
-      double best = 0;
-      for (const int k : uprights_[i]) {
-        best =
-            std::max(best, agreement(query_.uprights[i], at, node_.uprights[k], position_sigma_m_));
-      }
-      sum += best;
+      best_of(uprights_[i], 0, [&](int k) {
+        return agreement(query_.uprights[i], at, node_.uprights[k], position_sigma_m_);
+      });
     }
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       const Level& q = query_.levels[i];
       const Level moved{R * q.a_m + t, R * q.b_m + t, R * q.direction,
                         q.length_m,    q.height_m,    q.sigma_m};
-      double best = 0;
-      for (const int k : levels_[i]) {
-        best = std::max(best, agreement(moved, node_.levels[k], position_sigma_m_));
-      }
-      sum += best;
+      best_of(levels_[i], static_cast<int>(node_.uprights.size()),
+              [&](int k) { return agreement(moved, node_.levels[k], position_sigma_m_); });
     }
-    return sum;
   }
 
- private:
   const Plan &query_, &node_;
   double position_sigma_m_;
   std::vector<std::vector<int>> uprights_, levels_;
@@ -214,9 +239,9 @@ class ShiftVotes {
 };
 
 /// Coordinate ascent with halving steps.
-PlanePose ascend(const Neighbours& lines, PlanePose T, double& best) {
+PlanePose ascend(const Neighbours& lines, PlanePose T) {
   std::array<double, 3> step{0.1, 0.1, 0.03};
-  best = lines.score(T);
+  double best = lines.score(T);
   for (int round = 0; round < 14; ++round) {
     bool better = false;
     for (int axis = 0; axis < 3; ++axis) {
@@ -257,11 +282,11 @@ Alignment align(const PlaceView& query_view,
     }
   }
   Alignment result;
-  double matched = 0;
   const Neighbours lines(query, node, start, options.position_sigma_m);
-  result.query_in_node = ascend(lines, start, matched);
+  result.query_in_node = ascend(lines, start);
   // A few lines more on both sides keep small views from scoring by chance.
-  result.score = matched / std::sqrt((query.count() + 5) * (node.count() + 5));
+  result.score = lines.mutual_score(result.query_in_node) /
+                 std::sqrt((query.count() + 5) * (node.count() + 5));
   return result;
 }
 

@@ -17,12 +17,13 @@ struct AlignmentOptions {
 /// A rigid motion on the floor and how much of both views it explains.
 struct Alignment {
   PlanePose query_in_node;  ///< pose of the query in the node's robot frame
-  double score = 0;         ///< matched lines over the geometric mean of both counts, in [0, 1]
+  double score = 0;         ///< share of both views' lines that find a partner, in [0, 1)
 };
 
 /// Best placement of one view over another from the plan of their lines: a Hough vote of upright
-/// lines (and of level ones that cross) over turn and shift, then ascent of a robust score in
-/// which every line of the query finds the nearest line of its kind in the node. Generalised Hough
+/// lines over turn and shift, then ascent of a robust score in which every upright or level line of
+/// the query finds the line of the node that agrees with it best. The score counts both ways: a
+/// line of the node explains many fragments of the query but once. Generalised Hough
 /// transform after matching: Ashbrook et al. 1995.
 Alignment align(const PlaceView& query,
                 const PlaceView& node,

@@ -58,7 +58,7 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
   while (alive.size() > 1) {
     const auto lowest = std::min_element(alive.begin(), alive.end(),
                                          [&](int a, int b) { return score(a) < score(b); });
-    answer.runner_up = score(*lowest);
+    if (alive.size() == 2) answer.runner_up = score(*lowest);
     alive.erase(lowest);
     threshold += 0.4f / static_cast<float>(nodes);
   }
@@ -66,7 +66,8 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
   answer.node = alive[0];
   answer.pose = map_.nodes[alive[0]].pose;
   answer.score = score(alive[0]);
-  answer.status = LocalisationStatus::answered;
+  // the threshold has risen since the last was dropped; nothing above it decides nothing
+  answer.status = answer.score > 0 ? LocalisationStatus::answered : LocalisationStatus::tie;
   return answer;
 }
 

@@ -16,6 +16,8 @@ std::string_view name(LocalisationStatus status) {
       return "too_few_lines";
     case LocalisationStatus::tie:
       return "tie";
+    case LocalisationStatus::no_match:
+      return "no_match";
   }
   return "";
 }

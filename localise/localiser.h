@@ -14,7 +14,8 @@ namespace vernier {
 enum class LocalisationStatus {
   answered,
   too_few_lines,  ///< not enough in view to say anything
-  tie,            ///< two nodes are equally good
+  tie,            ///< two places more than 1 m apart are equally good
+  no_match,       ///< no place of the map agrees at all
 };
 
 std::string_view name(LocalisationStatus status);

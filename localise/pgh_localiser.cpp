@@ -40,8 +40,9 @@ LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
       answer.runner_up = std::max(answer.runner_up, other.score);
     }
   }
-  answer.status =
-      answer.score > 0 ? LocalisationStatus::answered : LocalisationStatus::too_few_lines;
+  answer.status = !(answer.score > 0)                             ? LocalisationStatus::no_match
+                  : answer.runner_up >= answer.score * (1 - 1e-9) ? LocalisationStatus::tie
+                                                                  : LocalisationStatus::answered;
   return answer;
 }
 

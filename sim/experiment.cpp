@@ -4,6 +4,7 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -92,7 +93,9 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.trial = trial;
   result.truth =
       draw_query(visibility_, settings_.protocol, settings_.mount.height_m, settings_.seed, trial);
-  const Look seen = look(visibility_, rig_.rig, result.truth, look_options(settings_));
+  LookOptions looking = look_options(settings_);
+  looking.with_corners = true;
+  const Look seen = look(visibility_, rig_.rig, result.truth, looking);
   const StereoSighting sighting = sensor_.sense(seen, settings_.seed, trial, 0);
 
   const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
@@ -102,6 +105,10 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.wall_ms = clock_ms(CLOCK_MONOTONIC) - wall;
 
   result.status = answer.status;
+  result.corners = static_cast<int>(sighting.corners.size());
+  result.corner_mismatches =
+      static_cast<int>(std::count_if(sighting.corners.begin(), sighting.corners.end(),
+                                     [](const SensedCorner& corner) { return corner.mismatched; }));
   result.lines = static_cast<int>(view.lines.size());
   result.score = answer.score;
   result.runner_up = answer.runner_up;

@@ -40,7 +40,9 @@ struct TrialResult {
   double error_m = 0;  ///< of the answer on the floor; NaN without one
   double node_error_m = 0;
   double heading_error_rad = 0;
-  int lines = 0;  ///< in space, as the localiser had them
+  int lines = 0;              ///< in space, as the localiser had them
+  int corners = 0;            ///< corner pairs sensed (for corner-based methods)
+  int corner_mismatches = 0;  ///< of them with a wrong partner
   double score = 0, runner_up = 0;
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 

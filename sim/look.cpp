@@ -66,7 +66,8 @@ Look look(const Visibility& visibility,
     const double length = (project(rig.cameras[0], a) - project(rig.cameras[0], b)).norm();
     if (length < options.visibility.min_length_px) return;
     const auto feature = static_cast<std::uint32_t>(run.segment * 32 + std::min(run.run, 31));
-    seen.edges.push_back({a, b, run.segment, feature, segment.object});
+    seen.edges.push_back({a, b, run.segment, feature, segment.object,
+                          T_left * world.objects.at(segment.object).centre_m});
   });
   if (options.with_corners) {
     const auto corners_left =

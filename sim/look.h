@@ -17,6 +17,7 @@ struct SeenEdge {
   int segment = 0;            ///< of the world
   std::uint32_t feature = 0;  ///< segment and visible run; identity for draws
   std::int32_t object = 0;
+  Eigen::Vector3d object_centre_m;  ///< true left camera's frame
 };
 
 /// A corner that both eyes see.

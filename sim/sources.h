@@ -32,6 +32,7 @@ struct SourceParameter {
   std::string_view name;
   double SourceSettings::*value;
   double low, high;  ///< accepted, inclusive
+  bool is_switch;    ///< 0 turns a source off; else it says how far one reaches
   std::string_view about;
 };
 
@@ -41,7 +42,7 @@ std::span<const SourceParameter> source_parameters();
 /// Throws Error, naming the setting, for a value outside its accepted range.
 void check(const SourceSettings& settings, const std::string& place);
 
-/// Every source off.
+/// Every source off; how far they reach when on stays at its default.
 SourceSettings no_sources();
 
 }  // namespace vernier

@@ -37,9 +37,13 @@ std::string looks_key(const ExperimentSettings& s) {
                      s.map_headings);
 }
 
+/// The ceiling is a mean over so many of a cell's queries.
+int ceiling_queries(const Study& study) { return std::min(study.file.trials, 200); }
+
 std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
-  return fmt::format("ceiling {} {} {} {} {} {}", study.world_fingerprint, study.rig_fingerprint,
-                     name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed);
+  return fmt::format("ceiling {} {} {} {} {} {} {}", study.world_fingerprint, study.rig_fingerprint,
+                     name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed,
+                     ceiling_queries(study));
 }
 
 struct Job {
@@ -62,7 +66,6 @@ std::vector<Job> all_jobs(const Study& study) {
 
 /// Jobs of the shard that no store of the folder holds yet.
 std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
-  std::set<std::pair<std::string, int>> done;
   std::map<std::pair<std::string, int>, std::size_t> sizes;
   for (const auto& file : store_files(run.folder)) {
     for (const StoredBlock& block : StudyStore(file).blocks()) {
@@ -82,14 +85,14 @@ std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
   return missing;
 }
 
-/// The world's ceiling on the queries of a cell (the first 200 of them).
+/// The world's ceiling on the first queries of a cell.
 double compute_ceiling(const Study& study,
                        const Visibility& visibility,
                        const ExperimentSettings& settings) {
   LookOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
-  const int queries = std::min(study.file.trials, 200);
+  const int queries = ceiling_queries(study);
   double sum = 0;
   for (int i = 0; i < queries; ++i) {
     sum += finder
@@ -182,9 +185,9 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
   std::map<std::string, std::string> ceilings;
   for (const auto& file : store_files(folder)) {
     const StudyStore store(file);
-    for (StoredBlock& block : StudyStore(file).blocks()) {
+    for (StoredBlock& block : store.blocks()) {
       auto& kept = blocks[{block.cell, block.block}];
-      if (kept.trials.size() < block.trials.size()) kept = std::move(block);
+      kept = longer_block(std::move(block), std::move(kept), file.string());
     }
     for (const StudyCell& cell : study.file.cells) {
       const std::string key = ceiling_key(study, cell.experiment);
@@ -197,7 +200,7 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     result.cell = cell;
     const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
     result.ceiling = ceiling == ceilings.end() ? std::numeric_limits<double>::quiet_NaN()
-                                               : std::stod(ceiling->second);
+                                               : std::strtod(ceiling->second.c_str(), nullptr);
     results.cells.push_back(std::move(result));
   }
   for (const Job& job : all_jobs(study)) {

@@ -26,6 +26,16 @@ std::string text_of(const toml::node& node) {
   return out.str();
 }
 
+/// Sets "section.entry" of a study.
+void set(toml::table& study, const std::string& key, const toml::node& value) {
+  const std::size_t dot = key.find('.');
+  const std::string section = key.substr(0, dot), entry = key.substr(dot + 1);
+  if (!study.contains(section)) study.insert(section, toml::table{});
+  if (toml::table* into = study.get(section)->as_table()) {
+    value.visit([&](const auto& v) { into->insert_or_assign(entry, v); });
+  }
+}
+
 class StudyReader : private TomlReader {
  public:
   using TomlReader::TomlReader;
@@ -73,10 +83,10 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
   const toml::node& node = required(root, "study", "the file");
   const toml::table& section = table(node, "[study]");
   if (const auto* trials = section.get("trials")) {
-    study.trials = static_cast<int>(integer(*trials, "study.trials"));
-    if (study.trials < 1 || study.trials > 10'000'000) {
-      fail(*trials, fmt::format("study.trials = {} is out of range", study.trials),
-           "give 1 to 10000000");
+    const std::int64_t wanted = integer(*trials, "study.trials");
+    study.trials = static_cast<int>(wanted);
+    if (wanted < 1 || wanted > 10'000'000) {
+      fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "give 1 to 10000000");
     }
   }
 }
@@ -213,7 +223,12 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
            "write \"sources.calibration\" = [0.1, 1, 10]");
     }
     std::vector<std::string> values;
-    for (const toml::node& value : list(node, "sweep." + key)) values.push_back(text_of(value));
+    for (const toml::node& value : list(node, "sweep." + key)) {
+      values.push_back(text_of(value));
+      toml::table changed = root;  // each value by itself first, so that a complaint finds its line
+      set(changed, key, value);
+      StudyReader(place(), value.source().begin.line).read_experiment(changed);
+    }
     if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list some values");
     study.sweep_keys.push_back(key);
     study.sweep_values.push_back(std::move(values));
@@ -253,13 +268,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       const std::size_t i = rest / block;
       rest %= block;
       const std::string& key = study.sweep_keys[k];
-      const std::size_t dot = key.find('.');
-      const std::string section_name = key.substr(0, dot), entry = key.substr(dot + 1);
-      if (!changed.contains(section_name)) changed.insert(section_name, toml::table{});
-      toml::table& into = *changed.get(section_name)->as_table();
-      // the node brings its line with it, so that a complaint points at the sweep
-      sweep->get(key)->as_array()->get(i)->visit(
-          [&](const auto& value) { into.insert_or_assign(entry, value); });
+      set(changed, key, *sweep->get(key)->as_array()->get(i));
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
     }
     StudyCell result;

@@ -34,8 +34,8 @@ std::string trials_text(const std::vector<TrialResult>& trials) {
   for (const TrialResult& t : trials) {
     rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
                     pose_json(t.node), number(t.error_m), number(t.node_error_m),
-                    number(t.heading_error_rad), t.lines, t.score, t.runner_up, t.cpu_ms,
-                    t.wall_ms});
+                    number(t.heading_error_rad), t.lines, t.score, t.runner_up, t.corners,
+                    t.corner_mismatches, t.cpu_ms, t.wall_ms});
   }
   return rows.dump();
 }
@@ -55,8 +55,10 @@ std::vector<TrialResult> parse_trials(const std::string& text) {
     t.lines = row.at(8).get<int>();
     t.score = row.at(9).get<double>();
     t.runner_up = row.at(10).get<double>();
-    t.cpu_ms = row.at(11).get<double>();
-    t.wall_ms = row.at(12).get<double>();
+    t.corners = row.at(11).get<int>();
+    t.corner_mismatches = row.at(12).get<int>();
+    t.cpu_ms = row.at(13).get<double>();
+    t.wall_ms = row.at(14).get<double>();
     trials.push_back(t);
   }
   return trials;
@@ -167,7 +169,14 @@ std::vector<StoredBlock> StudyStore::blocks() const {
   Connection::Statement rows(*connection_,
                              "SELECT cell, block, results FROM block ORDER BY cell, block");
   std::vector<StoredBlock> blocks;
-  while (rows.step()) blocks.push_back({rows.text(0), rows.integer(1), parse_trials(rows.text(2))});
+  while (rows.step()) {
+    try {
+      blocks.push_back({rows.text(0), rows.integer(1), parse_trials(rows.text(2))});
+    } catch (const Json::exception&) {
+      throw Error(connection_->place, "block " + rows.text(1) + " in it is damaged",
+                  "take the store away and run its part again");
+    }
+  }
   return blocks;
 }
 
@@ -189,6 +198,21 @@ std::vector<std::pair<std::string, std::string>> StudyStore::notes() const {
   std::vector<std::pair<std::string, std::string>> notes;
   while (rows.step()) notes.emplace_back(rows.text(0), rows.text(1));
   return notes;
+}
+
+StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place) {
+  const auto untimed = [](TrialResult trial) {
+    trial.cpu_ms = trial.wall_ms = 0;
+    return trials_text({trial});
+  };
+  for (std::size_t i = 0; i < std::min(a.trials.size(), b.trials.size()); ++i) {
+    if (untimed(a.trials[i]) != untimed(b.trials[i])) {
+      throw Error(place,
+                  "disagrees with another store on trial " + std::to_string(a.trials[i].trial),
+                  "they are of different builds or processors: run one of them again");
+    }
+  }
+  return a.trials.size() >= b.trials.size() ? std::move(a) : std::move(b);
 }
 
 std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder) {

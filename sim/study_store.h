@@ -42,6 +42,10 @@ class StudyStore {
   std::unique_ptr<Connection> connection_;
 };
 
+/// The longer of two versions of one block. Throws Error(`place`) where their common trials differ
+/// in more than their timings.
+StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place);
+
 /// Store files of a study's folder, in the order of their names.
 std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder);
 

@@ -53,7 +53,8 @@ std::string nearest_word(std::string_view word, const std::vector<std::string_vi
 void TomlReader::fail(toml::source_index line,
                       const std::string& fault,
                       const std::string& remedy) const {
-  throw Error(place_ + ":" + std::to_string(std::max<toml::source_index>(line, 1)), fault, remedy);
+  const toml::source_index named = line_ > 0 ? line_ : std::max<toml::source_index>(line, 1);
+  throw Error(place_ + ":" + std::to_string(named), fault, remedy);
 }
 
 void TomlReader::fail(const toml::node& node,

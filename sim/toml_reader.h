@@ -22,7 +22,10 @@ std::string nearest_word(std::string_view word, const std::vector<std::string_vi
 /// Typed access to parsed TOML. Every complaint carries the file and the line.
 class TomlReader {
  public:
-  explicit TomlReader(std::string place) : place_(std::move(place)) {}
+  /// With a line given, every complaint names that one: for values that stand in another place
+  /// than where they take effect.
+  explicit TomlReader(std::string place, toml::source_index line = 0)
+      : place_(std::move(place)), line_(line) {}
 
   using Keys = std::vector<std::string_view>;
 
@@ -62,6 +65,7 @@ class TomlReader {
 
  private:
   std::string place_;
+  toml::source_index line_;
 };
 
 }  // namespace vernier

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/uncertainty_source.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <unordered_map>
 
 #include "calib/draw_sources.h"
 #include "calib/random.h"
@@ -43,12 +43,10 @@ class LateralShift : public UncertaintySource {
   std::string_view name() const override { return "lateral_shift_px"; }
 
   void apply(const SensingContext& context, SensedView& view) const override {
-    const auto centres = object_centres(view);
     SensingContext any_frame = context;
     any_frame.frame = 0;
     for (SensedEdge& edge : view.edges) {
-      // judged before either eye's line moves
-      const double side = outward(context.rig, edge, centres.at(edge.truth.object));
+      const double side = outward(edge.truth);
       for (int eye = 0; eye < 2; ++eye) {
         displace(context.rig, edge, eye, draw_shift(any_frame, edge, eye, side));
       }
@@ -73,26 +71,13 @@ class LateralShift : public UncertaintySource {
     return (of_surface.uniform() < 0.5 ? -size : size) * side;
   }
 
-  /// Mean of an object's seen end points: inside it, near enough.
-  static std::unordered_map<std::int32_t, Eigen::Vector3d> object_centres(const SensedView& view) {
-    std::unordered_map<std::int32_t, std::pair<Eigen::Vector3d, int>> sums;
-    for (const SensedEdge& edge : view.edges) {
-      auto& [sum, count] =
-          sums.try_emplace(edge.truth.object, Eigen::Vector3d::Zero(), 0).first->second;
-      sum += edge.truth.a_m + edge.truth.b_m;
-      count += 2;
-    }
-    std::unordered_map<std::int32_t, Eigen::Vector3d> centres;
-    for (const auto& [object, sum] : sums) centres[object] = sum.first / sum.second;
-    return centres;
-  }
-
-  /// +1 where the left normal of the image line points away from the object's centre.
-  static double outward(const Rig& rig, const SensedEdge& edge, const Eigen::Vector3d& centre_m) {
-    const ImageSegment line = image_of(rig, edge, 0);
-    const Eigen::Vector2d centre = project(rig.cameras[0], centre_m);
-    const Eigen::Vector2d d = line.b_px - line.a_px, c = centre - line.a_px;
-    return d.x() * c.y() - d.y() * c.x() > 0 ? -1 : 1;
+  /// +1 where the left normal of the image line points away from the object's centre: judged on the
+  /// edge's plane through the eye, so the same from every place on one side of it.
+  static double outward(const SeenEdge& edge) {
+    const Eigen::Vector3d n = edge.a_m.cross(edge.b_m);
+    const double side = n.dot(edge.object_centre_m);
+    // an edge through the centre has no outside: rounding must not choose one
+    return side > 1e-9 * n.norm() * edge.object_centre_m.norm() ? -1 : 1;
   }
 
   static void displace(const Rig& rig, SensedEdge& edge, int eye, double shift) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "calib/error.h"
@@ -115,18 +116,44 @@ void append_crossings(const Curve& curve,
   cuts.push_back(root(f, turn, s1, f0 >= 0));
 }
 
-/// Throws Error if distortion turns round on the way from the axis to x: x is then beyond a fold,
-/// and what lies between has more than one pixel.
-void refuse_fold(const Camera& camera, const Eigen::Vector2d& x) {
+/// Whether distortion grows all the way from the axis to x: beyond a fold, what lies between has
+/// more than one pixel.
+bool grows_to(const Camera& camera, const Eigen::Vector2d& x) {
   const Curve ray{camera, Eigen::Vector2d::Zero(), x};
+  const Eigen::Vector2d outwards(camera.f_px() * camera.ax() * x[0], camera.f_px() * x[1]);
   for (double share : {0.25, 0.5, 0.75, 1.0}) {
-    const Eigen::Vector2d outwards(camera.f_px() * camera.ax() * x[0], camera.f_px() * x[1]);
-    if (x.squaredNorm() == 0 || ray(share).slope.dot(outwards) > 0) continue;
-    throw Error("camera \"" + camera.name + "\"",
-                "its distortion folds the image within its border",
-                "calibrate with corners that reach the image's edge, or use a model with fewer "
-                "coefficients");
+    if (x.squaredNorm() > 0 && !(ray(share).slope.dot(outwards) > 0)) return false;
   }
+  return true;
+}
+
+/// The ray of a pixel, this side of any fold.
+std::optional<Eigen::Vector2d> plain_ray(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const auto ray = try_unproject(camera, pixel);
+  if (!ray || !grows_to(camera, ray->head<2>())) return std::nullopt;
+  return Eigen::Vector2d(ray->head<2>());
+}
+
+/// The ray of the outermost pixel on the way from the image's centre to `pixel` that has one.
+Eigen::Vector2d outermost_ray(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d centre = 0.5 * (camera.size_px.cast<double>() - Eigen::Vector2d::Ones());
+  auto ray = plain_ray(camera, centre);
+  if (!ray) {
+    throw Error("camera \"" + camera.name + "\"",
+                "its distortion cannot be inverted even in the middle of the image",
+                "use other coefficients, or a smaller psi_c");
+  }
+  double good = 0, bad = 1;
+  for (int i = 0; i < 30; ++i) {
+    const double share = 0.5 * (good + bad);
+    if (const auto tried = plain_ray(camera, centre + share * (pixel - centre))) {
+      ray = tried;
+      good = share;
+    } else {
+      bad = share;
+    }
+  }
+  return *ray;
 }
 
 }  // namespace
@@ -151,13 +178,18 @@ void ViewFrustum::bound_border() {
   const double w = camera_.size_px[0], h = camera_.size_px[1], none = 1e300;
   outer_ = {none, none, -none, -none};
   inner_ = {-none, -none, none, none};
+  double fold2 = none;  // squared distance from the axis at which the image folds
   const auto visit = [&](double u, double v) {
-    const Eigen::Vector2d x = unproject(camera_, {u - 0.5, v - 0.5}).head<2>();
-    refuse_fold(camera_, x);
-    outer_ = {std::min(outer_.x0, x[0]), std::min(outer_.y0, x[1]), std::max(outer_.x1, x[0]),
-              std::max(outer_.y1, x[1])};
-    outer_radius2_ = std::max(outer_radius2_, x.squaredNorm());
-    return x;
+    const Eigen::Vector2d pixel(u - 0.5, v - 0.5);
+    auto x = plain_ray(camera_, pixel);
+    if (!x) {
+      x = outermost_ray(camera_, pixel);
+      fold2 = std::min(fold2, x->squaredNorm());
+    }
+    outer_ = {std::min(outer_.x0, (*x)[0]), std::min(outer_.y0, (*x)[1]),
+              std::max(outer_.x1, (*x)[0]), std::max(outer_.y1, (*x)[1])};
+    outer_radius2_ = std::max(outer_radius2_, x->squaredNorm());
+    return *x;
   };
   for (int i = 0; i <= samples_a_side; ++i) {
     const double share = static_cast<double>(i) / samples_a_side;
@@ -170,6 +202,13 @@ void ViewFrustum::bound_border() {
   outer_ = {outer_.x0 - dx, outer_.y0 - dy, outer_.x1 + dx, outer_.y1 + dy};
   inner_ = {inner_.x0 + dx, inner_.y0 + dy, inner_.x1 - dx, inner_.y1 - dy};
   outer_radius2_ *= (1 + slack) * (1 + slack);
+  if (fold2 < outer_radius2_) {  // what lies beyond the fold is not imaged
+    outer_radius2_ = fold2 * (1 - slack) * (1 - slack);
+    const double corner2 = std::max({inner_.x0 * inner_.x0, inner_.x1 * inner_.x1}) +
+                           std::max({inner_.y0 * inner_.y0, inner_.y1 * inner_.y1});
+    const double shrink = std::min(1.0, std::sqrt(outer_radius2_ / corner2));
+    inner_ = {shrink * inner_.x0, shrink * inner_.y0, shrink * inner_.x1, shrink * inner_.y1};
+  }
 }
 
 bool ViewFrustum::clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stretch& s) const {

@@ -29,8 +29,9 @@ struct ImageBox {
 class ViewFrustum {
  public:
   /// Throws Error for depths that are not 0 < near < far, a camera without an image or with the
-  /// wrong number of parameters, and where the distortion cannot be inverted at the image's border.
-  /// Keeps a reference to `camera`.
+  /// wrong number of parameters, and where the distortion cannot be inverted in the image's middle.
+  /// Where it folds before the border, what lies beyond the fold is not imaged. Keeps a reference
+  /// to `camera`.
   ViewFrustum(const Camera& camera, double near_m, double far_m);
 
   /// Stretch of the segment a b (camera frame, metres) between near and far and in the outer

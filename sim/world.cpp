@@ -144,19 +144,36 @@ void check_world(const WorldDescription& description) {
   }
 }
 
+namespace {
+
+/// Mean of each object's segment ends.
+void find_centres(World& world) {
+  std::vector<double> ends(world.objects.size(), 0);
+  for (const WorldSegment& segment : world.segments) {
+    world.objects[segment.object].centre_m += segment.a_m + segment.b_m;
+    ends[segment.object] += 2;
+  }
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (ends[i] > 0) world.objects[i].centre_m /= ends[i];
+  }
+}
+
+}  // namespace
+
 World build_world(const WorldDescription& description) {
   check_world(description);
   const auto by_name = templates_by_name(description);
   World world;
   world.name = description.name;
   world.route = description.route;
-  world.objects.push_back({""});
+  world.objects.emplace_back();
   place_features(description.loose, Pose{}, 0, world);
   for (const auto& instance : description.instances) {
     const auto object = static_cast<std::int32_t>(world.objects.size());
-    world.objects.push_back({instance.template_name});
+    world.objects.emplace_back().template_name = instance.template_name;
     place_features(by_name.at(instance.template_name)->features, pose_of(instance), object, world);
   }
+  find_centres(world);
   return world;
 }
 

@@ -32,6 +32,7 @@ struct WorldSurface {
 /// name empty).
 struct WorldObject {
   std::string template_name;
+  Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< mean of its segments' ends
 };
 
 /// One leg of a route to record a map along: a polyline on the floor.

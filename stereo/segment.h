@@ -24,7 +24,7 @@ struct StereoSegment {
 struct SpaceSegment {
   Eigen::Vector3d a_m, b_m;
   double depth_sigma_m = 0;  ///< of the farther end, from the line fit's end-point error
-  bool reliable = true;      ///< false where the disparity is not distinguishable from zero
+  bool reliable = true;      ///< false where an end lies beyond the range asked for, or has no ray
 };
 
 }  // namespace vernier

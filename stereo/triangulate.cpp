@@ -34,13 +34,18 @@ SpaceSegment triangulate(const Rig& rig,
   require_pair(rig);
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
   const Pose& T_right_left = rig.T_camera_first[1];
-  const Eigen::Vector3d n =
-      unproject(right, segment.right.a_px).cross(unproject(right, segment.right.b_px));
-  const double offset = n.dot(T_right_left.t);
-
   SpaceSegment result;
+  // A told rig may be so wrong that a pixel has no ray; any direction then stands for it.
+  const auto ray_of = [&](const Camera& camera, const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
+    if (const auto ray = try_unproject(camera, pixel)) return *ray;
+    result.reliable = false;
+    return Eigen::Vector3d::UnitZ();
+  };
+  const Eigen::Vector3d n =
+      ray_of(right, segment.right.a_px).cross(ray_of(right, segment.right.b_px));
+  const double offset = n.dot(T_right_left.t);
   const auto place = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
-    const Eigen::Vector3d ray = unproject(left, pixel);
+    const Eigen::Vector3d ray = ray_of(left, pixel);
     const double slope = n.dot(T_right_left.R * ray);
     const double depth = -offset / slope;
     if (depth > 0 && depth < options.max_depth_m) return depth * ray;

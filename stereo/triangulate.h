@@ -24,9 +24,9 @@ struct TriangulationOptions {
 ///
 /// for either end of the left line: exact for any pose of the rig and any distortion, since end
 /// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are put at that
-/// depth and the segment marked unreliable. Hartley and Zisserman, "Multiple View Geometry" (2nd
-/// ed., 2004), section 15.4 has lines as planes through the cameras. Throws Error unless the rig
-/// is a pair.
+/// depth and the segment marked unreliable; so it is where a pixel has no ray under this rig.
+/// Hartley and Zisserman, "Multiple View Geometry" (2nd ed., 2004), section 15.4 has lines as
+/// planes through the cameras. Throws Error unless the rig is a pair.
 SpaceSegment triangulate(const Rig& rig,
                          const StereoSegment& segment,
                          const TriangulationOptions& options = {});

@@ -76,6 +76,59 @@ TEST_F(ObservationsFile, ABadLineIsNamed) {
   EXPECT_NE(complaint_of("frame,row\n").find("bad.csv:1:"), std::string::npos);
 }
 
+TEST_F(ObservationsFile, FramesCamerasAndRepeatsAreChecked) {
+  const std::string header = "frame,camera,row,col,X,Y,Z,qx,qy\n";
+  EXPECT_NE(complaint_of(header + "-1,0,0,0,0,0,0,9,9\n").find("bad.csv:2: frame is -1, below 0"),
+            std::string::npos);
+  for (const std::string camera : {"-1", "1024", "2000000000"}) {
+    EXPECT_NE(complaint_of(header + "0," + camera + ",0,0,0,0,0,9,9\n")
+                  .find("bad.csv:2: camera is " + camera + ", not within 0 to 1023"),
+              std::string::npos);
+  }
+  EXPECT_NE(complaint_of(header + "3,1,0,2,0,0,0,9,9\n3,0,0,2,0,0,0,9,9\n3,1,0,2,0,0,0,8,9\n")
+                .find("bad.csv:4: frame 3, camera 1, corner (row 0, col 2) appears a second time"),
+            std::string::npos);
+}
+
+TEST_F(ObservationsFile, CamerasOfCornersKeepTheirPlaceWhereTheFirstBoardIsMissing) {
+  auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  for (auto& view : before.views) {
+    view.image = (view.camera == 0 ? "L/" : "R/") + std::to_string(view.frame) + ".png";
+  }
+  before.views[0].ids.clear();
+  before.views[0].pixels_px.clear();
+  write_corners(before, {}, folder_ / "corners.vnl");
+  const auto after = read_corners(folder_ / "corners.vnl", {}, {{640, 480}});
+  ASSERT_EQ(after.views.size(), before.views.size() - 1);
+  for (std::size_t i = 0; i < after.views.size(); ++i) {
+    EXPECT_EQ(after.views[i].camera, before.views[i + 1].camera);
+    EXPECT_EQ(after.views[i].image, before.views[i + 1].image);
+    EXPECT_EQ(after.views[i].pixels_px, before.views[i + 1].pixels_px);
+  }
+}
+
+TEST_F(ObservationsFile, ImagesThatWouldNotReadBackAreRefused) {
+  const auto complaint = [&](const std::string& left, const std::string& right) -> std::string {
+    auto observations = simulate_board(test::stereo_rig(), {}, 1).observations;
+    for (auto& view : observations.views) {
+      view.image = (view.camera == 0 ? left : right) + std::to_string(view.frame) + ".png";
+    }
+    try {
+      write_corners(observations, {}, folder_ / "corners.vnl");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint("L/", "R/"), "");
+  EXPECT_NE(complaint("my board/left", "right").find("my board/left0.png: a corners file cannot"),
+            std::string::npos);
+  EXPECT_NE(complaint("left", "#right").find("#right0.png: a corners file cannot"),
+            std::string::npos);
+  EXPECT_NE(complaint("image", "image").find("image0.png: by its name it would be read as camera"),
+            std::string::npos);
+}
+
 TEST(ImageName, LastNumberIsTheFrame) {
   EXPECT_EQ(parse_image_name("a/left07.png").frame, 7);
   EXPECT_EQ(parse_image_name("cam2_0031_raw.png").frame, 31);

@@ -90,5 +90,46 @@ TEST(RigFile, ValuesThatDisagreeAreAnError) {
   EXPECT_NE(complaint_of(text).find("left.f_px is"), std::string::npos);
 }
 
+TEST(RigFile, ParametersAreCheckedWithoutACovariance) {
+  RigEstimate e = estimate();
+  e.covariance.reset();
+  e.covariance_mvb.reset();
+  const std::string text = format_rig(e, KeepEvidence::no);
+  EXPECT_EQ(complaint_of(text), "");
+  EXPECT_NE(complaint_of(replaced(text, "\"parameters\":[", "\"parameters\":[9"))
+                .find("rig.json: parameters: left.f_px is"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "[\"left.f_px\"", "[\"left.f\""))
+                .find("rig.json: parameter_names: are not the rig's parameters"),
+            std::string::npos);
+}
+
+TEST(RigFile, MinimumVarianceBoundHasTheParametersSize) {
+  RigEstimate e = estimate();
+  e.covariance_mvb = Eigen::MatrixXd::Identity(3, 3);
+  EXPECT_NE(complaint_of(format_rig(e, KeepEvidence::no))
+                .find("rig.json: covariance_mvb.matrix: is 3x3 for 16 parameters"),
+            std::string::npos);
+}
+
+TEST(RigFile, EvidenceHasOneCornerAPixel) {
+  RigEstimate e = estimate();
+  BoardView& view = e.evidence->observations.views[0];
+  view.ids.pop_back();
+  EXPECT_NE(complaint_of(format_rig(e))
+                .find("rig.json: evidence.observations[0].ids: holds 53 corners for 54 pixels"),
+            std::string::npos);
+  view.ids.insert(view.ids.end(), {53, 53});
+  EXPECT_NE(complaint_of(format_rig(e)).find("ids: holds 55 corners for 54 pixels"),
+            std::string::npos);
+}
+
+TEST(RigFile, AnImageNameNeedNotBeUtf8) {
+  RigEstimate e = estimate();
+  e.evidence->observations.views[0].image = "caf\xe9/left01.png";
+  const RigFile file = parse_rig(format_rig(e), "rig.json");
+  EXPECT_EQ(file.estimate.evidence->observations.views[0].image, "caf\xef\xbf\xbd/left01.png");
+}
+
 }  // namespace
 }  // namespace vernier

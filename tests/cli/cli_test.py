@@ -17,6 +17,8 @@ import unittest
 PROGRAM = None
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 IMAGES = pathlib.Path('/usr/share/doc/opencv-doc/examples/data')
+if not (IMAGES / 'left01.jpg').exists():
+    IMAGES = ROOT / 'build/opencv-doc' / IMAGES.relative_to('/')
 
 
 def vernier(*words, **more):
@@ -74,6 +76,18 @@ class Help(Case):
     def test_doctor(self):
         found = json.loads(self.works('doctor', '--json').stdout)['findings']
         self.assertIn('Ceres', [f['what'] for f in found])
+
+    def test_doctor_says_where_the_real_pairs_are(self):
+        unpacked = self.folder / 'build/opencv-doc/usr/share/doc/opencv-doc/examples/data'
+        unpacked.mkdir(parents=True)
+        (unpacked / 'left01.jpg').touch()
+        installed = pathlib.Path('/usr/share/doc/opencv-doc/examples/data')
+        there = (installed / 'left01.jpg').exists()
+        expected = installed if there else unpacked.relative_to(self.folder)
+        done = self.works('doctor', '--json', cwd=self.folder)
+        pairs = next(f for f in json.loads(done.stdout)['findings']
+                     if f['what'] == 'real chessboard pairs')
+        self.assertEqual((pairs['value'], pairs['found']), (f'found in {expected}', True))
 
 
 @unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')

@@ -14,6 +14,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 IMAGES = '/usr/share/doc/opencv-doc/examples/data'
+if not os.path.exists(f'{IMAGES}/left01.jpg'):
+    IMAGES = f'{ROOT}/build/opencv-doc{IMAGES}'
 
 
 def block(text, language, tag):

@@ -25,6 +25,15 @@ TEST(Align, AnotherRoomScoresLower) {
   EXPECT_LT(other, 0.6 * same);
 }
 
+TEST(Align, FragmentsOfOneLineCountOnce) {
+  const auto room = test::random_room(12);
+  std::vector<PlaceLine> fragments;
+  for (int i = 0; i < 40; ++i) fragments.push_back(room[0]);  // one upright line, over and over
+  const double fragmented = align({fragments, {}}, {room, {}}).score;
+  EXPECT_LT(fragmented, 0.1);
+  EXPECT_LT(align({room, {}}, {room, {}}).score, 1);
+}
+
 TEST(Align, NothingInViewScoresZero) {
   EXPECT_EQ(align({}, {test::random_room(1), {}}).score, 0);
   EXPECT_EQ(align({}, {}).score, 0);

@@ -52,6 +52,15 @@ TEST(PghLocaliser, AbstainsWithTooFewLines) {
   EXPECT_EQ(answer.node, -1);
 }
 
+TEST(PghLocaliser, AbstainsWhereTwoPlacesAreTheSame) {
+  std::vector<MapNode> nodes;
+  for (int i = 0; i < 4; ++i) nodes.push_back({{10.0 * i, 0, 0}, {test::random_room(100), {}}});
+  const TopologicalMap map = make_map(std::move(nodes));
+  const LocalisationAnswer answer =
+      make_localiser("pgh", map)->localise({test::random_room(100), {}});
+  EXPECT_EQ(answer.status, LocalisationStatus::tie);
+}
+
 TEST(BaselineLocaliser, FindsAnImageItHasSeen) {
   std::vector<MapNode> nodes;
   for (int i = 0; i < 6; ++i) {

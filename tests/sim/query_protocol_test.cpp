@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/error.h"
@@ -12,31 +13,37 @@
 namespace vernier {
 namespace {
 
-/// Least distance on the floor and in heading from the route, by dense sampling.
-std::pair<double, double> from_route(const PlanePose& query) {
+/// Least distance on the floor from the route, and least turn from the direction of travel among
+/// the route's points within `across_m`, by dense sampling: of two legs that are both near, either
+/// may be the one the query was drawn on.
+std::pair<double, double> from_route(const PlanePose& query, double across_m) {
   const auto& route = test::small_office().route;
-  double nearest = 1e9, turn = 0;
+  double nearest = 1e9, turn = 1e9;
   for (double s = 0; s < route_length_m(route); s += 0.005) {
     const PlanePose p = route_point(route, s).pose;
-    // on two legs at once the one of like heading counts
-    const double d = distance_m(p, query) + 1e-3 * std::abs(heading_difference_rad(p, query));
-    if (d < nearest) {
-      nearest = d;
-      turn = std::abs(heading_difference_rad(p, query));
-    }
+    const double d = distance_m(p, query);
+    nearest = std::min(nearest, d);
+    if (d <= across_m) turn = std::min(turn, std::abs(heading_difference_rad(p, query)));
   }
   return {nearest, turn};
 }
 
-TEST(QueryProtocol, QueriesStayInTheirSpan) {
+// Seed 5. Of 40 uniform draws the widest is beyond half the span but for odds of 1e-12.
+TEST(QueryProtocol, QueriesStayInTheirSpanAndFillIt) {
   for (const auto protocol : {QueryProtocol::near_path, QueryProtocol::path}) {
     const ProtocolSpan reach = span(protocol);
+    double widest_m = 0, widest_rad = 0;
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
       const PlanePose q = draw_query(test::small_office_visibility(), protocol, 1.2, 5, trial);
-      const auto [distance, turn] = from_route(q);
+      const auto [distance, turn] = from_route(q, reach.across_m + 0.02);
       EXPECT_LE(distance, reach.across_m + 0.02);
+      EXPECT_LE(turn, reach.heading_rad + 1e-9);
       EXPECT_TRUE(is_free(test::small_office(), {q.x_m, q.y_m}, 0.12, 1.4));
+      widest_m = std::max(widest_m, distance);
+      widest_rad = std::max(widest_rad, turn);
     }
+    EXPECT_GT(widest_m, reach.across_m / 2);
+    EXPECT_GT(widest_rad, reach.heading_rad / 2);
   }
 }
 

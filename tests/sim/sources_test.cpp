@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "calib/error.h"
+#include "calib/random.h"
 #include "sim/route.h"
 #include "sim/sense.h"
 #include "tests/support/small_office.h"
@@ -36,7 +39,66 @@ class Sources : public testing::Test {
     const Eigen::Vector2d d = (s.b_px - s.a_px).normalized();
     return {-d.y(), d.x()};
   }
+  /// Column and row of a right pixel in the rectified image, in pixels from its centre.
+  static Eigen::Vector2d rectified_right(const Eigen::Vector2d& pixel) {
+    const Camera& right = test::nominal_rig().rig.cameras[1];
+    static const Rectification r = rectification(test::nominal_rig().rig);
+    return right.f_px() * (r.R_rectified_right * unproject(right, pixel)).hnormalized();
+  }
+  /// Displacement of every end in every eye between two sightings, by the segments' features.
+  static std::map<std::uint32_t, Eigen::Matrix<double, 8, 1>> moved(const StereoSighting& from,
+                                                                    const StereoSighting& to) {
+    std::map<std::uint32_t, Eigen::Matrix<double, 8, 1>> all;
+    if (from.segments.size() != to.segments.size()) return all;
+    for (std::size_t i = 0; i < to.segments.size(); ++i) {
+      const StereoSegment &a = from.segments[i], &b = to.segments[i];
+      all[b.feature] << b.left.a_px - a.left.a_px, b.left.b_px - a.left.b_px,
+          b.right.a_px - a.right.a_px, b.right.b_px - a.right.b_px;
+    }
+    return all;
+  }
 };
+
+/// Half the width of a binomial count's two-sided interval at a false-alarm rate of 1e-3.
+double binomial_reach(double trials, double share) {
+  return normal_quantile(1 - 5e-4) * std::sqrt(trials * share * (1 - share)) + 0.5;
+}
+
+/// Mean of the end points of each object's segments in the world.
+std::vector<Eigen::Vector3d> centroids(const World& world) {
+  std::vector<Eigen::Vector3d> sums(world.objects.size(), Eigen::Vector3d::Zero());
+  std::vector<double> counts(world.objects.size(), 0);
+  for (const WorldSegment& segment : world.segments) {
+    sums[segment.object] += segment.a_m + segment.b_m;
+    counts[segment.object] += 2;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(1.0, counts[i]);
+  return sums;
+}
+
+/// By how much each object edge seen from a place is shifted away from its object's centroid, by
+/// the world's segments; edges through the centroid have no such side and are left out.
+std::map<int, double> outward_shifts(const Sensor& sensor,
+                                     const Sensor& exact,
+                                     const PlanePose& place,
+                                     std::uint32_t frame) {
+  static const std::vector<Eigen::Vector3d> centre_m = centroids(test::small_office());
+  const Look seen = look(test::small_office_visibility(), sensor.rig(), place);
+  const Pose T_left = T_left_world(place, LookOptions{}.mount);
+  const StereoSighting shifted = sensor.sense(seen, 7, 0, frame), e = exact.sense(seen, 7, 0, 0);
+  std::map<int, double> outward;
+  for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
+    const SeenEdge& edge = e.true_edges[i];
+    const Eigen::Vector3d n = edge.a_m.cross(edge.b_m).normalized();
+    const double side = n.dot(T_left * centre_m[edge.object]);
+    if (edge.object == 0 || std::abs(side) < 1e-6) continue;
+    const ImageSegment &from = e.segments[i].left, &to = shifted.segments[i].left;
+    const Eigen::Vector2d d = (from.b_px - from.a_px).normalized();
+    const double shift = (to.a_px - from.a_px).dot(Eigen::Vector2d(-d.y(), d.x()));
+    outward[edge.segment] = side > 0 ? -shift : shift;
+  }
+  return outward;
+}
 
 TEST_F(Sources, LateralShiftMovesBothEyesAlikeAlongTheNormal) {
   SourceSettings settings = no_sources();
@@ -53,6 +115,33 @@ TEST_F(Sources, LateralShiftMovesBothEyesAlikeAlongTheNormal) {
     EXPECT_LE(left.norm(), 4.5 + 1e-9);
     EXPECT_NEAR(right.dot(normal(e.right)), size, 1e-9);
   }
+}
+
+// Every edge of an object that two consecutive places see.
+TEST_F(Sources, LateralShiftStaysWithTheSurface) {
+  SourceSettings settings = no_sources();
+  settings.lateral_shift_px = 3;
+  const Rig& rig = test::nominal_rig().rig;
+  const Sensor sensor(rig, settings), clean(rig, no_sources());
+  const auto places = map_places(test::small_office().route, 0.5);
+  std::map<int, double> before;
+  int both = 0, in = 0;
+  for (std::uint32_t frame = 0; frame < places.size(); ++frame) {
+    const auto now = outward_shifts(sensor, clean, places[frame], frame);
+    for (const auto& [segment, shift] : now) {
+      EXPECT_GE(std::abs(shift), 1.5 - 1e-9);
+      EXPECT_LE(std::abs(shift), 4.5 + 1e-9);
+      const auto last = before.find(segment);
+      if (last == before.end()) continue;
+      EXPECT_NEAR(last->second, shift, 1e-9) << "segment " << segment << " at place " << frame;
+      ++both;
+      in += shift < 0;
+    }
+    before = now;
+  }
+  EXPECT_GT(both, 500);
+  EXPECT_GT(in, both / 10);
+  EXPECT_LT(in, both - both / 10);
 }
 
 TEST_F(Sources, IndependentShiftsDifferBetweenEyes) {
@@ -75,13 +164,37 @@ TEST_F(Sources, EdgeLossTakesExactlyItsShareAndKeepsTheRestOnTheEdge) {
   const StereoSighting left_over = sense(settings);
   std::map<std::uint32_t, double> kept;
   for (const StereoSegment& s : left_over.segments) {
-    // pieces stay on the edge: every end projects from a point between the true ends
     kept[s.feature / 2] += s.left.length_px();
   }
   // With little distortion lengths along chord and curve agree to a few parts in 1e4.
   for (const StereoSegment& e : exact().segments) {
     ASSERT_TRUE(kept.contains(e.feature / 2));
     EXPECT_NEAR(kept[e.feature / 2] / e.left.length_px(), 0.8, 5e-3);
+  }
+}
+
+TEST_F(Sources, EdgeLossLeavesPiecesWhoseEndsLieOnTheEdge) {
+  SourceSettings settings = no_sources();
+  settings.edge_loss = 0.2;
+  const Rig& rig = test::nominal_rig().rig;
+  std::map<std::uint32_t, SeenEdge> truth;
+  for (const SeenEdge& edge : seen().edges) truth[edge.feature] = edge;
+  const StereoSighting left_over = sense(settings);
+  EXPECT_GT(left_over.segments.size(), seen().edges.size());
+  for (const StereoSegment& s : left_over.segments) {
+    const SeenEdge& edge = truth.at(s.feature / 2);
+    for (int eye = 0; eye < 2; ++eye) {
+      const Eigen::Vector3d a = (rig.T_camera_first[eye] * edge.a_m).normalized();
+      const Eigen::Vector3d b = (rig.T_camera_first[eye] * edge.b_m).normalized();
+      const Eigen::Vector3d n = a.cross(b).normalized();
+      const ImageSegment& piece = eye == 0 ? s.left : s.right;
+      for (const Eigen::Vector2d& end : {piece.a_px, piece.b_px}) {
+        const Eigen::Vector3d ray = unproject(rig.cameras[eye], end).normalized();
+        EXPECT_LT(std::abs(n.dot(ray)), 1e-9);
+        EXPECT_GT(n.dot(a.cross(ray)), -1e-9);
+        EXPECT_GT(n.dot(ray.cross(b)), -1e-9);
+      }
+    }
   }
 }
 
@@ -115,22 +228,47 @@ TEST_F(Sources, EpipolarRejectionDropsFlatLinesOnly) {
   EXPECT_LT(steep.segments.size(), exact().segments.size());
 }
 
+// Seed 7. Slips are uniform: half to either side and three quarters beyond 5 px, two-sided
+// false-alarm rate 1e-3 each (normal approximation).
 TEST_F(Sources, StereoMismatchMovesTheRightLineAlongItsEpipolarLine) {
   SourceSettings settings = no_sources();
   settings.stereo_mismatch = 1;
   settings.stereo_mismatch_px = 20;
   const StereoSighting wrong = sense(settings);
-  const Rig& rig = test::nominal_rig().rig;
-  const Rectification r = rectification(rig);
+  ASSERT_EQ(wrong.segments.size(), exact().segments.size());
+  const auto n = static_cast<double>(wrong.segments.size());
+  double to_the_right = 0, far = 0;
   for (std::size_t i = 0; i < wrong.segments.size(); ++i) {
-    EXPECT_EQ(wrong.segments[i].left.a_px, exact().segments[i].left.a_px);
-    const auto row = [&](const Eigen::Vector2d& pixel) {
-      const Eigen::Vector3d ray = r.R_rectified_right * unproject(rig.cameras[1], pixel);
-      return ray.y() / ray.z();
-    };
-    EXPECT_NEAR(row(wrong.segments[i].right.a_px), row(exact().segments[i].right.a_px), 1e-9);
-    EXPECT_LT((wrong.segments[i].right.a_px - exact().segments[i].right.a_px).norm(), 22);
+    const StereoSegment &w = wrong.segments[i], &e = exact().segments[i];
+    EXPECT_EQ(w.left.a_px, e.left.a_px);
+    EXPECT_EQ(w.left.b_px, e.left.b_px);
+    const Eigen::Vector2d a = rectified_right(w.right.a_px) - rectified_right(e.right.a_px);
+    const Eigen::Vector2d b = rectified_right(w.right.b_px) - rectified_right(e.right.b_px);
+    EXPECT_LT((a - b).norm(), 1e-6);  // the whole line
+    EXPECT_NEAR(a.y(), 0, 1e-6);
+    EXPECT_NE(w.right.a_px, e.right.a_px);
+    EXPECT_LE(std::abs(a.x()), 20 + 1e-6);
+    to_the_right += a.x() > 0;
+    far += std::abs(a.x()) > 5;
   }
+  EXPECT_NEAR(to_the_right, 0.5 * n, binomial_reach(n, 0.5));
+  EXPECT_NEAR(far, 0.75 * n, binomial_reach(n, 0.75));
+}
+
+// Seed 7, two-sided false-alarm rate 1e-3 (normal approximation).
+TEST_F(Sources, StereoMismatchMovesItsShareOfLines) {
+  SourceSettings settings = no_sources();
+  settings.stereo_mismatch = 0.5;
+  settings.stereo_mismatch_px = 20;
+  double wrong = 0, n = 0;
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    for (const auto& [feature, d] : moved(exact(), sense(settings, trial))) {
+      wrong += d.norm() > 0;
+      ++n;
+    }
+  }
+  EXPECT_NEAR(wrong, 0.5 * n, binomial_reach(n, 0.5));
+  EXPECT_GE(n, 10.0 * static_cast<double>(exact().segments.size()));
 }
 
 TEST_F(Sources, CornerSourcesTouchCornersOnly) {
@@ -165,6 +303,44 @@ TEST_F(Sources, SwitchingOneOnLeavesTheDrawsOfOthers) {
     EXPECT_EQ(a.segments[i].left.a_px, b.segments[i].left.a_px);
     EXPECT_EQ(a.segments[i].left.b_px, b.segments[i].left.b_px);
   }
+}
+
+TEST_F(Sources, EndpointErrorIsTheSameWhateverActsBeforeIt) {
+  SourceSettings bare = no_sources();
+  bare.endpoint_sigma_px = 0.15;
+  const auto alone = moved(exact(), sense(bare));
+  ASSERT_EQ(alone.size(), exact().segments.size());
+  for (const auto before : {&SourceSettings::edge_loss, &SourceSettings::lateral_shift_px}) {
+    SourceSettings settings = no_sources();
+    settings.*before = 0.2;
+    const StereoSighting noise_free = sense(settings);
+    settings.endpoint_sigma_px = 0.15;
+    std::size_t compared = 0;
+    for (const auto& [feature, d] : moved(noise_free, sense(settings))) {
+      if (feature % 2 != 0) continue;  // a second piece is not there without loss
+      EXPECT_LT((d - alone.at(feature)).norm(), 1e-9);
+      ++compared;
+    }
+    EXPECT_GT(compared, alone.size() / 2);
+  }
+}
+
+TEST_F(Sources, LargerSharesOfMismatchTakeASupersetAndTheSameSlips) {
+  SourceSettings little = no_sources(), much = no_sources();
+  little.stereo_mismatch = 0.1;
+  much.stereo_mismatch = 0.4;
+  little.stereo_mismatch_px = much.stereo_mismatch_px = 20;
+  const auto a = moved(exact(), sense(little)), b = moved(exact(), sense(much));
+  int few = 0, many = 0;
+  for (const auto& [feature, d] : a) {
+    few += d.norm() > 0;
+    many += b.at(feature).norm() > 0;
+    if (d.norm() > 0) {
+      EXPECT_EQ(d, b.at(feature));
+    }
+  }
+  EXPECT_GT(few, 0);
+  EXPECT_GT(many, few);
 }
 
 TEST_F(Sources, LargerSharesTakeASuperset) {

@@ -60,7 +60,7 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
   EXPECT_NE(complaint_of("[study]\n[localiser]\nmethod = \"sift\"\n").find("no localiser"),
             std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sweep]\n\"sources.edge_los\" = [1]\n")
-                .find("unknown key 'edge_los' in [sources]"),
+                .find("s.toml:3: unknown key 'edge_los' in [sources]"),
             std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sweep]\nsources.edge_loss = [1]\n").find("quoted"),
             std::string::npos);
@@ -72,6 +72,11 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
   EXPECT_NE(complaint_of("[study]\n[sweep]\n\"study.trails\" = [1]\n").find("trials"),
             std::string::npos);
   EXPECT_NE(complaint_of("[world]\nfile = \"x\"\n").find("has no 'study'"), std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[sweep]\n\"sources.edge_loss\" = [0.1,\n 3]\n")
+                .find("s.toml:4: sources.edge_loss = 3 is out of range"),
+            std::string::npos);
+  EXPECT_NE(complaint_of("[study]\ntrials = 4294967298\n").find("trials = 4294967298 is out"),
+            std::string::npos);
   EXPECT_NE(complaint_of("[study]\ntrials = 0\n").find("study.trials = 0"), std::string::npos);
 }
 

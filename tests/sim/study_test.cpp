@@ -37,6 +37,7 @@ class StudyRuns : public testing::Test {
   static std::string words(const StudyResults& results) {
     std::string text;
     for (const CellResult& cell : results.cells) {
+      text += std::to_string(cell.ceiling) + "\n";
       for (TrialResult t : cell.trials) {
         char line[400];
         std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %a %d %a\n", t.trial,

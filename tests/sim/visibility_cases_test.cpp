@@ -253,10 +253,34 @@ TEST(VisibilityCases, BadArgumentsAreNamed) {
   EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.near_m = 0}), Error);
   EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.near_m = 3, .far_m = 2}), Error);
   EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.surface_gap_m = -1}), Error);
-  EXPECT_THROW(visibility.visible_runs(camera_with(500, -2), T), Error);  // folds in the image
   Camera short_of_one = camera_with(500, 0);
   short_of_one.parameters.conservativeResize(4);
   EXPECT_THROW(visibility.visible_runs(short_of_one, T), Error);
+}
+
+// A real lens: barrel distortion whose polynomial folds just inside the image's corners. What lies
+// beyond the fold is not imaged; the rest is seen as ever.
+TEST(VisibilityCases, AFoldInsideTheCornersHidesOnlyWhatLiesBeyond) {
+  World world;
+  for (double x = -4; x <= 4; x += 0.5) world.segments.push_back({{x, 4, 0}, {x, 4, 3}, 0});
+  const Visibility visibility(world);
+  const Camera camera = camera_with(533, -0.29);
+  ASSERT_FALSE(try_unproject(camera, {-0.5, -0.5}));
+  const Pose T = looking_at({0, 0, 1.5}, {0, 4, 1.5});
+  const auto runs = visibility.visible_runs(camera, T);
+  EXPECT_GT(runs.size(), 8u);
+  for (const VisibleRun& run : runs) {
+    const WorldSegment& s = world.segments[run.segment];
+    for (const double t : {run.t0, 0.5 * (run.t0 + run.t1), run.t1}) {
+      const Eigen::Vector3d x = T * (s.a_m + t * (s.b_m - s.a_m));
+      const Eigen::Vector2d pixel = project(camera, x);
+      EXPECT_TRUE(in_image(camera, pixel - 1e-9 * Eigen::Vector2d::Ones()) ||
+                  in_image(camera, pixel + 1e-9 * Eigen::Vector2d::Ones()));
+      const auto ray = try_unproject(camera, pixel);
+      ASSERT_TRUE(ray);
+      EXPECT_LT((*ray - x / x.z()).norm(), 1e-6);  // the pixel's own ray: this side of the fold
+    }
+  }
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ void Session::result(const Json& object, const std::string& text) const {
   if (json) {
     Json out = object;
     if (!doubts_.empty()) out["doubts"] = doubts_;
-    fmt::print("{}\n", out.dump());
+    // a file name may hold any bytes
+    fmt::print("{}\n", out.dump(-1, ' ', false, Json::error_handler_t::replace));
   } else {
     fmt::print("{}", text);
   }

@@ -197,9 +197,31 @@ class BadInput(Case):
         self.complains('report', self.folder, '-o', self.folder / 'r.html',
                        of='is not the folder of a study')
 
+    def test_numbers_that_are_none(self):
+        for psi_c in ('nan', 'inf'):
+            self.complains('sample', 'nominal', '--psi-c', psi_c, '-o', self.folder / 's.csv',
+                           of='not a finite number')
+        self.complains('sample', 'nominal', '--seed', '-1', '-o', self.folder / 's.csv',
+                       of='whole number')
+        self.complains('simulate', '--pose', '1,2,3,', of='is not 3 numbers')
+
+    def test_a_file_where_a_folder_is_wanted(self):
+        (self.folder / 'file').write_text('kept')
+        (self.folder / 's.toml').write_text('[study]\ntrials = 5\n')
+        self.complains('study', self.folder / 's.toml', '-o', self.folder / 'file', of='file')
+        self.assertEqual((self.folder / 'file').read_text(), 'kept')
+
     def test_output_that_cannot_be_written(self):
         self.complains('world', 'make', '-o', self.folder / 'no' / 'such' / 'w.toml',
                        of='cannot be written')
+
+
+class WrongRigs(Case):
+    def test_a_rig_too_wrong_to_use_fails_trials_and_not_the_study(self):
+        (self.folder / 's.toml').write_text('[study]\ntrials = 10\n[map]\nspacing_m = 4\n'
+                                            '[sources]\ncalibration = 300\n')
+        done = self.works('study', self.folder / 's.toml', '-o', self.folder / 'out', '--json')
+        self.assertLess(json.loads(done.stdout)['cells'][0]['success'], 0.5)
 
 
 class Doubt(Case):

@@ -13,7 +13,16 @@
 
 namespace vernier {
 
-void write_atomically(const std::filesystem::path& file, std::string_view content) {
+void write_atomically(const std::filesystem::path& named, std::string_view content) {
+  // A rename would replace a link by a file, and a device or pipe too: links are followed, what is
+  // no file is refused.
+  std::error_code unknown;
+  const std::filesystem::path file = std::filesystem::is_symlink(named)
+                                         ? std::filesystem::weakly_canonical(named, unknown)
+                                         : named;
+  if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
+    throw Error(named.string(), "is there and is no regular file", "name a file");
+  }
   const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
   {
     std::ofstream out(temporary, std::ios::binary);

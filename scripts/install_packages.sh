@@ -37,7 +37,7 @@ packages=(
   libhwy-dev
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev); fi
-if [[ $scope == test ]]; then packages+=(clang-format python3 chromium); fi
+if [[ $scope == test ]]; then packages+=(clang-format git python3 chromium); fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }

@@ -211,6 +211,14 @@ class BadInput(Case):
         self.complains('study', self.folder / 's.toml', '-o', self.folder / 'file', of='file')
         self.assertEqual((self.folder / 'file').read_text(), 'kept')
 
+    def test_links_are_followed_and_pipes_refused(self):
+        os.mkfifo(self.folder / 'pipe')
+        self.complains('world', 'make', '-o', self.folder / 'pipe', of='no regular file')
+        (self.folder / 'link').symlink_to(self.folder / 'target')
+        self.works('world', 'make', '-o', self.folder / 'link')
+        self.assertTrue((self.folder / 'link').is_symlink())
+        self.assertTrue((self.folder / 'target').is_file())
+
     def test_output_that_cannot_be_written(self):
         self.complains('world', 'make', '-o', self.folder / 'no' / 'such' / 'w.toml',
                        of='cannot be written')

@@ -1,4 +1,9 @@
 # Makes a page from a small study with the program itself and gives it to the browser test.
+execute_process(COMMAND ${NODE} --version OUTPUT_VARIABLE node_version)
+if(NOT node_version MATCHES "^v[2-9][0-9]")
+  message("report page: skipped: its browser driver needs Node.js 20, this is ${node_version}")
+  return()
+endif()
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 file(WRITE ${FOLDER}/small.toml

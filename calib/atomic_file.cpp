@@ -17,9 +17,10 @@ void write_atomically(const std::filesystem::path& named, std::string_view conte
   // A rename would replace a link by a file, and a device or pipe too: links are followed, what is
   // no file is refused.
   std::error_code unknown;
-  const std::filesystem::path file = std::filesystem::is_symlink(named)
-                                         ? std::filesystem::weakly_canonical(named, unknown)
-                                         : named;
+  std::filesystem::path file = named;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(file, unknown); ++links) {
+    file = file.parent_path() / std::filesystem::read_symlink(file, unknown);
+  }
   if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
     throw Error(named.string(), "is there and is no regular file", "name a file");
   }

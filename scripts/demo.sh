@@ -40,7 +40,7 @@ $vernier simulate --world workshop --rig nominal --pose 10,7.5,0 --seed 1 --json
 step "localisation trials under calibrations of three qualities"
 rm --recursive --force "$out/study" # else a second demo would have nothing left to run
 $vernier study scripts/demo_study.toml -o "$out/study"
-step "the same at psi_c = 1, asked nearer to and farther from the recorded path"
+step "the same at psi_c = 1, asked farther from the recorded path"
 rm --recursive --force "$out/path"
 $vernier study scripts/path_study.toml -o "$out/path"
 step "the page"

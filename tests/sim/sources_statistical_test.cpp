@@ -10,15 +10,7 @@
 namespace vernier {
 namespace {
 
-const Look& seen() {
-  static const Look look_at = [] {
-    LookOptions options;
-    options.with_corners = true;
-    return look(test::small_office_visibility(), test::nominal_rig().rig,
-                map_places(test::small_office().route, 2)[2], options);
-  }();
-  return look_at;
-}
+const Look& seen() { return test::office_look(); }
 
 // Seed 3, 40 trials. Sum of squares of end-point errors over sigma² is chi-squared; two-sided
 // false-alarm rate 1e-3.

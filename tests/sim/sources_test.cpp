@@ -19,15 +19,7 @@ namespace {
 /// A look at the office with corners, and sightings of it under given settings.
 class Sources : public testing::Test {
  protected:
-  static const Look& seen() {
-    static const Look look_at = [] {
-      LookOptions options;
-      options.with_corners = true;
-      return look(test::small_office_visibility(), test::nominal_rig().rig,
-                  map_places(test::small_office().route, 2)[2], options);
-    }();
-    return look_at;
-  }
+  static const Look& seen() { return test::office_look(); }
   static StereoSighting sense(const SourceSettings& settings, std::uint32_t trial = 0) {
     return Sensor(test::nominal_rig().rig, settings, 1e-6).sense(seen(), 7, trial, 0);
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "datasets/shipped.h"
+#include "sim/look.h"
+#include "sim/route.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
@@ -27,6 +29,17 @@ inline const Visibility& small_office_visibility() {
 inline const RigEstimate& nominal_rig() {
   static const RigEstimate rig = datasets::nominal();
   return rig;
+}
+
+/// One look at the office by the nominal rig, corners included.
+inline const Look& office_look() {
+  static const Look seen = [] {
+    LookOptions options;
+    options.with_corners = true;
+    return look(small_office_visibility(), nominal_rig().rig,
+                map_places(small_office().route, 2)[2], options);
+  }();
+  return seen;
 }
 
 }  // namespace vernier::test

@@ -14,6 +14,7 @@ struct BoardState {
   Rig rig;
   std::vector<int> frames;          ///< ascending
   std::vector<Pose> T_first_board;  ///< one a frame
+  Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board_warp.h)
 };
 
 /// A start from the corners alone: focal lengths from the homographies' vanishing points with the

@@ -27,6 +27,7 @@ struct CalibrationEvidence {
   BoardObservations observations;
   std::vector<int> frames;          ///< ascending
   std::vector<Pose> T_first_board;  ///< one a frame
+  Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board_warp.h)
 };
 
 /// A rig and how well it is known: the content of a rig.json.

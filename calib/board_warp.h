@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace vernier {
+
+/// The out-of-plane shape of a board that is not quite flat, as two parabolas (the model of mrcal
+/// 2.2's calobject_warp):
+///
+///     z(x, y) = warp_x (1 - x²) + warp_y (1 - y²),   x, y in [-1, 1] over the target's extent
+///
+/// One row a target point: the derivatives of its z by (warp_x, warp_y), no unit.
+Eigen::Matrix<double, Eigen::Dynamic, 2> warp_shapes(const std::vector<Eigen::Vector3d>& target_m);
+
+/// The target's points with the warp (metres) added to their z.
+std::vector<Eigen::Vector3d> warped_target(std::vector<Eigen::Vector3d> target_m,
+                                           const Eigen::Vector2d& warp_m);
+
+}  // namespace vernier

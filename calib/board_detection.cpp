@@ -5,10 +5,10 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <array>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "calib/error.h"
 #include "calib/observations_file.h"
@@ -83,29 +83,27 @@ BoardView view_of(const BoardDetection& found) {
   return view;
 }
 
-/// Throws Error where no frame has an image of both cameras.
-void check_frames_pair(const std::array<std::vector<std::filesystem::path>, 2>& images,
-                       const std::string& place) {
-  std::array<std::vector<int>, 2> frames;
-  for (int camera = 0; camera < 2; ++camera) {
-    for (const auto& image : images[camera]) {
-      frames[camera].push_back(parse_image_name(image).frame);
+/// Throws Error where a camera has no frame number in common with the cameras before it.
+void check_frames_meet(const std::vector<std::vector<std::filesystem::path>>& images) {
+  std::set<int> before;
+  for (std::size_t camera = 0; camera < images.size(); ++camera) {
+    std::set<int> frames;
+    for (const auto& image : images[camera]) frames.insert(parse_image_name(image).frame);
+    const auto met = [&](int frame) { return before.count(frame) > 0; };
+    if (camera > 0 && std::none_of(frames.begin(), frames.end(), met)) {
+      const auto& first = images.front().front();
+      const auto& own = images[camera].front();
+      throw Error(own.string(),
+                  "no image of its camera has the frame number of an image before it (here " +
+                      std::to_string(parse_image_name(own).frame) + ", " +
+                      std::to_string(parse_image_name(first).frame) + " in " + first.string() + ")",
+                  "the last number in a name is the frame; give simultaneous images the same");
     }
-  }
-  const auto on_right = [&](int frame) {
-    return std::find(frames[1].begin(), frames[1].end(), frame) != frames[1].end();
-  };
-  if (std::none_of(frames[0].begin(), frames[0].end(), on_right)) {
-    throw Error(place,
-                "no left image has the frame number of a right one (left: " +
-                    std::to_string(frames[0].front()) + " in " + images[0].front().string() +
-                    ", right: " + std::to_string(frames[1].front()) + " in " +
-                    images[1].front().string() + ")",
-                "the last number in a name is the frame; give a pair the same");
+    before.insert(frames.begin(), frames.end());
   }
 }
 
-void add_detection(const BoardDetection& found, PairDetections& result) {
+void add_detection(const BoardDetection& found, ImageDetections& result) {
   auto& size = result.observations.size_px[found.camera];
   if (size == Eigen::Vector2i::Zero()) size = found.size_px;
   if (size != found.size_px) {
@@ -162,23 +160,22 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
   return files;
 }
 
-PairDetections detect_pairs(const std::string& left_pattern,
-                            const std::string& right_pattern,
-                            const Chessboard& board) {
-  const std::array images{matching_files(left_pattern), matching_files(right_pattern)};
-  check_frames_pair(images, left_pattern + " and " + right_pattern);
-  PairDetections result;
+ImageDetections detect_images(const std::vector<std::string>& patterns, const Chessboard& board) {
+  std::vector<std::vector<std::filesystem::path>> images;
+  for (const std::string& pattern : patterns) images.push_back(matching_files(pattern));
+  check_frames_meet(images);
+  ImageDetections result;
   result.observations.target_m = target_points(board);
-  result.observations.size_px.assign(2, Eigen::Vector2i::Zero());
-  for (int camera = 0; camera < 2; ++camera) {
+  result.observations.size_px.assign(images.size(), Eigen::Vector2i::Zero());
+  for (std::size_t camera = 0; camera < images.size(); ++camera) {
     for (const auto& image : images[camera]) {
       BoardDetection found = detect_board(image, board);
-      found.camera = camera;
+      found.camera = static_cast<int>(camera);
       add_detection(found, result);
     }
   }
   if (result.observations.views.empty()) {
-    throw Error(left_pattern,
+    throw Error(patterns.front(),
                 "no board of " + std::to_string(board.columns) + "x" + std::to_string(board.rows) +
                     " inner corners in any image",
                 "check --board (inner corners, not squares) and look at the images");
@@ -187,7 +184,7 @@ PairDetections detect_pairs(const std::string& left_pattern,
   return result;
 }
 
-void write_corners(const PairDetections& found,
+void write_corners(const ImageDetections& found,
                    const Chessboard& board,
                    const std::filesystem::path& file) {
   BoardObservations all = found.observations;

@@ -17,7 +17,7 @@ struct BoardDetection {
   Eigen::Vector2i size_px{0, 0};
   std::vector<Eigen::Vector2d> corners_px;  ///< row by row; empty where no board was found
   std::string reason;                       ///< why not, where not
-  int camera = 0;                           ///< of a pair: 0 left, 1 right
+  int camera = 0;                           ///< index of the pattern it came by
 };
 
 /// Finds a chessboard: OpenCV's two finders in turn, then always sub-pixel refinement by the
@@ -32,19 +32,20 @@ BoardDetection detect_board(const std::filesystem::path& image, const Chessboard
 /// names. Throws Error where there are none.
 std::vector<std::filesystem::path> matching_files(const std::string& pattern);
 
-/// Observations of a stereo pair's images: left and right images of the same number are one frame.
-/// Frames whose board was found in only one image count for that camera. Throws Error where
-/// numbers do not pair at all, sizes disagree, or no board is found.
-struct PairDetections {
+/// What became of the images of a rig.
+struct ImageDetections {
   BoardObservations observations;
   std::vector<BoardDetection> refused;  ///< images without a board
 };
-PairDetections detect_pairs(const std::string& left_pattern,
-                            const std::string& right_pattern,
-                            const Chessboard& board);
+
+/// Observations from the images of one or more cameras, one pattern a camera: images of the same
+/// number are one frame. Frames whose board was found by some cameras only count for those. Throws
+/// Error where a camera has no frame number in common with those before it, sizes disagree, or no
+/// board is found.
+ImageDetections detect_images(const std::vector<std::string>& patterns, const Chessboard& board);
 
 /// A corners file of all the images, with a line of dashes for each that was refused.
-void write_corners(const PairDetections& found,
+void write_corners(const ImageDetections& found,
                    const Chessboard& board,
                    const std::filesystem::path& file);
 

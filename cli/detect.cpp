@@ -2,19 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board_detection.h"
 #include "calib/error.h"
-#include "cli/session.h"
+#include "cli/board_input.h"
 
 namespace vernier::cli {
 namespace {
 
 struct Options {
-  std::string left, right, board, output;
+  BoardInput input;
+  std::string output;
 };
 
 void run(const Options& options, Session& session) {
-  const auto [columns, rows] = parse_size(options.board, "--board");
+  const auto [columns, rows] = parse_size(options.input.board, "--board");
   const Chessboard board{columns, rows, 1.0};
-  const PairDetections found = detect_pairs(options.left, options.right, board);
+  const ImageDetections found = detect_images(image_patterns(options.input), board);
   write_corners(found, board, options.output);
   Json refused = Json::array();
   std::string text =
@@ -38,10 +39,7 @@ void add_detect(CLI::App& app, Session& session) {
   CLI::App* verb = add_verb(app, session, "detect", "find chessboard corners in image pairs",
                             "vernier detect --left 'left*.png' --right 'right*.png' --board 9x6 "
                             "-o corners.vnl");
-  verb->add_option("--left", options->left, "left images (a quoted pattern)")->required();
-  verb->add_option("--right", options->right, "right images; the same number, the same frame")
-      ->required();
-  verb->add_option("--board", options->board, "inner corners, such as 9x6")->required();
+  add_image_options(verb, options->input);
   verb->add_option("-o,--output", options->output, "corners file, in mrcal's format")->required();
   verb->callback(
       [options, &session] { session.action = [=, &session] { run(*options, session); }; });

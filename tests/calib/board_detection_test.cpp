@@ -50,7 +50,7 @@ TEST_F(BoardDetectionTest, CornersFileKeepsLeftAndRightWhereTheFirstLeftBoardIsM
   write_image("L/02.pgm");
   write_image("R/01.pgm");
   write_image("R/02.pgm");
-  const PairDetections found = detect_pairs(pattern("L/*.pgm"), pattern("R/*.pgm"), board);
+  const ImageDetections found = detect_images({pattern("L/*.pgm"), pattern("R/*.pgm")}, board);
   ASSERT_EQ(found.refused.size(), 1u);
   EXPECT_EQ(found.refused[0].reason, "no 9x6 board found");
   write_corners(found, board, folder_ / "corners.vnl");
@@ -75,10 +75,10 @@ TEST_F(BoardDetectionTest, FramesThatDoNotPairAreAnError) {
   write_image("L/01.pgm");
   write_image("R/11.pgm");
   try {
-    detect_pairs(pattern("L/*.pgm"), pattern("R/*.pgm"), board);
+    detect_images({pattern("L/*.pgm"), pattern("R/*.pgm")}, board);
     FAIL() << "no Error";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("no left image has the frame number of a right one"),
+    EXPECT_NE(std::string(error.what()).find("has the frame number of an image before it"),
               std::string::npos)
         << error.what();
   }

@@ -80,8 +80,8 @@ TEST(RealPairs, BothModelsFitWithinTheirBounds) {
   const auto data = test::data_folder();
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
-  const PairDetections found =
-      detect_pairs(folder + "/left*.png", folder + "/right*.png", {9, 6, 0.025});
+  const ImageDetections found =
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025});
   EXPECT_EQ(found.observations.views.size(), 26u);
   const RigEstimate radial = calibrate(found.observations);
   EXPECT_LE(radial.calibration->rms_px, 0.20);

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/board_observations.h"
+#include "cli/session.h"
+
+namespace vernier::cli {
+
+/// What the command line says of the board and where its corners come from: images, a corners file
+/// or an observations file. The verbs that calibrate share it.
+struct BoardInput {
+  std::string verb;                  ///< for messages
+  std::string left, right;           ///< patterns of images; left alone is one camera
+  std::vector<std::string> cameras;  ///< instead, a pattern a camera
+  std::string corners, observations, size;
+  std::string board;
+  double square_m = 0;
+};
+
+/// Adds the options of the images and the board alone (detect).
+void add_image_options(CLI::App* verb, BoardInput& input);
+
+/// Adds all options that say where corners come from. `input` must outlive the parsing.
+void add_board_options(CLI::App* verb, BoardInput& input);
+
+/// The patterns of the cameras' images, first camera first. Throws Error where they are said twice
+/// or not at all.
+std::vector<std::string> image_patterns(const BoardInput& input);
+
+/// The board. Throws Error where it is not given in full.
+Chessboard board_of(const BoardInput& input);
+
+/// Reads or detects the corners; images without a board are warned of.
+BoardObservations load(const BoardInput& input, Session& session);
+
+}  // namespace vernier::cli

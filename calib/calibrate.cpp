@@ -2,221 +2,195 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibrate.h"
 
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/minimise_reprojection.h"
 #include "calib/small_sample_covariance.h"
-#include "calib/view_linearisation.h"
 
 namespace vernier {
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// A pose as Ceres sees it: rotation vector (radians) and translation (metres). Its derivative is
-/// the left tangent's times J_l, which keeps Ceres' own manifolds and their half angles out.
-void write_block(const Pose& pose, double* block) {
-  Eigen::Map<Eigen::Vector3d>{block} = vector_from_rotation(pose.R);
-  Eigen::Map<Eigen::Vector3d>(block + 3) = pose.t;
-}
-
-Pose read_block(const double* b) {
-  return {rotation_from_vector({b[0], b[1], b[2]}), {b[3], b[4], b[5]}};
-}
-
-/// All parameters in one piece of memory. Ceres orders blocks by their addresses, so separate
-/// allocations would let the order of its sums, and with it the last bits, change from run to run.
-class ParameterBuffer {
- public:
-  explicit ParameterBuffer(const BoardState& state)
-      : rig_(state.rig), intrinsics_(pose_index(rig_, 1)), cameras_(rig_.cameras.size()) {
-    values_.resize(intrinsics_ + 6 * (cameras_ + state.frames.size()));
-    for (std::size_t c = 0; c < cameras_; ++c) {
-      const Eigen::VectorXd& a = rig_.cameras[c].parameters;
-      std::copy(a.begin(), a.end(), intrinsics(static_cast<int>(c)));
-      write_block(rig_.T_camera_first[c], camera_pose(static_cast<int>(c)));
-    }
-    for (std::size_t f = 0; f < state.frames.size(); ++f) {
-      write_block(state.T_first_board[f], board(f));
-    }
-  }
-
-  double* intrinsics(int camera) { return values_.data() + intrinsics_index(rig_, camera); }
-  double* camera_pose(int camera) { return values_.data() + intrinsics_ + 6 * camera; }
-  double* board(std::size_t frame) { return values_.data() + intrinsics_ + 6 * (cameras_ + frame); }
-
-  void write_to(BoardState& state) {
-    for (std::size_t c = 0; c < cameras_; ++c) {
-      Eigen::VectorXd& a = state.rig.cameras[c].parameters;
-      a = Eigen::Map<Eigen::VectorXd>(intrinsics(static_cast<int>(c)), a.size());
-      if (c > 0) state.rig.T_camera_first[c] = read_block(camera_pose(static_cast<int>(c)));
-    }
-    for (std::size_t f = 0; f < state.frames.size(); ++f) {
-      state.T_first_board[f] = read_block(board(f));
-    }
-  }
-
- private:
-  Rig rig_;
-  std::size_t intrinsics_, cameras_;
-  std::vector<double> values_;
-};
-
-/// Residuals of one view: blocks are the intrinsics, the board's pose and, for every camera but
-/// the first, the camera's pose.
-class ViewCost : public ceres::CostFunction {
- public:
-  ViewCost(const BoardObservations& observations, const BoardView& view, const Camera& camera)
-      : observations_(observations), view_(view), camera_(camera) {
-    set_num_residuals(2 * static_cast<int>(view.ids.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(camera.parameters.size()));
-    mutable_parameter_block_sizes()->push_back(6);
-    if (view.camera > 0) mutable_parameter_block_sizes()->push_back(6);
-  }
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    Camera camera = camera_;
-    camera.parameters = Eigen::Map<const Eigen::VectorXd>(blocks[0], camera_.parameters.size());
-    const Pose T_first_board = read_block(blocks[1]);
-    const Pose T_camera_first = view_.camera > 0 ? read_block(blocks[2]) : Pose{};
-    ViewLinearisation J;
-    linearise_view(camera, T_camera_first, T_first_board, observations_.target_m, view_,
-                   jacobians ? Linearise::with_jacobian : Linearise::residual_only, J);
-    const auto rows = num_residuals();
-    Eigen::Map<Eigen::VectorXd>(residuals, rows) = J.residual_px;
-    if (jacobians && jacobians[0]) {
-      Eigen::Map<RowMajor>(jacobians[0], rows, J.by_camera.cols()) = J.by_camera;
-    }
-    if (jacobians && jacobians[1]) write_pose(J.by_board_pose, blocks[1], jacobians[1]);
-    if (jacobians && view_.camera > 0 && jacobians[2]) {
-      write_pose(J.by_camera_pose, blocks[2], jacobians[2]);
-    }
-    return J.residual_px.allFinite();
-  }
-
- private:
-  static void write_pose(const Eigen::Matrix<double, Eigen::Dynamic, 6>& by_tangent,
-                         const double* block,
-                         double* out) {
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> J(out, by_tangent.rows(),
-                                                                            6);
-    J.leftCols<3>() = by_tangent.leftCols<3>() * left_jacobian({block[0], block[1], block[2]});
-    J.rightCols<3>() = by_tangent.rightCols<3>();
-  }
-
-  const BoardObservations& observations_;
-  const BoardView& view_;
-  const Camera& camera_;
-};
-
-ceres::Solver::Options solver_options(int max_iterations) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-15;
-  options.parameter_tolerance = 1e-13;
-  options.gradient_tolerance = 1e-13;
-  options.jacobi_scaling = true;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;  // sums in one order: the same bits every time
-  return options;
-}
-
 constexpr double frames_per_parameter = 3;  // enough for the clustered covariance as it is
 
-/// The covariance to be sampled, from the normal equations in units of one pixel.
-Covariance honest_covariance(const ReducedNormalEquations& unit,
-                             const Eigen::MatrixXd& unit_bound,
+/// The covariance to be sampled.
+Covariance honest_covariance(const ReducedNormalEquations& equations,
+                             const Eigen::MatrixXd& bound,
                              const std::vector<std::string>& names) {
-  const auto frames = static_cast<double>(unit.scores.cols());
+  const auto frames = static_cast<double>(equations.scores.cols());
   if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
     return {CovarianceKind::clustered, names,
-            clustered_sandwich(unit, unit_bound, frames_per_parameter)};
+            clustered_sandwich(equations, bound, frames_per_parameter)};
   }
-  return {CovarianceKind::jackknife, names, small_sample_covariance(unit, unit_bound).matrix};
+  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound).matrix};
 }
 
-/// What the two covariances together say.
-std::vector<std::string> warnings_of(const RigEstimate& estimate) {
-  const Eigen::ArrayXd ratio =
-      (estimate.covariance->matrix.diagonal().array() / estimate.covariance_mvb->diagonal().array())
-          .sqrt();
+/// A minimum of the cost and what surrounds it.
+struct Solution {
+  BoardObservations observations;  // without the outliers
+  BoardState state;
+  std::vector<CornerOutlier> outliers;
+  ReprojectionProblem problem;
+  ReducedNormalEquations equations;  // over the free directions, priors included, σ as in problem
+  Eigen::MatrixXd free;              // those directions
+  std::vector<std::string> names;    // of what is free
+  Eigen::MatrixXd bound;             // of what is free
+  double data_parameters = 0;        // how many of them the corners determine, tr(C S_data)
+};
+
+ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
+  ReprojectionProblem problem;
+  if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
+  problem.held = held_mask(rig, options.held);
+  problem.warp = options.warp;
+  problem.max_iterations = options.max_iterations;
+  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
+  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
+  return problem;
+}
+
+/// The normal equations and the bound at the solution's state.
+void linearise(Solution& s) {
+  const BoardState& state = s.state;
+  s.free = free_directions(state.rig, s.problem.held);
+  s.names = free_names(state.rig, s.problem.held);
+  if (s.names.empty()) throw Error("calibration", "every parameter is held", "free one");
+  s.equations = restricted(
+      reduced_normal_equations(s.observations, state, s.problem.pixel_sigma_px, s.problem.warp),
+      s.free);
+  for (const RigPrior& prior : s.problem.priors) {
+    const Eigen::MatrixXd J = prior_offset(prior, state.rig).by_rig * s.free;
+    add_prior(s.equations, J.transpose() * prior.information * J);
+  }
+  s.bound = minimum_variance_bound(s.equations, s.names);
+  s.data_parameters = static_cast<double>(s.names.size());
+  if (!s.problem.priors.empty()) {
+    s.data_parameters -= (s.bound * s.equations.prior_information).trace();
+  }
+}
+
+double degrees_of_freedom(const Solution& s) {
+  const double nuisance =
+      6 * static_cast<double>(s.state.frames.size()) + (s.problem.warp == BoardWarp::free ? 2 : 0);
+  return s.equations.residuals - s.data_parameters - nuisance;
+}
+
+/// σ from the residuals, with their degrees of freedom.
+double estimated_sigma(const Solution& s) {
+  const double dof = degrees_of_freedom(s);
+  if (!(dof > 0)) {
+    throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
+  }
+  return s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / dof);
+}
+
+Solution solve(BoardObservations observations, const CalibrationOptions& options) {
+  std::vector<CameraModel> models = options.models;
+  if (models.empty()) models.assign(observations.size_px.size(), options.model);
+  if (models.size() != observations.size_px.size()) {
+    throw Error("calibration",
+                fmt::format("{} models for {} cameras", models.size(), observations.size_px.size()),
+                "give one model, or one a camera");
+  }
+  Solution s;
+  s.state = initial_state(observations, models);
+  s.state.rig = with_held_values(s.state.rig, options.held);
+  s.problem = problem_of(options, s.state.rig);
+  s.observations = std::move(observations);
+  s.state = minimise_reprojection(s.observations, s.state, s.problem);
+  if (options.reject_outliers) {
+    RobustFit fit = without_outliers(s.observations, s.state, s.problem);
+    s.observations = std::move(fit.inliers);
+    s.state = std::move(fit.state);
+    s.outliers = std::move(fit.outliers);
+  }
+  linearise(s);
+  if (options.pixel_sigma_px > 0) return s;
+  if (s.problem.priors.empty()) {  // σ does not move the solution
+    const double sigma = estimated_sigma(s);
+    s.problem.pixel_sigma_px = sigma;
+    s.equations = rescaled(std::move(s.equations), sigma);
+    s.bound *= sigma * sigma;
+    return s;
+  }
+  for (int round = 0; round < 20; ++round) {
+    const double sigma = estimated_sigma(s);
+    const bool settled = std::abs(sigma / s.problem.pixel_sigma_px - 1) < 1e-9;
+    s.problem.pixel_sigma_px = sigma;
+    s.state = minimise_reprojection(s.observations, s.state, s.problem);
+    linearise(s);
+    if (settled) break;
+  }
+  return s;
+}
+
+CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& options) {
+  CalibrationSummary summary;
+  summary.views = static_cast<int>(s.state.frames.size());
+  summary.pixel_sigma_px = s.problem.pixel_sigma_px;
+  summary.rms_px = s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / s.equations.residuals);
+  summary.chi2 = s.equations.chi2;
+  const double dof = degrees_of_freedom(s);
+  if (!(dof > 0)) {
+    throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
+  }
+  summary.dof = static_cast<int>(std::lround(dof));
+  summary.outliers = s.outliers;
+  for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
+  for (const RigPrior& prior : s.problem.priors) {
+    summary.prior_chi2 += prior_chi2(prior, s.state.rig);
+    summary.prior_dof += static_cast<int>((prior.information.diagonal().array() > 0).count());
+  }
+  return summary;
+}
+
+/// What the result says against itself.
+std::vector<std::string> warnings_of(const CalibrationSummary& summary,
+                                     const Eigen::MatrixXd& honest,
+                                     const Solution& s) {
+  std::vector<std::string> warnings;
+  const Eigen::ArrayXd ratio = (honest.diagonal().array() / s.bound.diagonal().array()).sqrt();
   const double typical = std::exp(ratio.log().mean());
-  if (typical < 1.3) return {};
-  return {
-      fmt::format("residuals of one view depend on each other: standard deviations are {:.1f} "
-                  "times those of the minimum variance bound",
-                  typical)};
+  if (typical >= 1.3) {
+    warnings.push_back(fmt::format(
+        "residuals of one view depend on each other: standard deviations are {:.1f} times those "
+        "of the minimum variance bound",
+        typical));
+  }
+  const auto out = summary.outliers.size();
+  const auto all = out + static_cast<std::size_t>(s.equations.residuals) / 2;
+  if (out > 0) {
+    warnings.push_back(fmt::format("{} of {} corners were left out as outliers{}", out, all,
+                                   100 * out > 2 * all
+                                       ? ": so many are rather a wrong model, a bent board or "
+                                         "blurred images"
+                                       : ""));
+  }
+  return warnings;
 }
 
 }  // namespace
 
-BoardState minimise_reprojection(const BoardObservations& observations,
-                                 BoardState state,
-                                 int max_iterations) {
-  const std::vector<Camera> models = state.rig.cameras;  // sizes and models for the cost
-  ParameterBuffer buffer(state);
-  ceres::Problem problem;
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::size_t frame = 0;
-  for (const BoardView& view : observations.views) {
-    while (state.frames[frame] != view.frame) ++frame;
-    std::vector<double*> blocks{buffer.intrinsics(view.camera), buffer.board(frame)};
-    if (view.camera > 0) blocks.push_back(buffer.camera_pose(view.camera));
-    problem.AddResidualBlock(new ViewCost(observations, view, models[view.camera]), nullptr,
-                             blocks);
-    ordering->AddElementToGroup(blocks[0], 1);
-    ordering->AddElementToGroup(blocks[1], 0);
-    if (view.camera > 0) ordering->AddElementToGroup(blocks[2], 1);
-  }
-  ceres::Solver::Options options = solver_options(max_iterations);
-  options.linear_solver_ordering = ordering;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable() || summary.termination_type == ceres::NO_CONVERGENCE) {
-    throw Error("calibration", "the minimisation did not converge: " + summary.message,
-                "look at the corners: a mirrored or turned board, or swapped cameras, do this");
-  }
-  buffer.write_to(state);
-  return state;
-}
-
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options) {
   check_and_sort(observations);
-  const std::vector<CameraModel> models(observations.size_px.size(), options.model);
-  const BoardState state = minimise_reprojection(observations, initial_state(observations, models),
-                                                 options.max_iterations);
-
-  const ReducedNormalEquations unit = reduced_normal_equations(observations, state, 1.0);
-  const auto frames = state.frames.size();
-  CalibrationSummary summary;
-  summary.views = static_cast<int>(frames);
-  summary.rms_px = std::sqrt(unit.chi2 / unit.residuals);
-  summary.dof = unit.residuals - parameter_count(state.rig) - 6 * static_cast<int>(frames);
-  if (summary.dof <= 0) {
-    throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
-  }
-  summary.pixel_sigma_px =
-      options.pixel_sigma_px > 0 ? options.pixel_sigma_px : std::sqrt(unit.chi2 / summary.dof);
-  const double variance = summary.pixel_sigma_px * summary.pixel_sigma_px;
-  summary.chi2 = unit.chi2 / variance;
-
+  Solution s = solve(std::move(observations), options);
   RigEstimate estimate;
-  estimate.rig = state.rig;
-  const std::vector<std::string> names = parameter_names(state.rig);
-  const Eigen::MatrixXd unit_bound = minimum_variance_bound(unit, names);
-  estimate.covariance_mvb = variance * unit_bound;
-  estimate.covariance = options.white_noise
-                            ? Covariance{CovarianceKind::mvb, names, *estimate.covariance_mvb}
-                            : honest_covariance(unit, unit_bound, names);
-  summary.warnings = warnings_of(estimate);
-  estimate.calibration = std::move(summary);
-  estimate.evidence =
-      CalibrationEvidence{std::move(observations), state.frames, state.T_first_board};
+  estimate.rig = s.state.rig;
+  const std::vector<std::string> names = parameter_names(s.state.rig);
+  const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    return s.free * C * s.free.transpose();
+  };
+  estimate.covariance_mvb = expand(s.bound);
+  const Covariance honest = options.white_noise ? Covariance{CovarianceKind::mvb, s.names, s.bound}
+                                                : honest_covariance(s.equations, s.bound, s.names);
+  estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
+  estimate.calibration = summary_of(s, options);
+  estimate.calibration->warnings = warnings_of(*estimate.calibration, honest.matrix, s);
+  estimate.evidence = CalibrationEvidence{std::move(s.observations), s.state.frames,
+                                          s.state.T_first_board, s.state.warp_m};
   return estimate;
 }
 

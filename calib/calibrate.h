@@ -2,34 +2,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "calib/held_parameters.h"
 #include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
 
 struct CalibrationOptions {
-  CameraModel model = Radial1{};  ///< of every camera
-  double pixel_sigma_px = 0;      ///< noise of a pixel coordinate; 0: estimated from the residuals
+  CameraModel model = Radial1{};    ///< of every camera
+  std::vector<CameraModel> models;  ///< one a camera where they differ; else empty
+  double pixel_sigma_px = 0;        ///< noise of a pixel coordinate; 0: from the residuals
   int max_iterations = 200;
+  std::vector<HeldParameter> held;    ///< parameters that are not estimated
+  std::vector<KnownParameter> known;  ///< parameters known beforehand, with a sigma
+  std::optional<RigKnowledge> prior;  ///< what another calibration or a datasheet says
+  BoardWarp warp = BoardWarp::known;  ///< free: the board's shape is estimated as well
+  bool reject_outliers = true;        ///< see calib/outliers.h
   /// The corner noise is known to be white (simulated corners): the covariance is the bound.
   bool white_noise = false;
 };
 
-/// Calibrates a rig from views of a board by the unified cost (Tina Memo 2017-001, Eq. 1) without
-/// a prior,
+/// Calibrates a rig from views of a board by the unified cost (Tina Memo 2017-001, Eq. 1),
 ///
-///     χ²(a) = Σ_i r_i(a)ᵀ W⁻¹ r_i(a),   r the reprojection residual, W = σ² I,
+///     χ²(a) = (a − a_0)ᵀ C_0⁻¹ (a − a_0) + Σ_i r_i(a)ᵀ W⁻¹ r_i(a)
 ///
-/// over the rig's parameters and one pose of the board a frame, minimised by Ceres (dense Schur,
-/// one analytic block a view). The first camera is the rig's frame. The result holds the minimum
-/// variance bound, the evidence, and as its covariance the honest one: clustered by frame with at
-/// least three frames a parameter, its small-sample form with fewer (kind "jackknife").
-/// Throws Error where the observations do not determine the rig, naming what they leave free.
+/// r the reprojection residual, W = σ² I, the prior (a_0, C_0) optional, over the rig's parameters
+/// and one pose of the board a frame, minimised by Ceres (calib/minimise_reprojection.h). The first
+/// camera is the rig's frame. Corners that no corner noise explains are left out and listed. The
+/// result holds the minimum variance bound, the evidence, and as its covariance the honest one:
+/// clustered by frame with at least three frames a parameter, its small-sample form with fewer
+/// (kind "jackknife"). A held parameter has no variance. Where σ is to be estimated and there is a
+/// prior, σ and the solution are found in turn; the prior's share of each parameter does not
+/// count as the data's degrees of freedom.
+/// Throws Error where observations and prior do not determine the rig, naming what stays free.
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options = {});
-
-/// Minimises the cost from a given start. Returns the state at the minimum; throws Error where
-/// Ceres finds none.
-BoardState minimise_reprojection(const BoardObservations& observations,
-                                 BoardState start,
-                                 int max_iterations = 200);
 
 }  // namespace vernier

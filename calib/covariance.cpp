@@ -94,8 +94,16 @@ Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
                 fmt::format("{} frames are too few for {} parameters", frames, parameters),
                 fmt::format("give at least {}", std::ceil(frames_per_parameter * parameters)));
   }
-  const Eigen::MatrixXd influence = bound * equations.scores;
-  return frames / (frames - 1) * influence * influence.transpose();
+  if (equations.prior_information.size() == 0) {
+    const Eigen::MatrixXd influence = bound * equations.scores;
+    return frames / (frames - 1) * influence * influence.transpose();
+  }
+  // With a prior the scores sum to its pull, which is no scatter, and it adds its own information.
+  const Eigen::MatrixXd centred =
+      equations.scores.colwise() - equations.scores.rowwise().mean().eval();
+  const Eigen::MatrixXd influence = bound * centred;
+  return frames / (frames - 1) * influence * influence.transpose() +
+         bound * equations.prior_information * bound;
 }
 
 std::string describe_direction(const Eigen::VectorXd& direction,

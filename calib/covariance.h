@@ -32,7 +32,8 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
 
 /// Sandwich clustered by frame, F/(F-1) C (Σ_f g_f g_fᵀ) C: honest where residuals of one view
 /// depend on each other (White 1980; Liang and Zeger 1986), if frames are many. Its rank is at
-/// most F - 1, so it is refused (Error) unless F >= `frames_per_parameter` x parameters.
+/// most F - 1, so it is refused (Error) unless F >= `frames_per_parameter` x parameters. A prior
+/// of information P adds C P C.
 Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
                                    const Eigen::MatrixXd& bound,
                                    double frames_per_parameter = 3);

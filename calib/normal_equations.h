@@ -16,20 +16,37 @@ namespace vernier {
 ///     information  S = Σ_f AᵀA - AᵀB (BᵀB)⁻¹ BᵀA
 ///     score        g_f = Aᵀr - AᵀB (BᵀB)⁻¹ Bᵀr      (zero in sum at the optimum)
 ///
-/// Everything is in the tangent of calib/rig.h.
+/// Everything is in the tangent of calib/rig.h. A board's warp is eliminated likewise, once, after
+/// the frames.
 struct ReducedNormalEquations {
-  Eigen::MatrixXd information;          ///< S, parameters x parameters
+  Eigen::MatrixXd information;          ///< S, parameters x parameters, prior included
   Eigen::VectorXd held_poses_diagonal;  ///< diagonal of Σ AᵀA: the information were poses known
   Eigen::MatrixXd scores;               ///< parameters x frames, one g_f a column
   std::vector<Eigen::MatrixXd> frame_information;  ///< each frame's term of S
   double chi2 = 0;                                 ///< Σ r²
   std::vector<double> frame_chi2;                  ///< one a frame
   int residuals = 0;                               ///< count of r
+  Eigen::MatrixXd prior_information;               ///< the prior's term of S; empty without one
 };
+
+/// Whether the board's warp is among the unknowns.
+enum class BoardWarp { known, free };
 
 /// `pixel_sigma_px` is the standard deviation of a pixel coordinate.
 ReducedNormalEquations reduced_normal_equations(const BoardObservations& observations,
                                                 const BoardState& state,
-                                                double pixel_sigma_px);
+                                                double pixel_sigma_px,
+                                                BoardWarp warp = BoardWarp::known);
+
+/// The equations of z where the parameters move by E z (calib/held_parameters.h).
+ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
+                                  const Eigen::MatrixXd& E);
+
+/// Adds a prior's information, in the same directions.
+void add_prior(ReducedNormalEquations& equations, const Eigen::MatrixXd& information);
+
+/// The same where a pixel's standard deviation is `pixel_sigma_ratio` times as large; `equations`
+/// has no prior yet.
+ReducedNormalEquations rescaled(ReducedNormalEquations equations, double pixel_sigma_ratio);
 
 }  // namespace vernier

@@ -15,4 +15,12 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
   return *estimate.covariance;
 }
 
+std::vector<Eigen::Index> free_parameters(const RigEstimate& estimate) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < parameter_count(estimate.rig); ++i) {
+    if (!estimate.covariance || estimate.covariance->matrix(i, i) > 0) free.push_back(i);
+  }
+  return free;
+}
+
 }  // namespace vernier

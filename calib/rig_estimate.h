@@ -7,18 +7,22 @@
 #include <vector>
 
 #include "calib/covariance.h"
+#include "calib/outliers.h"
 
 namespace vernier {
 
 /// How a calibration went.
 struct CalibrationSummary {
-  std::string source = "board";  ///< board, pairs or combined
-  double pixel_sigma_px = 0;     ///< standard deviation of a pixel coordinate
-  double rms_px = 0;             ///< root mean square residual, per coordinate
-  double chi2 = 0;               ///< sum of squared residuals over pixel_sigma_px²
-  int dof = 0;                   ///< residuals less parameters, board poses included
-  int views = 0;                 ///< frames used
-  std::vector<std::string> outliers;
+  std::string source = "board";         ///< board, pairs or combined
+  double pixel_sigma_px = 0;            ///< standard deviation of a pixel coordinate
+  double rms_px = 0;                    ///< root mean square residual, per coordinate
+  double chi2 = 0;                      ///< sum of squared residuals over pixel_sigma_px²
+  int dof = 0;                          ///< residuals less parameters, board poses included
+  int views = 0;                        ///< frames used
+  double prior_chi2 = 0;                ///< the priors' part of the cost; 0 without one
+  int prior_dof = 0;                    ///< parameters that the priors know
+  std::vector<std::string> held;        ///< parameters that were not estimated
+  std::vector<CornerOutlier> outliers;  ///< corners left out
   std::vector<std::string> warnings;
 };
 
@@ -42,5 +46,9 @@ struct RigEstimate {
 
 /// The covariance to sample from. Throws Error(`place`) where the estimate has none.
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place);
+
+/// Indices of the rig's free parameters: those with a variance, or all of them where the estimate
+/// has no covariance. A rig file lists these.
+std::vector<Eigen::Index> free_parameters(const RigEstimate& estimate);
 
 }  // namespace vernier

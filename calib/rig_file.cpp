@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <numeric>
 #include <set>
 
 #include "calib/atomic_file.h"
@@ -99,24 +101,6 @@ Rig parse_cameras(const Node& node) {
   return rig;
 }
 
-/// parameters must repeat the cameras' values; a disagreement is an error.
-void check_parameters(const Node& root, const Rig& rig) {
-  const Node node = root.at("parameters");
-  const Eigen::VectorXd stated = node.vector(), actual = parameters(rig);
-  const std::vector<std::string> names = parameter_names(rig);
-  if (stated.size() != actual.size()) {
-    throw Error(node.place(), fmt::format("{} values for {} names", stated.size(), names.size()),
-                "give one a name");
-  }
-  for (Eigen::Index i = 0; i < stated.size(); ++i) {
-    if (std::abs(stated[i] - actual[i]) > 1e-9 * (1 + std::abs(actual[i]))) {
-      throw Error(node.place(),
-                  fmt::format("{} is {} here and {} in cameras", names[i], stated[i], actual[i]),
-                  "make them agree");
-    }
-  }
-}
-
 std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
   std::vector<std::string> texts;
   if (!node.has(key)) return texts;
@@ -126,32 +110,83 @@ std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
   return texts;
 }
 
-void check_names(const Node& root, const Rig& rig) {
-  const Node stated = root.at("parameter_names");
-  if (parse_texts(root, "parameter_names") != parameter_names(rig)) {
-    throw Error(stated.place(), "are not the rig's parameters in their order",
-                "see docs/file-formats.md");
+/// The rig's parameters that the file lists, by their indices: all, or some in the same order.
+std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
+  const std::vector<std::string> all = parameter_names(rig);
+  const std::vector<std::string> stated = parse_texts(root, "parameter_names");
+  std::vector<Eigen::Index> places;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < all.size() && next < stated.size(); ++i) {
+    if (all[i] != stated[next]) continue;
+    places.push_back(static_cast<Eigen::Index>(i));
+    ++next;
+  }
+  if (next < stated.size() || stated.empty()) {
+    throw Error(root.at("parameter_names").place(), "are not the rig's parameters in their order",
+                stated.empty() ? "see docs/file-formats.md"
+                               : fmt::format("look at {}; see docs/file-formats.md", stated[next]));
+  }
+  return places;
+}
+
+/// parameters must repeat the cameras' values; a disagreement is an error.
+void check_parameters(const Node& root, const Rig& rig, const std::vector<Eigen::Index>& listed) {
+  const Node node = root.at("parameters");
+  const Eigen::VectorXd stated = node.vector(), actual = parameters(rig);
+  if (stated.size() != static_cast<Eigen::Index>(listed.size())) {
+    throw Error(node.place(), fmt::format("{} values for {} names", stated.size(), listed.size()),
+                "give one a name");
+  }
+  for (Eigen::Index i = 0; i < stated.size(); ++i) {
+    const double value = actual[listed[i]];
+    if (std::abs(stated[i] - value) > 1e-9 * (1 + std::abs(value))) {
+      throw Error(node.place(),
+                  fmt::format("{} is {} here and {} in cameras", parameter_names(rig)[listed[i]],
+                              stated[i], value),
+                  "make them agree");
+    }
   }
 }
 
-/// The matrix below `node`, one row a parameter of the rig.
-Eigen::MatrixXd parse_parameter_matrix(const Node& node, const Rig& rig) {
+/// The matrix below `node`, one row a listed parameter; zero for the others.
+Eigen::MatrixXd parse_parameter_matrix(const Node& node,
+                                       const Rig& rig,
+                                       const std::vector<Eigen::Index>& listed) {
   const Node stated = node.at("matrix");
   const Eigen::MatrixXd matrix = stated.matrix();
-  const std::size_t n = parameter_names(rig).size();
-  if (matrix.rows() != static_cast<Eigen::Index>(n)) {
-    throw Error(stated.place(), fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), n),
+  if (matrix.rows() != static_cast<Eigen::Index>(listed.size())) {
+    throw Error(stated.place(),
+                fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), listed.size()),
                 "give one row and column a parameter");
   }
-  return matrix;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(parameter_count(rig), parameter_count(rig));
+  whole(listed, listed) = matrix;
+  return whole;
 }
 
-Covariance parse_covariance(const Node& node, const Rig& rig) {
+Covariance parse_covariance(const Node& node,
+                            const Rig& rig,
+                            const std::vector<Eigen::Index>& listed) {
   return {covariance_kind(node.at("kind").text()), parameter_names(rig),
-          parse_parameter_matrix(node, rig)};
+          parse_parameter_matrix(node, rig, listed)};
 }
 
-CalibrationSummary parse_summary(const Node& node) {
+CornerOutlier parse_outlier(const Node& node, const Rig& rig) {
+  CornerOutlier outlier;
+  outlier.frame = node.at("frame").integer();
+  outlier.camera = rig_json::camera_index(node.at("camera"), rig);
+  outlier.id = node.at("corner").integer();
+  if (node.has("image")) outlier.image = node.at("image").text();
+  const Eigen::VectorXd q = node.at("pixel_px").vector();
+  if (q.size() != 2) throw Error(node.at("pixel_px").place(), "is not a pixel", "");
+  outlier.pixel_px = q;
+  outlier.residual_px = node.at("residual_px").json().is_null()
+                            ? std::numeric_limits<double>::quiet_NaN()
+                            : node.at("residual_px").number();
+  return outlier;
+}
+
+CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   CalibrationSummary summary;
   summary.source = node.at("source").text();
   summary.pixel_sigma_px = node.at("pixel_sigma_px").number();
@@ -159,16 +194,38 @@ CalibrationSummary parse_summary(const Node& node) {
   summary.chi2 = node.at("chi2").number();
   summary.dof = node.at("dof").integer();
   summary.views = node.at("views").integer();
-  summary.outliers = parse_texts(node, "outliers");
+  if (node.has("prior_chi2")) summary.prior_chi2 = node.at("prior_chi2").number();
+  if (node.has("prior_dof")) summary.prior_dof = node.at("prior_dof").integer();
+  summary.held = parse_texts(node, "held");
+  if (node.has("outliers")) {
+    for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
+      summary.outliers.push_back(parse_outlier(node.at("outliers").at(i), rig));
+    }
+  }
   summary.warnings = parse_texts(node, "warnings");
   return summary;
 }
 
-Json summary_json(const CalibrationSummary& s) {
-  return {{"source", s.source},     {"pixel_sigma_px", s.pixel_sigma_px},
-          {"rms_px", s.rms_px},     {"chi2", s.chi2},
-          {"dof", s.dof},           {"views", s.views},
-          {"outliers", s.outliers}, {"warnings", s.warnings}};
+Json summary_json(const CalibrationSummary& s, const Rig& rig) {
+  Json json{{"source", s.source}, {"pixel_sigma_px", s.pixel_sigma_px},
+            {"rms_px", s.rms_px}, {"chi2", s.chi2},
+            {"dof", s.dof},       {"views", s.views}};
+  if (s.prior_dof > 0) {
+    json["prior_chi2"] = s.prior_chi2;
+    json["prior_dof"] = s.prior_dof;
+  }
+  if (!s.held.empty()) json["held"] = s.held;
+  json["outliers"] = Json::array();
+  for (const CornerOutlier& o : s.outliers) {
+    json["outliers"].push_back({{"frame", o.frame},
+                                {"camera", rig.cameras[o.camera].name},
+                                {"corner", o.id},
+                                {"image", o.image},
+                                {"pixel_px", {o.pixel_px.x(), o.pixel_px.y()}},
+                                {"residual_px", o.residual_px}});  // null where not a number
+  }
+  json["warnings"] = s.warnings;
+  return json;
 }
 
 int line_of(const std::string& text, std::size_t byte) {
@@ -198,13 +255,21 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   RigEstimate& estimate = file.estimate;
   estimate.rig = parse_cameras(root.at("cameras"));
   const bool covariance = root.has("covariance");
-  if (covariance || root.has("parameter_names")) check_names(root, estimate.rig);
-  if (covariance || root.has("parameters")) check_parameters(root, estimate.rig);
-  if (covariance) estimate.covariance = parse_covariance(root.at("covariance"), estimate.rig);
-  if (root.has("covariance_mvb")) {
-    estimate.covariance_mvb = parse_parameter_matrix(root.at("covariance_mvb"), estimate.rig);
+  std::vector<Eigen::Index> listed(static_cast<std::size_t>(parameter_count(estimate.rig)));
+  std::iota(listed.begin(), listed.end(), 0);
+  if (covariance || root.has("parameter_names")) listed = parse_names(root, estimate.rig);
+  for (const Eigen::Index i : listed) file.listed.push_back(parameter_names(estimate.rig)[i]);
+  if (covariance || root.has("parameters")) check_parameters(root, estimate.rig, listed);
+  if (covariance) {
+    estimate.covariance = parse_covariance(root.at("covariance"), estimate.rig, listed);
   }
-  if (root.has("calibration")) estimate.calibration = parse_summary(root.at("calibration"));
+  if (root.has("covariance_mvb")) {
+    estimate.covariance_mvb =
+        parse_parameter_matrix(root.at("covariance_mvb"), estimate.rig, listed);
+  }
+  if (root.has("calibration")) {
+    estimate.calibration = parse_summary(root.at("calibration"), estimate.rig);
+  }
   if (root.has("evidence")) {
     estimate.evidence = rig_json::parse_evidence(root.at("evidence"), estimate.rig);
   }
@@ -216,6 +281,19 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (!others.empty()) estimate.other_keys = others.dump();
   return file;
+}
+
+RigKnowledge rig_knowledge(const RigFile& file, const std::string& place) {
+  const Covariance& whole = required_covariance(file.estimate, place);
+  RigKnowledge known{file.estimate.rig, {whole.kind, file.listed, {}}};
+  std::vector<Eigen::Index> listed;
+  for (std::size_t i = 0, k = 0; i < whole.names.size() && k < file.listed.size(); ++i) {
+    if (whole.names[i] != file.listed[k]) continue;
+    listed.push_back(static_cast<Eigen::Index>(i));
+    ++k;
+  }
+  known.covariance.matrix = whole.matrix(listed, listed);
+  return known;
 }
 
 RigFile read_rig(const std::filesystem::path& file) {
@@ -231,14 +309,21 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
     json["cameras"].push_back(
         camera_json(estimate.rig.cameras[i], estimate.rig.T_camera_first[i], i == 0));
   }
-  json["parameter_names"] = parameter_names(estimate.rig);
-  json["parameters"] = to_json(parameters(estimate.rig));
+  const std::vector<Eigen::Index> listed = free_parameters(estimate);
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  json["parameter_names"] = Json::array();
+  for (const Eigen::Index i : listed) json["parameter_names"].push_back(names[i]);
+  json["parameters"] = to_json(Eigen::VectorXd(parameters(estimate.rig)(listed)));
   if (estimate.covariance) {
-    json["covariance"] = {{"kind", name(estimate.covariance->kind)},
-                          {"matrix", to_json(estimate.covariance->matrix)}};
+    json["covariance"] = {
+        {"kind", name(estimate.covariance->kind)},
+        {"matrix", to_json(Eigen::MatrixXd(estimate.covariance->matrix(listed, listed)))}};
   }
-  if (estimate.covariance_mvb) json["covariance_mvb"]["matrix"] = to_json(*estimate.covariance_mvb);
-  if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration);
+  if (estimate.covariance_mvb) {
+    json["covariance_mvb"]["matrix"] =
+        to_json(Eigen::MatrixXd((*estimate.covariance_mvb)(listed, listed)));
+  }
+  if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration, estimate.rig);
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
 
@@ -14,11 +15,17 @@ namespace vernier {
 struct RigFile {
   RigEstimate estimate;
   std::vector<std::string> warnings;
+  std::vector<std::string> listed;  ///< its parameter_names; the rest of the rig has no variance
 };
+
+/// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it
+/// has no covariance.
+RigKnowledge rig_knowledge(const RigFile& file, const std::string& place);
 
 /// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Needed are format,
 /// version and cameras; parameter_names, parameters and covariance come together and must agree
-/// with the cameras. Throws Error naming file and key, and the line for malformed JSON.
+/// with the cameras. Parameters that are not listed have no variance. Throws Error naming file and
+/// key, and the line for malformed JSON.
 RigFile read_rig(const std::filesystem::path& file);
 RigFile parse_rig(const std::string& text, const std::string& place);
 

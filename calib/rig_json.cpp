@@ -78,12 +78,23 @@ Json to_json(const Eigen::MatrixXd& m) {
   return json;
 }
 
+int camera_index(const Node& name, const Rig& rig) {
+  const std::string text = name.text();
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    if (rig.cameras[c].name == text) return static_cast<int>(c);
+  }
+  throw Error(name.place(), "the rig has no camera \"" + text + "\"", "");
+}
+
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
   Json json;
   const BoardObservations& observations = evidence.observations;
   json["board"]["points_m"] = Json::array();
   for (const auto& X : observations.target_m) {
     json["board"]["points_m"].push_back(to_json(Eigen::VectorXd(X)));
+  }
+  if (!evidence.warp_m.isZero(0)) {
+    json["board"]["warp_m"] = {evidence.warp_m.x(), evidence.warp_m.y()};
   }
   json["observations"] = Json::array();
   for (const BoardView& view : observations.views) {
@@ -116,12 +127,7 @@ namespace {
 BoardView parse_view(const Node& v, const Rig& rig) {
   BoardView view;
   view.frame = v.at("frame").integer();
-  const std::string camera = v.at("camera").text();
-  view.camera = -1;
-  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-    if (rig.cameras[c].name == camera) view.camera = static_cast<int>(c);
-  }
-  if (view.camera < 0) throw Error(v.at("camera").place(), "the rig has no such camera", "");
+  view.camera = camera_index(v.at("camera"), rig);
   if (v.has("image")) view.image = v.at("image").text();
   const Node pixels = v.at("pixels_px");
   if (v.has("ids") && v.at("ids").array().size() != pixels.array().size()) {
@@ -148,6 +154,11 @@ CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   const Node points = node.at("board").at("points_m");
   for (std::size_t i = 0; i < points.array().size(); ++i) {
     observations.target_m.push_back(points.at(i).vector3());
+  }
+  if (node.at("board").has("warp_m")) {
+    const Eigen::VectorXd warp = node.at("board").at("warp_m").vector();
+    if (warp.size() != 2) throw Error(node.at("board").at("warp_m").place(), "is not a pair", "");
+    evidence.warp_m = warp;
   }
   const Node views = node.at("observations");
   for (std::size_t i = 0; i < views.array().size(); ++i) {

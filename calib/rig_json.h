@@ -41,6 +41,9 @@ class Node {
 Json to_json(const Eigen::VectorXd& v);
 Json to_json(const Eigen::MatrixXd& m);
 
+/// Index of the camera of that name. Throws Error where the rig has none.
+int camera_index(const Node& name, const Rig& rig);
+
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig);
 CalibrationEvidence parse_evidence(const Node& node, const Rig& rig);
 

@@ -21,10 +21,11 @@ Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::Vect
   return V * ((1 - h).rsqrt() * (V.transpose() * x).array()).matrix();
 }
 
-/// Ledoit and Wolf's intensity for shrinking J = mean of x_f x_fᵀ towards a multiple of I.
-double shrinkage_intensity(const Eigen::MatrixXd& pulls, const Eigen::MatrixXd& J, double mean) {
+/// Ledoit and Wolf's intensity for shrinking J = Σ x_f x_fᵀ towards the target.
+double shrinkage_intensity(const Eigen::MatrixXd& pulls,
+                           const Eigen::MatrixXd& J,
+                           const Eigen::MatrixXd& target) {
   const auto n = static_cast<double>(pulls.cols());
-  const Eigen::MatrixXd target = mean * Eigen::MatrixXd::Identity(J.rows(), J.cols());
   const double spread = (J - target).squaredNorm();
   if (!(spread > 0)) return 1;
   double scatter = 0;
@@ -49,13 +50,19 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
     const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
     pulls.col(f) = correct_for_leverage(H, L.transpose() * equations.scores.col(f));
   }
+  Eigen::MatrixXd prior_share = Eigen::MatrixXd::Zero(p, p);
+  if (equations.prior_information.size() > 0) {
+    prior_share = L.transpose() * equations.prior_information * L;
+    pulls.colwise() -= pulls.rowwise().mean().eval();  // their sum is the prior's pull, no scatter
+  }
+  const Eigen::MatrixXd data_share = Eigen::MatrixXd::Identity(p, p) - prior_share;
   const Eigen::MatrixXd J = pulls * pulls.transpose();
-  const double mean = J.trace() / static_cast<double>(p);
   SmallSampleCovariance result;
-  result.inflation = mean;
-  result.shrinkage = shrinkage_intensity(pulls, J, mean);
+  result.inflation = J.trace() / std::max(data_share.trace(), 1e-9);
+  const Eigen::MatrixXd target = result.inflation * data_share;
+  result.shrinkage = shrinkage_intensity(pulls, J, target);
   const Eigen::MatrixXd shrunk =
-      (1 - result.shrinkage) * J + result.shrinkage * mean * Eigen::MatrixXd::Identity(p, p);
+      (1 - result.shrinkage) * J + result.shrinkage * target + prior_share;
   result.matrix = L * shrunk * L.transpose();
   result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
   return result;

@@ -24,8 +24,9 @@ struct SmallSampleCovariance {
 /// The exponent makes J unbiased where the noise is white (bias-reduced linearisation, Bell and
 /// McCaffrey 2002; with exponent −1 it is the jackknife that leaves one view out, which is too wide
 /// by the leverage). J has rank F − 1 at most, so with few views it needs the shape of the bound; α
-/// is the intensity of Ledoit and Wolf (2004), from the views' own scatter. Needs at least three
-/// frames (else Error).
+/// is the intensity of Ledoit and Wolf (2004), from the views' own scatter. A prior of information
+/// P has the share G = Lᵀ P L: then I − G stands for I in the shrinkage's target, p − tr G for p,
+/// and G is added. Needs at least three frames (else Error).
 SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
                                               const Eigen::MatrixXd& bound);
 

@@ -10,7 +10,8 @@ void linearise_view(const Camera& camera,
                     const std::vector<Eigen::Vector3d>& target_m,
                     const BoardView& view,
                     Linearise what,
-                    ViewLinearisation& out) {
+                    ViewLinearisation& out,
+                    const Eigen::Matrix<double, Eigen::Dynamic, 2>* shapes) {
   const auto n = static_cast<Eigen::Index>(view.ids.size());
   out.residual_px.resize(2 * n);
   const bool derive = what == Linearise::with_jacobian;
@@ -18,6 +19,7 @@ void linearise_view(const Camera& camera,
     out.by_camera.resize(2 * n, camera.parameters.size());
     out.by_camera_pose.resize(2 * n, 6);
     out.by_board_pose.resize(2 * n, 6);
+    if (shapes) out.by_warp.resize(2 * n, 2);
   }
   ProjectionJacobian J;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -37,6 +39,10 @@ void linearise_view(const Camera& camera,
     const Eigen::Matrix<double, 2, 3> by_first = J.point * T_camera_first.R;
     out.by_board_pose.block<2, 3>(2 * i, 0).noalias() = -by_first * hat(turned);
     out.by_board_pose.block<2, 3>(2 * i, 3) = by_first;
+    if (shapes) {
+      out.by_warp.middleRows<2>(2 * i).noalias() =
+          (by_first * T_first_board.R.col(2)) * shapes->row(view.ids[i]);
+    }
   }
 }
 

@@ -17,18 +17,21 @@ struct ViewLinearisation {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic> by_camera;  ///< 2n x intrinsics
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_camera_pose;          ///< 2n x 6, of T_camera_first
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_board_pose;           ///< 2n x 6, of T_first_board
+  Eigen::Matrix<double, Eigen::Dynamic, 2> by_warp;  ///< 2n x 2, where shapes are given
 };
 
 /// Whether derivatives are wanted as well.
 enum class Linearise { residual_only, with_jacobian };
 
-/// The one piece of code behind the Ceres cost, the normal equations and the re-solver.
+/// The one piece of code behind the Ceres cost and the normal equations. `target_m` holds the
+/// board's warp already; `shapes` (calib/board_warp.h) asks for the derivative by it.
 void linearise_view(const Camera& camera,
                     const Pose& T_camera_first,
                     const Pose& T_first_board,
                     const std::vector<Eigen::Vector3d>& target_m,
                     const BoardView& view,
                     Linearise what,
-                    ViewLinearisation& out);
+                    ViewLinearisation& out,
+                    const Eigen::Matrix<double, Eigen::Dynamic, 2>* shapes = nullptr);
 
 }  // namespace vernier

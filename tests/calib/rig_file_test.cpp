@@ -105,10 +105,11 @@ TEST(RigFile, ParametersAreCheckedWithoutACovariance) {
 }
 
 TEST(RigFile, MinimumVarianceBoundHasTheParametersSize) {
-  RigEstimate e = estimate();
-  e.covariance_mvb = Eigen::MatrixXd::Identity(3, 3);
-  EXPECT_NE(complaint_of(format_rig(e, KeepEvidence::no))
-                .find("rig.json: covariance_mvb.matrix: is 3x3 for 16 parameters"),
+  std::string text = format_rig(estimate(), KeepEvidence::no);
+  const std::string key = "\"covariance_mvb\":{\"matrix\":";
+  const std::size_t start = text.find(key) + key.size();
+  text.replace(start, text.find("]]", start) + 2 - start, "[[1,0,0],[0,1,0],[0,0,1]]");
+  EXPECT_NE(complaint_of(text).find("rig.json: covariance_mvb.matrix: is 3x3 for 16 parameters"),
             std::string::npos);
 }
 

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/held_parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+Eigen::Index index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    const bool is_ay = ends_with(name, ".ay");
+    throw Error("held parameter " + name,
+                is_ay ? "ay is 1 by definition" : "the rig has no such parameter",
+                fmt::format("use one of {}", fmt::join(names, " ")));
+  }
+  return found - names.begin();
+}
+
+void check_value(const HeldParameter& held) {
+  if (!held.value) return;
+  const bool positive = ends_with(held.name, ".f_px") || ends_with(held.name, ".ax");
+  if (!std::isfinite(*held.value) || (positive && !(*held.value > 0))) {
+    throw Error("held parameter " + held.name, fmt::format("{} is no value for it", *held.value),
+                positive ? "give a number above 0" : "give a finite number");
+  }
+}
+
+}  // namespace
+
+std::vector<bool> held_mask(const Rig& rig, const std::vector<HeldParameter>& held) {
+  const std::vector<std::string> names = parameter_names(rig);
+  std::vector<bool> mask(names.size(), false);
+  for (const HeldParameter& h : held) {
+    check_value(h);
+    const auto i = static_cast<std::size_t>(index_of(names, h.name));
+    if (mask[i]) throw Error("held parameter " + h.name, "is held twice", "hold it once");
+    mask[i] = true;
+  }
+  return mask;
+}
+
+Rig with_held_values(const Rig& rig, const std::vector<HeldParameter>& held) {
+  const std::vector<std::string> names = parameter_names(rig);
+  Eigen::VectorXd a = parameters(rig);
+  for (const HeldParameter& h : held) {
+    check_value(h);
+    if (h.value) a[index_of(names, h.name)] = *h.value;
+  }
+  Rig result = rig;
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    Eigen::VectorXd& own = result.cameras[c].parameters;
+    own = a.segment(intrinsics_index(rig, static_cast<int>(c)), own.size());
+    if (c == 0) continue;
+    const int i = pose_index(rig, static_cast<int>(c));
+    result.T_camera_first[c] = {rotation_from_vector(a.segment<3>(i)), a.segment<3>(i + 3)};
+  }
+  return result;
+}
+
+Eigen::MatrixXd free_directions(const Rig& rig, const std::vector<bool>& held) {
+  const auto p = static_cast<Eigen::Index>(held.size());
+  const auto free = static_cast<Eigen::Index>(std::count(held.begin(), held.end(), false));
+  Eigen::MatrixXd by_value = Eigen::MatrixXd::Identity(p, p);
+  for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
+    const int i = pose_index(rig, static_cast<int>(c));
+    // Where the rotation is wholly free any basis will do; the plain one keeps its rows readable.
+    if (!held[i] && !held[i + 1] && !held[i + 2]) continue;
+    by_value.block<3, 3>(i, i) = left_jacobian(vector_from_rotation(rig.T_camera_first[c].R));
+  }
+  Eigen::MatrixXd E(p, free);
+  for (Eigen::Index i = 0, k = 0; i < p; ++i) {
+    if (!held[static_cast<std::size_t>(i)]) E.col(k++) = by_value.col(i);
+  }
+  return E;
+}
+
+std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held) {
+  std::vector<std::string> free;
+  const std::vector<std::string> names = parameter_names(rig);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!held[i]) free.push_back(names[i]);
+  }
+  return free;
+}
+
+}  // namespace vernier

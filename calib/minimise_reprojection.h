@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calib/initial_rig.h"
+#include "calib/normal_equations.h"
+#include "calib/rig_prior.h"
+
+namespace vernier {
+
+/// What stands in the unified cost beside the corners, and what of it is free.
+struct ReprojectionProblem {
+  double pixel_sigma_px = 1;     ///< weighs the corners against the priors
+  std::vector<bool> held;        ///< one a parameter of the rig (held_mask); empty: all free
+  std::vector<RigPrior> priors;  ///< each adds its χ²
+  BoardWarp warp = BoardWarp::known;
+  /// One weight in [0, 1] a corner of every view, in the order of the observations; empty: all 1.
+  std::vector<std::vector<double>> corner_weights;
+  int max_iterations = 200;
+};
+
+/// Minimises the unified cost
+///
+///     χ²(a) = Σ priors + Σ_i w_i |r_i(a)|² / σ²
+///
+/// over the rig, one pose of the board a frame and, if free, the board's warp, by Ceres (dense
+/// Schur, one analytic block a view). Returns the state at the minimum; throws Error where Ceres
+/// finds none.
+BoardState minimise_reprojection(const BoardObservations& observations,
+                                 BoardState start,
+                                 const ReprojectionProblem& problem = {});
+
+}  // namespace vernier

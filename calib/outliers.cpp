@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/outliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/board_warp.h"
+#include "calib/error.h"
+#include "calib/view_linearisation.h"
+
+namespace vernier {
+namespace {
+
+using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
+
+/// Huber's weight: 1 up to two standard deviations, then falling as the inverse of the distance.
+double huber_weight(double in_sigmas) { return in_sigmas < 2 ? 1 : 2 / in_sigmas; }
+
+/// Tukey's weight, zero beyond `limit`.
+double tukey_weight(double in_sigmas, double limit) {
+  const double t = in_sigmas / limit;
+  return t < 1 ? (1 - t * t) * (1 - t * t) : 0;
+}
+
+template <typename Weight>
+PerCorner weights_of(const CornerResiduals& residuals, double sigma, Weight weight) {
+  PerCorner weights;
+  for (const auto& view : residuals) {
+    std::vector<double>& own = weights.emplace_back();
+    for (const Eigen::Vector2d& r : view) own.push_back(weight(r.norm() / sigma));
+  }
+  return weights;
+}
+
+double largest_change(const PerCorner& a, const PerCorner& b) {
+  double change = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    for (std::size_t i = 0; i < a[v].size(); ++i) {
+      change = std::max(change, std::abs(a[v][i] - b[v][i]));
+    }
+  }
+  return change;
+}
+
+/// The minimum of Tukey's loss, reached through Huber's.
+BoardState redescending_minimum(const BoardObservations& observations,
+                                BoardState state,
+                                ReprojectionProblem problem,
+                                double limit) {
+  constexpr int huber_rounds = 4, tukey_rounds = 15;
+  for (int round = 0; round < huber_rounds + tukey_rounds; ++round) {
+    const CornerResiduals residuals = corner_residuals(observations, state);
+    const double sigma = robust_pixel_sigma(residuals);
+    PerCorner weights = weights_of(residuals, sigma, [&](double d) {
+      return round < huber_rounds ? huber_weight(d) : std::max(1e-6, tukey_weight(d, limit));
+    });
+    if (round > huber_rounds && largest_change(weights, problem.corner_weights) < 1e-3) break;
+    problem.corner_weights = std::move(weights);
+    state = minimise_reprojection(observations, state, problem);
+  }
+  return state;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+constexpr double rayleigh_median = 1.1774100225154747;  // of |r| / σ, √(2 ln 2)
+
+/// Robust standard deviation of a coordinate among the corners nearest to corner `i` on the board.
+double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
+                        const BoardView& view,
+                        const std::vector<Eigen::Vector2d>& residuals,
+                        std::size_t i) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < view.ids.size(); ++k) {
+    if (k == i) continue;
+    order.emplace_back((target_m[view.ids[k]] - target_m[view.ids[i]]).squaredNorm(), k);
+  }
+  const auto n = static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, order.size()));
+  std::partial_sort(order.begin(), order.begin() + n, order.end());
+  std::vector<double> lengths;
+  for (std::ptrdiff_t k = 0; k < n; ++k) lengths.push_back(residuals[order[k].second].norm());
+  return median(std::move(lengths)) / rayleigh_median;
+}
+
+/// One flag a corner of every view.
+std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observations,
+                                             const BoardState& state,
+                                             double limit) {
+  const CornerResiduals residuals = corner_residuals(observations, state);
+  const double beyond = limit * robust_pixel_sigma(residuals);
+  std::vector<std::vector<bool>> flags;
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
+    const std::vector<Eigen::Vector2d>& own = residuals[v];
+    const auto is_long = [&](const Eigen::Vector2d& r) { return r.norm() > beyond; };
+    const auto longs = static_cast<std::size_t>(std::count_if(own.begin(), own.end(), is_long));
+    std::vector<bool>& flag = flags.emplace_back(own.size(), 2 * longs > own.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (flag[i] || !is_long(own[i])) continue;
+      const double sigma = neighbours_sigma(observations.target_m, observations.views[v], own, i);
+      flag[i] = own[i].norm() > limit * sigma;
+    }
+  }
+  return flags;
+}
+
+bool any(const std::vector<std::vector<bool>>& flags) {
+  return std::any_of(flags.begin(), flags.end(), [](const std::vector<bool>& view) {
+    return std::find(view.begin(), view.end(), true) != view.end();
+  });
+}
+
+/// The views and frames of `observations` that keep their corners, and what was left out.
+RobustFit separated(const BoardObservations& observations,
+                    const BoardState& state,
+                    const std::vector<std::vector<bool>>& out) {
+  RobustFit fit{observations, state, {}};
+  fit.inliers.views.clear();
+  for (std::size_t v = 0; v < observations.views.size(); ++v) {
+    const BoardView& view = observations.views[v];
+    const auto kept = static_cast<std::size_t>(std::count(out[v].begin(), out[v].end(), false));
+    const bool whole_view_out = 2 * kept < view.ids.size() || kept < 4;
+    BoardView inlier{view.frame, view.camera, view.image, {}, {}};
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (whole_view_out || out[v][i]) {
+        fit.outliers.push_back(
+            {view.frame, view.camera, view.ids[i], view.image, view.pixels_px[i], 0});
+      } else {
+        inlier.ids.push_back(view.ids[i]);
+        inlier.pixels_px.push_back(view.pixels_px[i]);
+      }
+    }
+    if (!whole_view_out) fit.inliers.views.push_back(std::move(inlier));
+  }
+  const std::vector<int> frames = frames_of(fit.inliers);
+  fit.state.frames.clear();
+  fit.state.T_first_board.clear();
+  for (std::size_t f = 0; f < state.frames.size(); ++f) {
+    if (!std::binary_search(frames.begin(), frames.end(), state.frames[f])) continue;
+    fit.state.frames.push_back(state.frames[f]);
+    fit.state.T_first_board.push_back(state.T_first_board[f]);
+  }
+  return fit;
+}
+
+/// Where the outliers lie from the final prediction; their frame's pose may be gone with them.
+void measure(const BoardObservations& observations, RobustFit& fit) {
+  const auto target_m = warped_target(observations.target_m, fit.state.warp_m);
+  for (CornerOutlier& outlier : fit.outliers) {
+    const auto frame =
+        std::lower_bound(fit.state.frames.begin(), fit.state.frames.end(), outlier.frame);
+    if (frame == fit.state.frames.end() || *frame != outlier.frame) {
+      outlier.residual_px = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    const Pose& T_first_board = fit.state.T_first_board[frame - fit.state.frames.begin()];
+    const Eigen::Vector3d x =
+        fit.state.rig.T_camera_first[outlier.camera] * (T_first_board * target_m[outlier.id]);
+    outlier.residual_px =
+        (project(fit.state.rig.cameras[outlier.camera], x) - outlier.pixel_px).norm();
+  }
+}
+
+}  // namespace
+
+CornerResiduals corner_residuals(const BoardObservations& observations, const BoardState& state) {
+  const auto target_m = warped_target(observations.target_m, state.warp_m);
+  CornerResiduals residuals;
+  std::size_t f = 0;
+  ViewLinearisation J;
+  for (const BoardView& view : observations.views) {
+    while (state.frames[f] != view.frame) ++f;
+    linearise_view(state.rig.cameras[view.camera], state.rig.T_camera_first[view.camera],
+                   state.T_first_board[f], target_m, view, Linearise::residual_only, J);
+    std::vector<Eigen::Vector2d>& own = residuals.emplace_back();
+    for (Eigen::Index i = 0; i < J.residual_px.size(); i += 2) {
+      own.emplace_back(J.residual_px.segment<2>(i));
+    }
+  }
+  return residuals;
+}
+
+double robust_pixel_sigma(const CornerResiduals& residuals) {
+  std::vector<double> lengths;
+  for (const auto& view : residuals) {
+    for (const Eigen::Vector2d& r : view) lengths.push_back(r.norm());
+  }
+  return lengths.empty() ? 0 : median(std::move(lengths)) / rayleigh_median;
+}
+
+RobustFit without_outliers(const BoardObservations& observations,
+                           const BoardState& state,
+                           const ReprojectionProblem& problem,
+                           double limit) {
+  if (!any(outlier_flags(observations, state, limit))) return {observations, state, {}};
+  const BoardState robust = redescending_minimum(observations, state, problem, limit);
+  RobustFit fit = separated(observations, robust, outlier_flags(observations, robust, limit));
+  if (fit.inliers.views.empty()) {
+    throw Error("calibration", "no view agrees with any other", "check the board and its size");
+  }
+  fit.state = minimise_reprojection(fit.inliers, fit.state, problem);
+  measure(observations, fit);
+  return fit;
+}
+
+}  // namespace vernier

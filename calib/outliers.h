@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/minimise_reprojection.h"
+
+namespace vernier {
+
+/// A corner left out of a calibration.
+struct CornerOutlier {
+  int frame = 0, camera = 0, id = 0;
+  std::string image;
+  Eigen::Vector2d pixel_px{0, 0};
+  double residual_px = 0;  ///< its distance from where the final calibration predicts it
+};
+
+/// What remains when corners that no corner noise explains are left out.
+struct RobustFit {
+  BoardObservations inliers;
+  BoardState state;  ///< the least-squares minimum over the inliers
+  std::vector<CornerOutlier> outliers;
+};
+
+/// Residuals of every corner (prediction less pixel, px), view by view.
+using CornerResiduals = std::vector<std::vector<Eigen::Vector2d>>;
+CornerResiduals corner_residuals(const BoardObservations& observations, const BoardState& state);
+
+/// Standard deviation of a coordinate from the median length of a residual, 1.1774 σ for a normal
+/// error in two coordinates (Rayleigh), which fewer than a half of wrong corners cannot ruin.
+double robust_pixel_sigma(const CornerResiduals& residuals);
+
+/// From the least-squares minimum `state`: where nothing is an outlier, nothing happens. Else the
+/// cost is minimised with Huber's loss (Huber 1964), then with Tukey's redescending one (Beaton and
+/// Tukey 1974), both by iterated weights on the length of a corner's residual; what is an outlier
+/// at that minimum is left out, and least squares over the rest is the answer.
+///
+/// A corner is an outlier where its residual is longer than `limit` standard deviations, the robust
+/// one of all corners and that of its eight neighbours on the board, whichever is larger: a lens
+/// that the model does not fit moves neighbours as well, and is no reason to leave corners out. A
+/// view is one where most of its residuals are that long. With 6 a corner of normal error is lost
+/// once in 6e7.
+RobustFit without_outliers(const BoardObservations& observations,
+                           const BoardState& state,
+                           const ReprojectionProblem& problem,
+                           double limit = 6);
+
+}  // namespace vernier

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_prior.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+#include "calib/held_parameters.h"
+
+namespace vernier {
+namespace {
+
+std::vector<Eigen::Index> places_of(const std::vector<std::string>& names, const Rig& rig) {
+  const std::vector<std::string> all = parameter_names(rig);
+  std::vector<Eigen::Index> places;
+  for (const std::string& name : names) {
+    const auto found = std::find(all.begin(), all.end(), name);
+    if (found == all.end()) {
+      throw Error("prior of " + name, "the rig has no such parameter",
+                  "see the parameter_names of a rig file of this model");
+    }
+    if (std::find(places.begin(), places.end(), found - all.begin()) != places.end()) {
+      throw Error("prior of " + name, "it is given twice", "give it once");
+    }
+    places.push_back(found - all.begin());
+  }
+  return places;
+}
+
+/// Inverse of a covariance, scaled before it is factored.
+Eigen::MatrixXd inverse_of(const Covariance& covariance) {
+  const ScaledDecomposition decomposition(covariance);  // says what is wrong with it
+  const Eigen::VectorXd sd = covariance.matrix.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < sd.size(); ++i) {
+    if (!(sd[i] > 0)) {
+      throw Error("prior of " + covariance.names[static_cast<std::size_t>(i)], "its variance is 0",
+                  "hold a parameter that is known exactly");
+    }
+  }
+  if (!(decomposition.scaled_condition() < 1e13)) {
+    throw Error(
+        "prior",
+        "its covariance is singular: no variance where " + decomposition.directions().back().words,
+        "give that direction a variance, or hold its parameters");
+  }
+  const Eigen::MatrixXd R =
+      sd.cwiseInverse().asDiagonal() * covariance.matrix * sd.cwiseInverse().asDiagonal();
+  const auto n = R.rows();
+  const Eigen::MatrixXd inverse =
+      Eigen::LLT<Eigen::MatrixXd>(0.5 * (R + R.transpose())).solve(Eigen::MatrixXd::Identity(n, n));
+  return sd.cwiseInverse().asDiagonal() * inverse * sd.cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+namespace {
+
+RigPrior prior_at(const Rig& like,
+                  const std::vector<HeldParameter>& values,
+                  const Covariance& covariance) {
+  const std::vector<Eigen::Index> places = places_of(covariance.names, like);
+  const Eigen::MatrixXd P = inverse_of(covariance);
+  const int p = parameter_count(like);
+  RigPrior prior{with_held_values(like, values), Eigen::MatrixXd::Zero(p, p)};
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
+    for (Eigen::Index k = 0; k < P.cols(); ++k) {
+      prior.information(places[i], places[k]) = 0.5 * (P(i, k) + P(k, i));
+    }
+  }
+  return prior;
+}
+
+}  // namespace
+
+RigPrior rig_prior(const Rig& like, const RigKnowledge& known) {
+  const std::vector<Eigen::Index> places = places_of(known.covariance.names, known.rig);
+  const Eigen::VectorXd a = parameters(known.rig);
+  std::vector<HeldParameter> values;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    values.push_back({known.covariance.names[i], a[places[i]]});
+  }
+  return prior_at(like, values, known.covariance);
+}
+
+RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known) {
+  Covariance covariance;
+  std::vector<HeldParameter> values;
+  const auto n = static_cast<Eigen::Index>(known.size());
+  covariance.matrix = Eigen::MatrixXd::Zero(n, n);
+  for (const KnownParameter& k : known) {
+    if (!(k.sigma > 0) || !std::isfinite(k.sigma)) {
+      throw Error("prior of " + k.name, fmt::format("{} is no standard deviation", k.sigma),
+                  "give a number above 0, or hold the parameter");
+    }
+    const auto i = static_cast<Eigen::Index>(covariance.names.size());
+    covariance.matrix(i, i) = k.sigma * k.sigma;
+    covariance.names.push_back(k.name);
+    values.push_back({k.name, k.value});
+  }
+  return prior_at(like, values, covariance);
+}
+
+PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {
+  PriorOffset offset;
+  offset.delta = difference(rig, prior.mean);
+  offset.by_rig = Eigen::MatrixXd::Identity(offset.delta.size(), offset.delta.size());
+  for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
+    const int i = pose_index(rig, static_cast<int>(c));
+    offset.by_rig.block<3, 3>(i, i) = left_jacobian(offset.delta.segment<3>(i)).inverse();
+  }
+  return offset;
+}
+
+double prior_chi2(const RigPrior& prior, const Rig& rig) {
+  const Eigen::VectorXd delta = difference(rig, prior.mean);
+  return delta.dot(prior.information * delta);
+}
+
+}  // namespace vernier

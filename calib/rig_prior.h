@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/covariance.h"
+
+namespace vernier {
+
+/// What was known of some or all parameters of a rig before the data: the first term of the
+/// unified cost (Tina Memo 2017-001, Eq. 1),
+///
+///     χ²_prior(a) = δᵀ P δ,   δ = difference(a, mean)
+///
+/// with rotations in the left tangent about the mean's, in which it is exactly quadratic.
+struct RigPrior {
+  Rig mean;
+  Eigen::MatrixXd information;  ///< P, parameters x parameters; zero where nothing is known
+};
+
+/// What is known of a rig from elsewhere: `covariance` is over the parameters it names, any subset
+/// of those of `rig`, whose other values say nothing.
+struct RigKnowledge {
+  Rig rig;
+  Covariance covariance;
+};
+
+/// The same as a prior for a rig like `like`, whose models may be others (the named parameters
+/// must be there). Throws Error where the covariance is not symmetric or not positive
+/// semi-definite, naming the direction, and where it is singular: a direction known exactly is to
+/// be held instead.
+RigPrior rig_prior(const Rig& like, const RigKnowledge& known);
+
+/// The prior of single parameters, independent of each other.
+struct KnownParameter {
+  std::string name;
+  double value = 0, sigma = 0;
+};
+RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known);
+
+/// δ at `rig` and its derivative by the left tangent at `rig`.
+struct PriorOffset {
+  Eigen::VectorXd delta;
+  Eigen::MatrixXd by_rig;  ///< the identity but for rotations, where it is J_l⁻¹
+};
+PriorOffset prior_offset(const RigPrior& prior, const Rig& rig);
+
+/// χ²_prior at `rig`.
+double prior_chi2(const RigPrior& prior, const Rig& rig);
+
+}  // namespace vernier

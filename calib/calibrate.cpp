@@ -9,6 +9,7 @@
 
 #include "calib/error.h"
 #include "calib/minimise_reprojection.h"
+#include "calib/model_nesting.h"
 #include "calib/small_sample_covariance.h"
 
 namespace vernier {
@@ -87,6 +88,35 @@ double estimated_sigma(const Solution& s) {
   return s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / dof);
 }
 
+/// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
+/// cannot fit is not taken for wrong corners.
+void reject_outliers(Solution& s, const CalibrationOptions& options) {
+  RobustFit fit = without_outliers(s.observations, s.state, s.problem);
+  if (fit.outliers.empty()) return;
+  std::vector<CameraModel> rich = models_of(s.state.rig);
+  bool richer = false;
+  for (CameraModel& model : rich) {
+    if (richer_models(model).size() < 2) continue;  // opencv5, opencv8, fisheye4 stay
+    model = OpenCv5{};
+    richer = true;
+  }
+  if (richer) {
+    BoardState state = s.state;
+    state.rig = in_models(state.rig, rich);
+    const ReprojectionProblem problem = problem_of(options, state.rig);
+    state = minimise_reprojection(s.observations, state, problem);
+    const RobustFit judged = without_outliers(s.observations, state, problem);
+    if (judged.outliers.empty()) return;
+    fit.inliers = judged.inliers;
+    fit.outliers = judged.outliers;
+    fit.state = at_frames(s.state, judged.state.frames);
+    fit.state = minimise_reprojection(fit.inliers, fit.state, s.problem);
+  }
+  s.observations = std::move(fit.inliers);
+  s.state = std::move(fit.state);
+  s.outliers = std::move(fit.outliers);
+}
+
 Solution solve(BoardObservations observations, const CalibrationOptions& options) {
   std::vector<CameraModel> models = options.models;
   if (models.empty()) models.assign(observations.size_px.size(), options.model);
@@ -101,12 +131,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
   s.state = minimise_reprojection(s.observations, s.state, s.problem);
-  if (options.reject_outliers) {
-    RobustFit fit = without_outliers(s.observations, s.state, s.problem);
-    s.observations = std::move(fit.inliers);
-    s.state = std::move(fit.state);
-    s.outliers = std::move(fit.outliers);
-  }
+  if (options.reject_outliers) reject_outliers(s, options);
   linearise(s);
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution

@@ -98,6 +98,18 @@ Pose central_pose(const std::vector<Pose>& candidates) {
 
 }  // namespace
 
+BoardState at_frames(const BoardState& state, const std::vector<int>& frames) {
+  BoardState part = state;
+  part.frames.clear();
+  part.T_first_board.clear();
+  for (std::size_t f = 0; f < state.frames.size(); ++f) {
+    if (!std::binary_search(frames.begin(), frames.end(), state.frames[f])) continue;
+    part.frames.push_back(state.frames[f]);
+    part.T_first_board.push_back(state.T_first_board[f]);
+  }
+  return part;
+}
+
 BoardState initial_state(const BoardObservations& observations,
                          const std::vector<CameraModel>& models) {
   BoardState state;

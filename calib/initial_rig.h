@@ -17,6 +17,9 @@ struct BoardState {
   Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board_warp.h)
 };
 
+/// The state at some of its frames, ascending; frames it does not have are left out.
+BoardState at_frames(const BoardState& state, const std::vector<int>& frames);
+
 /// A start from the corners alone: focal lengths from the homographies' vanishing points with the
 /// centre in the middle of the image and no distortion (Zhang 2000, as OpenCV does it), poses by
 /// PnP, the cameras chained by their common frames. Throws Error where a camera shares no frame

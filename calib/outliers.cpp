@@ -136,14 +136,7 @@ RobustFit separated(const BoardObservations& observations,
     }
     if (!whole_view_out) fit.inliers.views.push_back(std::move(inlier));
   }
-  const std::vector<int> frames = frames_of(fit.inliers);
-  fit.state.frames.clear();
-  fit.state.T_first_board.clear();
-  for (std::size_t f = 0; f < state.frames.size(); ++f) {
-    if (!std::binary_search(frames.begin(), frames.end(), state.frames[f])) continue;
-    fit.state.frames.push_back(state.frames[f]);
-    fit.state.T_first_board.push_back(state.T_first_board[f]);
-  }
+  fit.state = at_frames(state, frames_of(fit.inliers));
   return fit;
 }
 

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "calib/calibrate.h"
+#include "calib/observations_file.h"
+#include "calib/projection_uncertainty.h"
+#include "tests/support/data_folder.h"
+
+namespace vernier {
+namespace {
+
+/// Matrix of a JSON list of rows.
+Eigen::MatrixXd matrix(const nlohmann::json& json) {
+  const auto rows = json.get<std::vector<std::vector<double>>>();
+  Eigen::MatrixXd m(rows.size(), rows.at(0).size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    m.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(
+        rows[i].data(), static_cast<Eigen::Index>(rows[i].size()));
+  }
+  return m;
+}
+
+Eigen::Vector2d pixel(const nlohmann::json& json) {
+  return {json[0].get<double>(), json[1].get<double>()};
+}
+
+double relative_difference(const Eigen::MatrixXd& ours, const Eigen::MatrixXd& theirs) {
+  return (ours - theirs).cwiseAbs().maxCoeff() / theirs.cwiseAbs().maxCoeff();
+}
+
+std::string text(double number) {
+  std::ostringstream out;
+  out << number;
+  return out.str();
+}
+
+/// Solved problems of mrcal, in the folder oracle/cases beside VERNIER_DATA, with what mrcal
+/// propagates from them.
+class Propagated
+    : public testing::TestWithParam<std::tuple<const char*, const char*, Eigen::Vector2i>> {
+ protected:
+  void SetUp() override {
+    const auto data = test::data_folder();
+    if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
+    const auto [name, model, size] = GetParam();
+    const auto folder = *data / ".." / "oracle" / "cases" / name;
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no solved problems beside VERNIER_DATA";
+    std::ifstream in(folder / ("solution_" + std::string(model) + ".json"));
+    solution_ = nlohmann::json::parse(in);
+    estimate_ = calibrate(
+        read_observations(folder / "observations.csv", {size}),
+        {.model = camera_model(model), .pixel_sigma_px = solution_["sigma"].get<double>()});
+  }
+
+  nlohmann::json solution_;
+  RigEstimate estimate_;
+};
+
+TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
+  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::bound);
+  double worst = 0;
+  int compared = 0;
+  for (const auto& grid : solution_["projection"]) {
+    const ProjectionUncertainty ours(joint, grid["camera"].get<int>(), PointFixedTo::boards);
+    const double distance_m = grid["distance"].is_string() ? std::numeric_limits<double>::infinity()
+                                                           : grid["distance"].get<double>();
+    for (std::size_t row = 0; row < grid["q"].size(); ++row) {
+      for (std::size_t column = 0; column < grid["q"][row].size(); ++column) {
+        const auto C = ours.covariance(pixel(grid["q"][row][column]), distance_m);
+        ASSERT_TRUE(C);
+        worst = std::max(worst, relative_difference(*C, matrix(grid["cov"][row][column])));
+        ++compared;
+      }
+    }
+  }
+  RecordProperty("worst_relative_difference", text(worst));
+  EXPECT_EQ(compared, 2 * 6 * 48);  // cameras, distances (infinity among them), pixels
+  EXPECT_LT(worst, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Mrcal,
+    Propagated,
+    testing::Values(std::tuple("real_opencv", "radial1", Eigen::Vector2i(640, 480)),
+                    std::tuple("real_opencv", "opencv4", Eigen::Vector2i(640, 480)),
+                    std::tuple("real_opencv", "opencv5", Eigen::Vector2i(640, 480)),
+                    std::tuple("vga_radial1", "radial1", Eigen::Vector2i(640, 480)),
+                    std::tuple("vga_radial1", "opencv4", Eigen::Vector2i(640, 480)),
+                    std::tuple("hd_opencv4", "opencv4", Eigen::Vector2i(1280, 960))),
+    [](const auto& info) {
+      return std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
+    });
+
+}  // namespace
+}  // namespace vernier

@@ -10,6 +10,7 @@
 #include "calib/calibrate.h"
 #include "calib/observations_file.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {
@@ -82,6 +83,49 @@ TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
   RecordProperty("worst_relative_difference", text(worst));
   EXPECT_EQ(compared, 2 * 6 * 48);  // cameras, distances (infinity among them), pixels
   EXPECT_LT(worst, 1e-6);
+}
+
+TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
+  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::bound);
+  const double sigma_px = solution_["sigma"].get<double>();
+  const auto& pixels = solution_["triangulation"]["q"];
+  const auto pair = [&](std::size_t i) {
+    return PixelPair{pixel(pixels[i][0]), pixel(pixels[i][1])};
+  };
+  for (const auto& [key, frame] : {std::pair("raw_cam0", TriangulationFrame::rig),
+                                   std::pair("stabilized", TriangulationFrame::stabilised)}) {
+    const auto& theirs = solution_["triangulation"][key];
+    const TriangulationUncertainty ours(joint, frame);
+    double worst_point = 0, worst_calibration = 0, worst_observation = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const auto point = ours.at(pair(i), sigma_px);
+      ASSERT_TRUE(point);
+      const auto x = theirs["p"][i].get<std::vector<double>>();
+      const Eigen::Map<const Eigen::Vector3d> x_theirs(x.data());
+      worst_point = std::max(worst_point, (point->x_m - x_theirs).norm() / x_theirs.norm());
+      worst_observation =
+          std::max(worst_observation,
+                   relative_difference(point->observation, matrix(theirs["Var_observation"][i])));
+      for (std::size_t j = 0; j < pixels.size(); ++j) {
+        Eigen::Matrix3d between;
+        for (int a = 0; a < 3; ++a) {
+          for (int b = 0; b < 3; ++b) {
+            between(a, b) = theirs["Var_calibration"][i][a][j][b].get<double>();
+          }
+        }
+        worst_calibration = std::max(worst_calibration,
+                                     relative_difference(*ours.between(pair(i), pair(j)), between));
+        if (i == j) EXPECT_LT(relative_difference(point->calibration, between), 1e-6);
+      }
+    }
+    const std::string name = key;
+    RecordProperty(name + "_point", text(worst_point));
+    RecordProperty(name + "_observation", text(worst_observation));
+    RecordProperty(name + "_calibration", text(worst_calibration));
+    EXPECT_LT(worst_point, 1e-6);
+    EXPECT_LT(worst_observation, 1e-6);
+    EXPECT_LT(worst_calibration, 1e-6);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -3,22 +3,27 @@
 #include "calib/depth_uncertainty.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calib/error.h"
+#include "calib/sampled_propagation.h"
 
 namespace vernier {
 
-double triangulated_depth_m(const Rig& rig,
-                            const Eigen::Vector2d& left_px,
-                            const Eigen::Vector2d& right_px) {
-  if (rig.cameras.size() != 2) {
-    throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
-  }
+namespace {
+
+void check_pair(const Rig& rig) {
+  if (rig.cameras.size() == 2) return;
+  throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+              "give a rig of two");
+}
+
+/// Depth of the left ray where it passes nearest the right one.
+double depth_of(const Rig& rig, const Eigen::Vector3d& a, const Eigen::Vector3d& right_ray) {
   const Pose T_left_right = rig.T_camera_first[1].inverse();
-  const Eigen::Vector3d a = unproject(rig.cameras[0], left_px);
-  const Eigen::Vector3d b = T_left_right.R * unproject(rig.cameras[1], right_px);
+  const Eigen::Vector3d b = T_left_right.R * right_ray;
   // least squares for λ a = t + μ b
   Eigen::Matrix<double, 3, 2> A;
   A << a, -b;
@@ -26,11 +31,41 @@ double triangulated_depth_m(const Rig& rig,
   return scale[0] * a.z();
 }
 
+void check_ranges(const std::vector<double>& ranges_m, int samples) {
+  for (const double range : ranges_m) {
+    if (range > 0 && std::isfinite(range)) continue;
+    throw Error("depth uncertainty", "a range of " + std::to_string(range) + " m",
+                "give ranges above 0 and finite");
+  }
+  if (samples < 2) throw Error("depth uncertainty", "fewer than 2 samples", "give more");
+}
+
+}  // namespace
+
+double triangulated_depth_m(const Rig& rig,
+                            const Eigen::Vector2d& left_px,
+                            const Eigen::Vector2d& right_px) {
+  check_pair(rig);
+  return depth_of(rig, unproject(rig.cameras[0], left_px), unproject(rig.cameras[1], right_px));
+}
+
+std::optional<double> try_triangulated_depth_m(const Rig& rig,
+                                               const Eigen::Vector2d& left_px,
+                                               const Eigen::Vector2d& right_px) {
+  check_pair(rig);
+  const auto left = try_unproject(rig.cameras[0], left_px);
+  const auto right = try_unproject(rig.cameras[1], right_px);
+  if (!left || !right) return std::nullopt;
+  return depth_of(rig, *left, *right);
+}
+
 std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
                                                 const std::vector<double>& ranges_m,
                                                 double psi_c,
                                                 int samples,
                                                 std::uint64_t seed) {
+  check_pair(estimate.rig);
+  check_ranges(ranges_m, samples);
   const RigSampler sampler(estimate);
   const Rig& rig = estimate.rig;
   const Eigen::MatrixXd& factor = sampler.decomposition().factor();
@@ -39,7 +74,7 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
     const Eigen::Vector3d x(0, 0, range);
     const Eigen::Vector2d left = project(rig.cameras[0], x);
     const Eigen::Vector2d right = project(rig.cameras[1], rig.T_camera_first[1] * x);
-    DepthUncertainty u{range, 0, 0, 0};
+    DepthUncertainty u{range, 0, 0, 0, {}};
     // J D U √s column by column: central differences along the principal directions
     constexpr double step = 1e-3;
     for (Eigen::Index k = 0; k < factor.cols(); ++k) {
@@ -51,18 +86,23 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
     u.sigma_linear_m = std::sqrt(u.sigma_linear_m);
     double sum = 0, squares = 0;
     int physical = 0;
+    std::vector<double> depths;
     for (int i = 0; i < samples; ++i) {
-      const double depth = triangulated_depth_m(
+      const auto depth = try_triangulated_depth_m(
           sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), left, right);
-      if (!(depth > 0)) continue;
+      const bool meets = depth && *depth > 0;
+      depths.push_back(meets ? *depth : std::numeric_limits<double>::infinity());
+      if (!meets) continue;
       ++physical;
-      sum += depth;
-      squares += (depth - range) * (depth - range);
+      sum += *depth;
+      squares += (*depth - range) * (*depth - range);
     }
     const double mean = physical > 0 ? sum / physical - range : 0;
     u.sigma_sampled_m =
         physical > 1 ? std::sqrt(std::max(0.0, squares / physical - mean * mean)) : 0;
     u.non_physical_share = 1 - static_cast<double>(physical) / samples;
+    std::sort(depths.begin(), depths.end());
+    u.interval_95_m = interval_95(depths);
     result.push_back(u);
   }
   return result;

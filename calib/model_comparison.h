@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/calibrate.h"
+
+namespace vernier {
+
+/// How a lens model predicts views it has not seen.
+struct ModelScore {
+  std::vector<CameraModel> models;  ///< one a camera
+  std::string name;                 ///< such as "opencv4"
+  double held_out_rms_px = 0;       ///< per coordinate, over views left out of the calibration
+  double fitted_rms_px = 0;         ///< per coordinate, over all views
+  int better_views = 0;             ///< left-out views it predicts better than the model in use
+  double gain_sigmas = 0;  ///< its gain in squared error a view over the scatter of that gain
+  /// Largest move of a parameter that both models have, in honest standard deviations of the
+  /// model in use, with its name.
+  double largest_move_sigmas = 0;
+  std::string largest_move;
+};
+
+/// No covariance covers model error: this asks whether a richer lens model (calib/model_nesting.h)
+/// predicts better, by leaving views out. The frames are dealt into at most eight groups; each
+/// group is left out in turn, every model calibrated on the rest, and a left-out frame's squared
+/// error taken after fitting its board's pose alone. With more than `most_frames`, evenly spaced
+/// ones stand for all.
+struct ModelComparison {
+  ModelScore in_use;
+  std::vector<ModelScore> richer;     ///< nearest first; those that the views can determine
+  int frames = 0;                     ///< compared
+  std::vector<std::string> warnings;  ///< what a person should do about it
+};
+
+/// `estimate` is calibrate(observations, options)'s result. Nothing to compare (no richer model, or
+/// fewer than six frames) gives no scores and no warnings.
+ModelComparison compare_models(const RigEstimate& estimate,
+                               const CalibrationOptions& options,
+                               int most_frames = 60);
+
+/// The pose of a board that minimises its squared residuals in the views of one frame, the rig
+/// held, and that sum (px²): Gauss–Newton from `start`, halving steps that do not descend.
+struct BoardPoseFit {
+  Pose T_first_board;
+  double squared_error_px2 = 0;
+  int coordinates = 0;
+};
+BoardPoseFit fit_board_pose(const Rig& rig,
+                            const std::vector<Eigen::Vector3d>& target_m,
+                            const std::vector<BoardView>& views,
+                            const Pose& start);
+
+}  // namespace vernier

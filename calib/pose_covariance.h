@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/joint_information.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier {
+
+/// Which of an estimate's two covariances of the rig is meant: the honest one (what is sampled) or
+/// the minimum variance bound (what mrcal reports).
+enum class CovarianceChoice { honest, bound };
+
+/// The chosen covariance, parameters x parameters. Throws Error(`place`) where there is none.
+const Eigen::MatrixXd& chosen_covariance(const RigEstimate& estimate,
+                                         CovarianceChoice choice,
+                                         const std::string& place = "rig");
+
+/// How rig and boards move together: what carries a point that is fixed in space rather than in a
+/// camera (mrcal's reference for its projection uncertainty).
+///
+/// The covariance of the boards given the rig is board_sigma_px² times that of joint_information.h.
+/// For the bound board_sigma_px is the pixel noise σ and everything is (JᵀJ)⁻¹ σ² exactly. For the
+/// honest covariance of the rig it is σ √φ with φ = tr(C_bound⁻¹ C) / p, the mean inflation: the
+/// residuals of a frame cannot show how wrong its own pose is (Bᵀr = 0 at the minimum, whatever the
+/// noise), so no sandwich covers that part, and it is taken to be as inflated as the rig.
+struct RigAndBoards {
+  Rig rig;
+  std::vector<int> frames;          ///< ascending
+  std::vector<Pose> T_first_board;  ///< one a frame
+  Eigen::MatrixXd rig_covariance;
+  BoardPosesGivenRig given_rig;
+  double board_sigma_px = 0;
+};
+
+/// Throws Error(`place`) where the estimate has no evidence, pixel noise or covariance.
+RigAndBoards rig_and_boards(const RigEstimate& estimate,
+                            CovarianceChoice choice,
+                            const std::string& place = "rig");
+
+/// Covariance of (δ_a, m), parameters + 6: m = (w, u) is the boards' mean motion, by which a point
+/// x of the first camera's frame that is fixed to the boards moves as δx = w × x + u. The mean over
+/// all frames of T_f′ T_f⁻¹ x has this form, since with the left tangents (ω_f, τ_f)
+///
+///     w = mean ω_f,   u = mean τ_f + t_f × ω_f.
+///
+/// So everything that mrcal propagates through the poses of all frames goes through six numbers.
+Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint);
+
+/// Covariance of (δ_a, δ_1, δ_2, …): the rig, then six a frame. For tests and export; large.
+Eigen::MatrixXd rig_and_poses_covariance(const RigAndBoards& joint);
+
+/// An affine map x′ = A x + b of the first camera's frame.
+struct MeanBoardMap {
+  Eigen::Matrix3d A;
+  Eigen::Vector3d b;
+};
+
+/// One draw of the boards given that the rig deviates by `rig_deviation`: the mean of T_f′ T_f⁻¹,
+/// all of it and not only its linear part. Draws are those of (seed, trial), frame by frame.
+MeanBoardMap sample_board_map(const RigAndBoards& joint,
+                              const Eigen::VectorXd& rig_deviation,
+                              double psi_c,
+                              std::uint64_t seed,
+                              std::uint32_t trial);
+
+}  // namespace vernier

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/triangulation_uncertainty.h"
+
+#include "calib/error.h"
+
+namespace vernier {
+
+TriangulationUncertainty::TriangulationUncertainty(const RigAndBoards& joint,
+                                                   TriangulationFrame frame,
+                                                   int other)
+    : rig_(joint.rig),
+      other_(other),
+      stabilised_(frame == TriangulationFrame::stabilised),
+      covariance_(stabilised_ ? rig_and_motion_covariance(joint) : joint.rig_covariance) {}
+
+TriangulationUncertainty::TriangulationUncertainty(const Rig& rig,
+                                                   const Eigen::MatrixXd& rig_covariance,
+                                                   int other)
+    : rig_(rig), other_(other), covariance_(rig_covariance) {
+  if (covariance_.rows() != parameter_count(rig) || covariance_.cols() != covariance_.rows()) {
+    throw Error("triangulation uncertainty", "the covariance is of other parameters than the rig's",
+                "give one row and column a parameter");
+  }
+}
+
+TriangulationUncertainty::Sensitivity TriangulationUncertainty::sensitivity(
+    const PointTriangulation& point) const {
+  if (!stabilised_) return point.by_rig;
+  Sensitivity S(3, covariance_.cols());
+  S << point.by_rig, hat(point.x_m), -Eigen::Matrix3d::Identity();  // -(w × x) = [x]x w
+  return S;
+}
+
+std::optional<TriangulatedPoint> TriangulationUncertainty::at(const PixelPair& pair,
+                                                              double pair_sigma_px) const {
+  if (!(pair_sigma_px >= 0)) {
+    throw Error("triangulation uncertainty", "the pair's pixel noise is not a number of 0 or more",
+                "give it in pixels");
+  }
+  const auto point = triangulate_point_with_jacobian(rig_, pair, other_);
+  if (!point) return std::nullopt;
+  const Sensitivity S = sensitivity(*point);
+  const Eigen::Matrix3d C = S * covariance_ * S.transpose();
+  return TriangulatedPoint{
+      point->x_m, 0.5 * (C + C.transpose()),
+      pair_sigma_px * pair_sigma_px * point->by_pixels * point->by_pixels.transpose()};
+}
+
+std::optional<Eigen::Matrix3d> TriangulationUncertainty::between(const PixelPair& a,
+                                                                 const PixelPair& b) const {
+  const auto at_a = triangulate_point_with_jacobian(rig_, a, other_);
+  const auto at_b = triangulate_point_with_jacobian(rig_, b, other_);
+  if (!at_a || !at_b) return std::nullopt;
+  return sensitivity(*at_a) * covariance_ * sensitivity(*at_b).transpose();
+}
+
+}  // namespace vernier

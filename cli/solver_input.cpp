@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/solver_input.h"
+
+#include <sstream>
+
+#include "calib/error.h"
+#include "calib/rig_file.h"
+
+namespace vernier::cli {
+namespace {
+
+double number(const std::string& text, const std::string& option) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  if (used == 0 || used != text.size()) {
+    throw Error(option, fmt::format("\"{}\" is not a number", text), "write it like left.ax=1");
+  }
+  return value;
+}
+
+/// "left.ax=1" or "left.ax".
+HeldParameter held_parameter(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return {text, {}};
+  return {text.substr(0, equals), number(text.substr(equals + 1), "--hold " + text)};
+}
+
+/// "left.f_px=525,3".
+KnownParameter known_parameter(const std::string& text) {
+  const std::size_t equals = text.find('='), comma = text.find(',');
+  const std::string option = "--know " + text;
+  if (equals == std::string::npos || comma == std::string::npos || comma < equals) {
+    throw Error(option, "is not NAME=VALUE,SIGMA", "write it like left.f_px=525,3");
+  }
+  return {text.substr(0, equals), number(text.substr(equals + 1, comma - equals - 1), option),
+          number(text.substr(comma + 1), option)};
+}
+
+std::vector<CameraModel> models_named(const std::string& text) {
+  std::vector<CameraModel> models;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) models.push_back(camera_model(name));
+  if (models.empty()) models.push_back(camera_model(text));
+  return models;
+}
+
+}  // namespace
+
+void add_solver_options(CLI::App* verb, SolverInput& input) {
+  verb->add_option("--model", input.model,
+                   "pinhole, radial1, opencv4, opencv5, opencv8 or fisheye4; one, or one a camera "
+                   "with commas between")
+      ->capture_default_str();
+  verb->add_option("--pixel-sigma", input.pixel_sigma_px,
+                   "noise of a pixel coordinate (else estimated from the residuals)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--hold", input.held,
+                   "do not estimate this parameter: NAME keeps its start, NAME=VALUE (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--know", input.known,
+                   "this parameter is known beforehand: NAME=VALUE,SIGMA (repeatable)")
+      ->expected(1)
+      ->delimiter('\0')
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--prior", input.prior,
+                   "a rig file whose covariance says what is known of the parameters it lists");
+  verb->add_flag("--warp", input.warp, "estimate how the board is bent as well");
+  verb->add_flag("--keep-outliers", input.keep_outliers, "leave no corner out");
+}
+
+CalibrationOptions calibration_options(const SolverInput& input, Session& session) {
+  CalibrationOptions options;
+  const std::vector<CameraModel> models = models_named(input.model);
+  options.model = models.front();
+  if (models.size() > 1) options.models = models;
+  options.pixel_sigma_px = input.pixel_sigma_px;
+  for (const std::string& text : input.held) options.held.push_back(held_parameter(text));
+  for (const std::string& text : input.known) options.known.push_back(known_parameter(text));
+  if (!input.prior.empty()) {
+    const RigFile file = read_rig(input.prior);
+    for (const std::string& warning : file.warnings) session.warn(warning);
+    options.prior = rig_knowledge(file, input.prior);
+  }
+  if (input.warp) options.warp = BoardWarp::free;
+  options.reject_outliers = !input.keep_outliers;
+  return options;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/calibrate.h"
+#include "cli/session.h"
+
+namespace vernier::cli {
+
+/// What the command line says of how to solve. The verbs that calibrate share it.
+struct SolverInput {
+  std::string model = "radial1";  ///< one, or one a camera with commas between
+  double pixel_sigma_px = 0;
+  std::vector<std::string> held;   ///< NAME or NAME=VALUE
+  std::vector<std::string> known;  ///< NAME=VALUE,SIGMA
+  std::string prior;               ///< a rig file
+  bool warp = false, keep_outliers = false;
+};
+
+/// `input` must outlive the parsing.
+void add_solver_options(CLI::App* verb, SolverInput& input);
+
+/// Throws Error naming the option that cannot be read.
+CalibrationOptions calibration_options(const SolverInput& input, Session& session);
+
+}  // namespace vernier::cli

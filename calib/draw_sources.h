@@ -20,6 +20,7 @@ enum class DrawSource : std::uint32_t {
   simulated_board = 10,  // poses and pixel noise of simulated calibrations
   office = 11,           // generated worlds
   monte_carlo = 12,      // propagation by sampling
+  left_out_boards = 13,  // splits of frames
 };
 
 }  // namespace vernier

@@ -72,9 +72,8 @@ HeldOut held_out_errors(const BoardObservations& observations,
         minimise_reprojection(at(observations, kept), at_frames(state, kept), problem);
     const auto target_m = warped_target(observations.target_m, trained.warp_m);
     for (int f = group; f < frames; f += groups) {
-      const BoardPoseFit fit =
-          fit_board_pose(trained.rig, target_m, at(observations, {state.frames[f]}).views,
-                         state.T_first_board[f]);
+      const BoardPoseFit fit = fit_board_pose(
+          trained.rig, target_m, at(observations, {state.frames[f]}).views, state.T_first_board[f]);
       errors.squared_px2[f] = fit.squared_error_px2;
       errors.coordinates[f] = fit.coordinates;
     }
@@ -161,12 +160,13 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   std::string text = fmt::format(
       "residuals are structured: {} predicts views left out at {:.3f} px where {} has {:.3f} px "
       "({} of {} views better)",
-      best->name, best->held_out_rms_px, comparison.in_use.name,
-      comparison.in_use.held_out_rms_px, best->better_views, comparison.frames);
+      best->name, best->held_out_rms_px, comparison.in_use.name, comparison.in_use.held_out_rms_px,
+      best->better_views, comparison.frames);
   if (best->largest_move_sigmas > clear_move_sigmas) {
-    text += fmt::format("; it moves {} by {:.1f} of its stated standard deviations, which no "
-                        "covariance covers",
-                        best->largest_move, best->largest_move_sigmas);
+    text += fmt::format(
+        "; it moves {} by {:.1f} of its stated standard deviations, which no "
+        "covariance covers",
+        best->largest_move, best->largest_move_sigmas);
   }
   return {text + "; use --model " + best->name};
 }

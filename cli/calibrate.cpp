@@ -2,20 +2,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibrate.h"
 
+#include "calib/model_comparison.h"
 #include "calib/rig_file.h"
 #include "cli/board_input.h"
 #include "cli/rig_table.h"
 #include "cli/session.h"
+#include "cli/solver_input.h"
 
 namespace vernier::cli {
 namespace {
 
 struct Options {
   BoardInput board;
-  std::string model = "radial1", output;
-  double pixel_sigma_px = 0;
-  bool no_evidence = false;
+  SolverInput solver;
+  std::string output;
+  bool no_evidence = false, no_model_check = false;
 };
+
+Json comparison_json(const ModelComparison& comparison) {
+  const auto score = [](const ModelScore& s) {
+    return Json{{"model", s.name},
+                {"held_out_rms_px", s.held_out_rms_px},
+                {"fitted_rms_px", s.fitted_rms_px},
+                {"better_views", s.better_views},
+                {"gain_sigmas", s.gain_sigmas},
+                {"largest_move", s.largest_move},
+                {"largest_move_sigmas", s.largest_move_sigmas}};
+  };
+  Json json{{"frames", comparison.frames}, {"in_use", score(comparison.in_use)}};
+  json["richer"] = Json::array();
+  for (const ModelScore& s : comparison.richer) json["richer"].push_back(score(s));
+  return json;
+}
+
+std::string comparison_table(const ModelComparison& comparison) {
+  std::string text = fmt::format(
+      "models on views left out ({} frames):\n{:<10} {:>12} {:>12} {:>13}  {}\n", comparison.frames,
+      "model", "left out px", "fitted px", "views better", "largest move");
+  const auto line = [&](const ModelScore& s) {
+    text += fmt::format("{:<10} {:>12.4f} {:>12.4f} {:>13}  {}\n", s.name, s.held_out_rms_px,
+                        s.fitted_rms_px, s.name == comparison.in_use.name ? 0 : s.better_views,
+                        s.largest_move.empty() ? ""
+                                               : fmt::format("{} by {:.1f} sigma", s.largest_move,
+                                                             s.largest_move_sigmas));
+  };
+  line(comparison.in_use);
+  for (const ModelScore& s : comparison.richer) line(s);
+  return text;
+}
 
 void judge(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
@@ -29,14 +63,24 @@ void judge(const RigEstimate& estimate, Session& session) {
 }
 
 void run(const Options& options, Session& session) {
-  const CalibrationOptions calibration{.model = camera_model(options.model),
-                                       .pixel_sigma_px = options.pixel_sigma_px};
-  const RigEstimate estimate = calibrate(load(options.board, session), calibration);
+  const CalibrationOptions calibration = calibration_options(options.solver, session);
+  RigEstimate estimate = calibrate(load(options.board, session), calibration);
+  ModelComparison comparison;
+  if (!options.no_model_check) {
+    comparison = compare_models(estimate, calibration);
+    std::vector<std::string>& warnings = estimate.calibration->warnings;
+    warnings.insert(warnings.end(), comparison.warnings.begin(), comparison.warnings.end());
+  }
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   judge(estimate, session);
   Json json = rig_json(estimate);
+  std::string text = rig_table(estimate);
+  if (!comparison.richer.empty()) {
+    json["model_comparison"] = comparison_json(comparison);
+    text += comparison_table(comparison);
+  }
   json["output"] = options.output;
-  session.result(json, rig_table(estimate) + fmt::format("written to {}\n", options.output));
+  session.result(json, text + fmt::format("written to {}\n", options.output));
 }
 
 }  // namespace
@@ -48,11 +92,9 @@ void add_calibrate(CLI::App& app, Session& session) {
                "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
                "--square-m 0.025 -o rig.json");
   add_board_options(verb, o->board);
-  verb->add_option("--model", o->model, "pinhole, radial1, opencv4, opencv5, opencv8 or fisheye4")
-      ->capture_default_str();
-  verb->add_option("--pixel-sigma", o->pixel_sigma_px,
-                   "noise of a pixel coordinate (else estimated from the residuals)")
-      ->check(CLI::PositiveNumber);
+  add_solver_options(verb, o->solver);
+  verb->add_flag("--no-model-check", o->no_model_check,
+                 "do not compare with richer lens models on views left out");
   verb->add_flag("--no-evidence", o->no_evidence, "leave the corners out of the rig file");
   verb->add_option("-o,--output", o->output, "rig file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

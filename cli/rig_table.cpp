@@ -32,6 +32,14 @@ std::string rig_table(const RigEstimate& estimate) {
         "of "
         "freedom\n",
         s.views, s.rms_px, s.pixel_sigma_px, s.chi2, s.dof);
+    if (s.prior_dof > 0) {
+      text +=
+          fmt::format("prior: chi² {:.2f} for {} parameters it knows\n", s.prior_chi2, s.prior_dof);
+    }
+    for (const CornerOutlier& o : s.outliers) {
+      text += fmt::format("left out: corner {} of frame {}, {}, {:.1f} px from its place\n", o.id,
+                          o.frame, estimate.rig.cameras[o.camera].name, o.residual_px);
+    }
   }
   const std::vector<std::string> names = parameter_names(estimate.rig);
   const Eigen::VectorXd values = parameters(estimate.rig);
@@ -72,6 +80,14 @@ Json rig_json(const RigEstimate& estimate) {
     json["dof"] = s.dof;
     json["views"] = s.views;
     json["warnings"] = s.warnings;
+    json["held"] = s.held;
+    json["outliers"] = Json::array();
+    for (const CornerOutlier& o : s.outliers) {
+      json["outliers"].push_back({{"frame", o.frame},
+                                  {"camera", estimate.rig.cameras[o.camera].name},
+                                  {"corner", o.id},
+                                  {"residual_px", o.residual_px}});
+    }
   }
   if (estimate.covariance_mvb) json["sigma_mvb"] = list(deviations(*estimate.covariance_mvb));
   if (estimate.covariance) {

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/left_out_boards.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "calib/draw_sources.h"
+#include "calib/error.h"
+#include "calib/random.h"
+#include "calib/triangulation.h"
+
+namespace vernier {
+namespace {
+
+constexpr int fewest_frames = 6;
+
+/// One frame as both cameras of the pair saw it: pixels by corner.
+using SeenPair = std::map<int, PixelPair>;
+
+std::vector<SeenPair> seen_pairs(const BoardObservations& observations,
+                                 const std::vector<int>& frames) {
+  std::vector<SeenPair> pairs;
+  for (const int frame : frames) {
+    const BoardView *left = nullptr, *right = nullptr;
+    for (const BoardView& view : observations.views) {
+      if (view.frame != frame) continue;
+      if (view.camera == 0) left = &view;
+      if (view.camera == 1) right = &view;
+    }
+    SeenPair& pair = pairs.emplace_back();
+    if (!left || !right) continue;
+    std::map<int, Eigen::Vector2d> in_left;
+    for (std::size_t i = 0; i < left->ids.size(); ++i) in_left[left->ids[i]] = left->pixels_px[i];
+    for (std::size_t i = 0; i < right->ids.size(); ++i) {
+      const auto found = in_left.find(right->ids[i]);
+      if (found == in_left.end()) continue;
+      pair[right->ids[i]] = {found->second, right->pixels_px[i]};
+    }
+  }
+  return pairs;
+}
+
+/// The longest pairs of corners in each row, each column and along both diagonals of the board.
+std::vector<std::pair<int, int>> edges_of(const std::vector<Eigen::Vector3d>& target_m,
+                                          const SeenPair& seen) {
+  std::map<long, std::pair<int, int>> rows, columns;  // by position in micrometres: first, last
+  std::pair<int, int> down{-1, -1}, up{-1, -1};
+  const auto widen = [&](std::pair<int, int>& ends, int id, auto along) {
+    if (ends.first < 0 || along(target_m[id]) < along(target_m[ends.first])) ends.first = id;
+    if (ends.second < 0 || along(target_m[id]) > along(target_m[ends.second])) ends.second = id;
+  };
+  const auto x = [](const Eigen::Vector3d& X) { return X.x(); };
+  const auto y = [](const Eigen::Vector3d& X) { return X.y(); };
+  for (const auto& [id, pixels] : seen) {
+    const Eigen::Vector3d& X = target_m[id];
+    widen(rows.try_emplace(std::lround(1e6 * X.y()), -1, -1).first->second, id, x);
+    widen(columns.try_emplace(std::lround(1e6 * X.x()), -1, -1).first->second, id, y);
+    widen(down, id, [](const Eigen::Vector3d& Y) { return Y.x() + Y.y(); });
+    widen(up, id, [](const Eigen::Vector3d& Y) { return Y.x() - Y.y(); });
+  }
+  std::vector<std::pair<int, int>> edges{down, up};
+  for (const auto& lines : {rows, columns}) {
+    for (const auto& [position, ends] : lines) edges.push_back(ends);
+  }
+  std::erase_if(edges, [](const auto& ends) { return ends.first == ends.second; });
+  return edges;
+}
+
+/// Sums of one kind of length.
+struct Tally {
+  int n = 0, in_honest = 0, in_mvb = 0;
+  double z2_honest = 0, z2_mvb = 0, error2 = 0, honest2 = 0, mvb2 = 0;
+
+  void add(double error, double variance_honest, double variance_mvb) {
+    constexpr double z_95 = 1.959963984540054;
+    ++n;
+    const double z2h = error * error / variance_honest, z2m = error * error / variance_mvb;
+    in_honest += z2h <= z_95 * z_95;
+    in_mvb += z2m <= z_95 * z_95;
+    z2_honest += z2h;
+    z2_mvb += z2m;
+    error2 += error * error;
+    honest2 += variance_honest;
+    mvb2 += variance_mvb;
+  }
+
+  LengthCoverage coverage() const {
+    const double m = std::max(n, 1);
+    return {n,
+            in_honest / m,
+            in_mvb / m,
+            std::sqrt(z2_honest / m),
+            std::sqrt(z2_mvb / m),
+            std::sqrt(error2 / m),
+            std::sqrt(honest2 / m),
+            std::sqrt(mvb2 / m)};
+  }
+};
+
+/// A length, or a mean of some, with its derivatives: by the rig, and by the pixels of corners.
+struct Measured {
+  double value = 0;
+  Eigen::RowVectorXd by_rig;
+  std::map<int, Eigen::RowVector4d> by_pixels;
+
+  double variance(const Eigen::MatrixXd& C, double pixel_sigma_px) const {
+    double pixels = 0;
+    for (const auto& [id, J] : by_pixels) pixels += J.squaredNorm();
+    return by_rig * C * by_rig.transpose() + pixel_sigma_px * pixel_sigma_px * pixels;
+  }
+};
+
+Measured length(const PointTriangulation& a, const PointTriangulation& b, std::pair<int, int> ids) {
+  const Eigen::Vector3d d = b.x_m - a.x_m;
+  const Eigen::RowVector3d unit = d.transpose() / d.norm();
+  Measured m{d.norm(), unit * (b.by_rig - a.by_rig), {}};
+  m.by_pixels[ids.first] = -unit * a.by_pixels;
+  m.by_pixels[ids.second] = unit * b.by_pixels;
+  return m;
+}
+
+/// Adds one left-out board to the tallies; false where its corners have no 3-D point.
+bool judge_board(const RigEstimate& estimate,
+                 const std::vector<Eigen::Vector3d>& target_m,
+                 const SeenPair& seen,
+                 Tally& edges,
+                 Tally& scale) {
+  std::map<int, PointTriangulation> points;
+  for (const auto& [id, pixels] : seen) {
+    const auto point = triangulate_point_with_jacobian(estimate.rig, pixels);
+    if (!point) return false;
+    points.emplace(id, *point);
+  }
+  const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
+  const double sigma = estimate.calibration->pixel_sigma_px;
+  const auto pairs = edges_of(target_m, seen);
+  Measured mean{0, Eigen::RowVectorXd::Zero(honest.rows()), {}};
+  for (const auto& ends : pairs) {
+    const double truth = (target_m[ends.first] - target_m[ends.second]).norm();
+    const Measured m = length(points.at(ends.first), points.at(ends.second), ends);
+    edges.add(m.value - truth, m.variance(honest, sigma), m.variance(mvb, sigma));
+    const double weight = 1 / (truth * static_cast<double>(pairs.size()));
+    mean.value += weight * m.value;
+    mean.by_rig += weight * m.by_rig;
+    for (const auto& [id, J] : m.by_pixels) {
+      mean.by_pixels.try_emplace(id, Eigen::RowVector4d::Zero()).first->second += weight * J;
+    }
+  }
+  scale.add(mean.value - 1, mean.variance(honest, sigma), mean.variance(mvb, sigma));
+  return true;
+}
+
+/// Which frames a split trains on: the first of a random order.
+std::vector<int> training_frames(std::vector<int> frames,
+                                 int count,
+                                 std::uint64_t seed,
+                                 int split) {
+  Draws draws({.seed = seed,
+               .trial = static_cast<std::uint32_t>(split),
+               .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {  // Fisher and Yates
+    std::swap(frames[i], frames[i + draws.below(static_cast<std::uint32_t>(frames.size() - i))]);
+  }
+  frames.resize(static_cast<std::size_t>(count));
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+}  // namespace
+
+LeftOutBoardsResult measure_left_out_boards(
+    const BoardObservations& observations,
+    const LeftOutBoardsOptions& options,
+    const std::function<void(int done, int total)>& progress) {
+  const std::vector<int> frames = frames_of(observations);
+  if (observations.size_px.size() < 2 || frames.size() < fewest_frames) {
+    throw Error("boards left out", "needs a pair of cameras and at least six frames",
+                "give more views");
+  }
+  const auto n = static_cast<int>(frames.size());
+  const int training = options.training_frames > 0 ? options.training_frames : n / 2 + 1;
+  if (training < 3 || training >= n) {
+    throw Error("boards left out",
+                std::to_string(training) + " training frames of " + std::to_string(n),
+                "give at least 3, and fewer than there are");
+  }
+  const std::vector<SeenPair> seen = seen_pairs(observations, frames);
+  Tally edges, scale;
+  LeftOutBoardsResult result;
+  for (int split = 0; split < options.splits; ++split) {
+    const std::vector<int> kept = training_frames(frames, training, options.seed, split);
+    BoardObservations part = observations;
+    std::erase_if(part.views, [&](const BoardView& view) {
+      return !std::binary_search(kept.begin(), kept.end(), view.frame);
+    });
+    try {
+      const RigEstimate estimate = calibrate(std::move(part), options.calibration);
+      ++result.splits;
+      for (int f = 0; f < n; ++f) {
+        if (seen[f].size() < 4 || std::binary_search(kept.begin(), kept.end(), frames[f])) continue;
+        result.boards += judge_board(estimate, observations.target_m, seen[f], edges, scale);
+      }
+    } catch (const Error&) {
+      ++result.failed;  // these frames alone do not determine the rig
+    }
+    if (progress) progress(split + 1, options.splits);
+  }
+  if (result.boards == 0) {
+    throw Error("boards left out", "no split could be calibrated and judged",
+                "give more views, or a model with fewer parameters");
+  }
+  result.edges = edges.coverage();
+  result.scale = scale.coverage();
+  return result;
+}
+
+}  // namespace vernier

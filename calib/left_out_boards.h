@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "calib/calibrate.h"
+
+namespace vernier {
+
+struct LeftOutBoardsOptions {
+  int training_frames = 0;  ///< per split; 0: a little over half
+  int splits = 100;
+  std::uint64_t seed = 1;  ///< of the splits
+  CalibrationOptions calibration;
+};
+
+/// How intervals for lengths on boards that took no part in a calibration came out.
+struct LengthCoverage {
+  int lengths = 0;             ///< over all splits
+  double coverage_honest = 0;  ///< share inside their 95 % interval, with `covariance`
+  double coverage_mvb = 0;     ///< the same with the minimum variance bound
+  double z_rms_honest = 0;     ///< root mean square of error over stated sigma; 1 where true
+  double z_rms_mvb = 0;
+  double error_rms_m = 0;     ///< of the lengths themselves
+  double sigma_honest_m = 0;  ///< root mean square of the stated sigmas
+  double sigma_mvb_m = 0;
+};
+
+struct LeftOutBoardsResult {
+  LengthCoverage edges;  ///< board rows, columns and diagonals end to end, one by one
+  LengthCoverage scale;  ///< the board's overall size, all lengths of a board together
+  int splits = 0;        ///< that could be calibrated
+  int failed = 0;        ///< that could not
+  int boards = 0;        ///< predictions of a whole board
+};
+
+/// Proof on boards left out: calibrates on some frames, triangulates the corners of the others
+/// (calib/triangulation.h) and compares lengths on the board with what they are, over many
+/// splits drawn from `seed`. A length L(q, a) has the stated variance
+///
+///     J_a C_a J_aᵀ + σ² J_q J_qᵀ
+///
+/// C_a the rig's covariance, σ the calibration's pixel noise. `scale` is the weighted mean of L
+/// over its true value on one board, in which pixel noise averages out and the rig's error stays.
+/// Needs a pair and at least six frames seen by both cameras (else Error). Splits share frames, so
+/// the coverages of two splits are not independent: no interval is given for them.
+LeftOutBoardsResult measure_left_out_boards(
+    const BoardObservations& observations,
+    const LeftOutBoardsOptions& options = {},
+    const std::function<void(int done, int total)>& progress = {});
+
+}  // namespace vernier

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <set>
+
+#include "calib/board_warp.h"
+#include "calib/calibrate.h"
+#include "calib/error.h"
+#include "calib/model_nesting.h"
+#include "calib/simulated_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+Eigen::Index index_of(const Rig& rig, const std::string& name) {
+  const auto names = parameter_names(rig);
+  return std::find(names.begin(), names.end(), name) - names.begin();
+}
+
+template <typename Action>
+std::string complaint_of(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+double worst_sigmas(const Rig& a, const Rig& b, const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd d = difference(a, b);
+  double worst = 0;
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    if (C(i, i) > 0) worst = std::max(worst, std::abs(d[i]) / std::sqrt(C(i, i)));
+  }
+  return worst;
+}
+
+TEST(HeldParameters, KeepTheirValueAndHaveNoVariance) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 11);
+  const RigEstimate e = calibrate(
+      board.observations, {.held = {{"left.ax", 1.001}, {"right.k1", {}}, {"right.tx_m", -0.199}}});
+  const Eigen::VectorXd a = parameters(e.rig);
+  for (const auto& [name, value] :
+       {std::pair{"left.ax", 1.001}, {"right.k1", 0.0}, {"right.tx_m", -0.199}}) {
+    const Eigen::Index i = index_of(e.rig, name);
+    EXPECT_EQ(a[i], value) << name;
+    EXPECT_EQ(e.covariance->matrix.row(i).norm(), 0) << name;
+    EXPECT_EQ(e.covariance_mvb->col(i).norm(), 0) << name;
+  }
+  EXPECT_EQ(e.calibration->held.size(), 3u);
+}
+
+TEST(HeldParameters, BoundIsTheInverseOfWhatIsLeftOfTheInformation) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 12);
+  const RigEstimate e =
+      calibrate(board.observations, {.pixel_sigma_px = 0.2, .held = {{"left.f_px", 525.0}}});
+  const BoardState state{e.rig, e.evidence->frames, e.evidence->T_first_board};
+  const Eigen::MatrixXd S =
+      reduced_normal_equations(e.evidence->observations, state, 0.2).information;
+  const auto n = S.rows() - 1;  // left.f_px is the first
+  const Eigen::MatrixXd expected = S.bottomRightCorner(n, n).inverse();
+  const Eigen::VectorXd sd = expected.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd off = sd.cwiseInverse().asDiagonal() *
+                              (e.covariance_mvb->bottomRightCorner(n, n) - expected) *
+                              sd.cwiseInverse().asDiagonal();
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(HeldParameters, ARotationMayBeHeldInPart) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 13);
+  const RigEstimate e = calibrate(board.observations, {.held = {{"right.wy_rad", -0.02}}});
+  EXPECT_NEAR(vector_from_rotation(e.rig.T_camera_first[1].R).y(), -0.02, 1e-15);
+  // Moves within the covariance leave that component of the rotation vector where it is.
+  const ScaledDecomposition decomposition(*e.covariance);
+  for (Eigen::Index k = 0; k < decomposition.factor().cols(); ++k) {
+    const Rig moved = retract(e.rig, 1e-3 * decomposition.factor().col(k));
+    EXPECT_NEAR(vector_from_rotation(moved.T_camera_first[1].R).y(), -0.02, 1e-12);
+  }
+}
+
+TEST(HeldParameters, AreNamedWhereTheyAreWrong) {
+  const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
+  const auto complaint = [&](const HeldParameter& held) {
+    return complaint_of([&] { calibrate(observations, {.held = {held}}); });
+  };
+  EXPECT_NE(complaint({"left.k7", {}}).find("held parameter left.k7: the rig has no such"),
+            std::string::npos);
+  EXPECT_NE(complaint({"left.ay", 1.0}).find("ay is 1 by definition"), std::string::npos);
+  EXPECT_NE(complaint({"left.f_px", -3.0}).find("-3 is no value for it"), std::string::npos);
+  EXPECT_NE(complaint_of([&] {
+              calibrate(observations, {.held = {{"left.ax", {}}, {"left.ax", {}}}});
+            }).find("is held twice"),
+            std::string::npos);
+}
+
+TEST(Prior, InformationAddsUp) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 14);
+  const Rig truth = test::stereo_rig();
+  const RigEstimate e = calibrate(
+      board.observations,
+      {.pixel_sigma_px = 0.2, .known = {{"left.f_px", 525, 0.4}, {"right.tx_m", -0.2, 1e-4}}});
+  const BoardState state{e.rig, e.evidence->frames, e.evidence->T_first_board};
+  Eigen::MatrixXd S = reduced_normal_equations(e.evidence->observations, state, 0.2).information;
+  S(0, 0) += 1 / (0.4 * 0.4);
+  const Eigen::Index tx = index_of(truth, "right.tx_m");
+  S(tx, tx) += 1 / (1e-4 * 1e-4);
+  EXPECT_LT((*e.covariance_mvb * S - Eigen::MatrixXd::Identity(16, 16)).cwiseAbs().maxCoeff(),
+            1e-6);
+  EXPECT_EQ(e.calibration->prior_dof, 2);
+  EXPECT_GT(e.calibration->prior_chi2, 0);
+}
+
+TEST(Prior, WeakSaysNothingAndStrongSaysAll) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 15);
+  const RigEstimate plain = calibrate(board.observations);
+  const RigEstimate weak = calibrate(board.observations, {.known = {{"left.f_px", 400, 1e7}}});
+  const RigEstimate strong = calibrate(board.observations, {.known = {{"left.f_px", 526, 1e-7}}});
+  const RigEstimate held = calibrate(board.observations, {.held = {{"left.f_px", 526.0}}});
+  EXPECT_LT(worst_sigmas(weak.rig, plain.rig, *plain.covariance_mvb), 1e-5);
+  EXPECT_LT(worst_sigmas(strong.rig, held.rig, *held.covariance_mvb), 1e-5);
+  EXPECT_NEAR(strong.calibration->pixel_sigma_px / held.calibration->pixel_sigma_px, 1, 1e-6);
+}
+
+// Two halves of the views, the first as the second's prior, are the whole: the unified cost's
+// purpose. Exact up to the curvature of the first half's cost.
+TEST(Prior, HalfTheViewsAsPriorOfTheOtherHalf) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 16, 0, {.frames = 40});
+  BoardObservations first = board.observations, second = board.observations;
+  std::erase_if(first.views, [](const BoardView& view) { return view.frame % 2 == 1; });
+  std::erase_if(second.views, [](const BoardView& view) { return view.frame % 2 == 0; });
+  const CalibrationOptions white{.pixel_sigma_px = 0.2, .white_noise = true};
+  const RigEstimate a = calibrate(first, white), whole = calibrate(board.observations, white);
+  CalibrationOptions with_prior = white;
+  with_prior.prior = RigKnowledge{a.rig, *a.covariance};
+  const RigEstimate both = calibrate(second, with_prior);
+  EXPECT_LT(worst_sigmas(both.rig, whole.rig, *whole.covariance_mvb), 0.05);
+  const Eigen::ArrayXd ratio =
+      both.covariance_mvb->diagonal().array() / whole.covariance_mvb->diagonal().array();
+  EXPECT_NEAR(ratio.minCoeff(), 1, 0.02);
+  EXPECT_NEAR(ratio.maxCoeff(), 1, 0.02);
+}
+
+TEST(Prior, IsRefusedWithItsDirection) {
+  const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
+  const auto complaint = [&](const Eigen::Matrix2d& C) {
+    return complaint_of([&] {
+      calibrate(observations,
+                {.prior = RigKnowledge{test::stereo_rig(),
+                                       {CovarianceKind::prior, {"left.f_px", "left.ox_px"}, C}}});
+    });
+  };
+  Eigen::Matrix2d indefinite, singular, zero;
+  indefinite << 4, 7, 7, 9;
+  singular << 4, 6, 6, 9;
+  zero << 4, 0, 0, 0;
+  EXPECT_NE(complaint(indefinite).find("not positive semi-definite: negative variance where"),
+            std::string::npos);
+  EXPECT_NE(complaint(indefinite).find("the left focal length against the left centre (x)"),
+            std::string::npos);
+  EXPECT_NE(complaint(singular).find("singular: no variance where"), std::string::npos);
+  EXPECT_NE(complaint(zero).find("prior of left.ox_px: its variance is 0"), std::string::npos);
+  EXPECT_NE(complaint_of([&] {
+              calibrate(observations, {.known = {{"left.f_px", 525, 0}}});
+            }).find("0 is no standard deviation"),
+            std::string::npos);
+  EXPECT_NE(complaint_of([&] {
+              calibrate(observations, {.known = {{"left.p1", 0, 1}}});
+            }).find("prior of left.p1: the rig has no such parameter"),
+            std::string::npos);
+}
+
+/// The same views of a board that is bent by `warp_m`, with the same noise.
+BoardObservations bent(const SimulatedBoard& board, const Eigen::Vector2d& warp_m) {
+  BoardObservations bent = board.observations;
+  const auto target_m = warped_target(bent.target_m, warp_m);
+  std::size_t f = 0;
+  for (BoardView& view : bent.views) {
+    while (board.truth.frames[f] != view.frame) ++f;
+    const Camera& camera = board.truth.rig.cameras[view.camera];
+    const Pose T = board.truth.rig.T_camera_first[view.camera] * board.truth.T_first_board[f];
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      view.pixels_px[i] += project(camera, T * target_m[view.ids[i]]) -
+                           project(camera, T * bent.target_m[view.ids[i]]);
+    }
+  }
+  return bent;
+}
+
+TEST(BoardWarpTest, IsFoundAndWithoutItTheRigIsWrong) {
+  const Eigen::Vector2d warp_m(1.5e-3, -0.8e-3);
+  const auto board = simulate_board(test::stereo_rig(), {}, 17, 0, {.frames = 30});
+  const BoardObservations observations = bent(board, warp_m);
+  const RigEstimate flat = calibrate(observations, {.pixel_sigma_px = 0.2});
+  const RigEstimate free =
+      calibrate(observations, {.pixel_sigma_px = 0.2, .warp = BoardWarp::free});
+  EXPECT_LT((free.evidence->warp_m - warp_m).norm(), 1e-4);
+  EXPECT_LT(worst_sigmas(free.rig, test::stereo_rig(), *free.covariance_mvb), 4.5);
+  EXPECT_GT(worst_sigmas(flat.rig, test::stereo_rig(), *flat.covariance_mvb), 10);
+  // What is not known of the board is not known of the rig.
+  const RigEstimate known = calibrate(board.observations, {.pixel_sigma_px = 0.2});
+  EXPECT_GT((free.covariance_mvb->diagonal().array() / known.covariance_mvb->diagonal().array())
+                .minCoeff(),
+            0.99);
+}
+
+TEST(Outliers, AreListedAndTheRestDecides) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 18, 0, {.frames = 20});
+  BoardObservations spoilt = board.observations, clean = board.observations;
+  std::set<std::tuple<int, int, int>> expected;
+  for (std::size_t v = 0; v < spoilt.views.size(); v += 3) {  // one corner in 160, 3 to 40 px
+    BoardView& view = spoilt.views[v];
+    const std::size_t i = (7 * v) % view.ids.size();
+    const double angle = static_cast<double>(v), far = 3 + 37.0 * static_cast<double>(v) / 40;
+    view.pixels_px[i] += far * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    expected.emplace(view.frame, view.camera, view.ids[i]);
+    clean.views[v].ids.erase(clean.views[v].ids.begin() + static_cast<long>(i));
+    clean.views[v].pixels_px.erase(clean.views[v].pixels_px.begin() + static_cast<long>(i));
+  }
+  const RigEstimate robust = calibrate(spoilt), reference = calibrate(clean);
+  std::set<std::tuple<int, int, int>> found;
+  for (const CornerOutlier& o : robust.calibration->outliers) {
+    found.emplace(o.frame, o.camera, o.id);
+    EXPECT_GT(o.residual_px, 2);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_LT(worst_sigmas(robust.rig, reference.rig, *reference.covariance_mvb), 1e-5);
+  EXPECT_TRUE(reference.calibration->outliers.empty());
+  const RigEstimate plain = calibrate(spoilt, {.reject_outliers = false});
+  EXPECT_GT(worst_sigmas(plain.rig, reference.rig, *reference.covariance_mvb), 3);
+}
+
+TEST(Outliers, AWholeViewMayBeOne) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 19, 0, {.frames = 12});
+  BoardObservations spoilt = board.observations;
+  BoardView& view = spoilt.views[9];  // frame 4 right: shifted as by a late shutter
+  ASSERT_EQ(view.camera, 1);
+  for (Eigen::Vector2d& q : view.pixels_px) q += Eigen::Vector2d(6, -9);
+  const RigEstimate e = calibrate(spoilt);
+  BoardObservations clean = board.observations;
+  clean.views.erase(clean.views.begin() + 9);
+  EXPECT_GE(e.calibration->outliers.size(), view.ids.size());
+  EXPECT_LT(worst_sigmas(e.rig, calibrate(clean).rig, *e.covariance_mvb), 3);
+}
+
+TEST(Outliers, ALensThatTheModelDoesNotFitLosesNoCorner) {
+  const Rig truth = test::stereo_rig(OpenCv5{});
+  const auto board = simulate_board(truth, {}, 20, 0, {.pixel_sigma_px = 0.05});
+  EXPECT_TRUE(calibrate(board.observations, {.model = Pinhole{}}).calibration->outliers.empty());
+}
+
+TEST(MixedModels, OneACamera) {
+  Rig truth = test::stereo_rig(OpenCv4{});
+  truth.cameras[1] = test::stereo_rig(Pinhole{}).cameras[1];
+  const auto board = simulate_board(truth, {}, 21, 0, {.pixel_sigma_px = 0});
+  const RigEstimate e =
+      calibrate(board.observations, {.models = {OpenCv4{}, Pinhole{}}, .pixel_sigma_px = 1e-3});
+  EXPECT_LT(worst_sigmas(e.rig, truth, *e.covariance_mvb), 1e-3);
+  EXPECT_EQ(parameter_names(e.rig).size(), 8u + 4u + 6u);
+  EXPECT_NE(complaint_of([&] {
+              calibrate(board.observations, {.models = {Pinhole{}, Pinhole{}, Pinhole{}}});
+            }).find("3 models for 2 cameras"),
+            std::string::npos);
+}
+
+TEST(ModelNesting, KeepsWhatBothHaveAndLosesNothing) {
+  const Rig rig = test::stereo_rig(Radial1{});
+  const Rig richer = in_models(rig, {OpenCv8{}, OpenCv8{}});
+  const Eigen::Vector3d x(0.3, -0.2, 1.1);
+  EXPECT_EQ(project(rig.cameras[1], x), project(richer.cameras[1], x));
+  EXPECT_EQ(parameters(in_models(richer, {Radial1{}, Radial1{}})), parameters(rig));
+  EXPECT_NE(complaint_of([&] {
+              in_models(rig, {Pinhole{}, Radial1{}});
+            }).find("left.k1: the model pinhole has no such coefficient"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -8,40 +8,72 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "calib/error.h"
 
 namespace vernier {
 
-void write_atomically(const std::filesystem::path& named, std::string_view content) {
+namespace {
+
+/// A file written beside its place; removed again unless it has been put there.
+class Staged {
+ public:
+  Staged(const std::filesystem::path& named, std::string_view content);
+  Staged(Staged&& other) noexcept
+      : file_(std::move(other.file_)), temporary_(std::exchange(other.temporary_, {})) {}
+  ~Staged() {
+    std::error_code ignored;
+    if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+  }
+  void put_in_place();
+
+ private:
+  std::filesystem::path file_, temporary_;
+};
+
+Staged::Staged(const std::filesystem::path& named, std::string_view content) : file_(named) {
   // A rename would replace a link by a file, and a device or pipe too: links are followed, what is
   // no file is refused.
   std::error_code unknown;
-  std::filesystem::path file = named;
-  for (int links = 0; links < 40 && std::filesystem::is_symlink(file, unknown); ++links) {
-    file = file.parent_path() / std::filesystem::read_symlink(file, unknown);
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(file_, unknown); ++links) {
+    file_ = file_.parent_path() / std::filesystem::read_symlink(file_, unknown);
   }
-  if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
+  if (std::filesystem::exists(file_, unknown) &&
+      !std::filesystem::is_regular_file(file_, unknown)) {
     throw Error(named.string(), "is there and is no regular file", "name a file");
   }
-  const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out.write(content.data(), static_cast<std::streamsize>(content.size()));
-    out.flush();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw Error(file.string(), "cannot be written", "check that its folder exists and has room");
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error) {
+  temporary_ = file_.string() + "." + std::to_string(::getpid()) + ".tmp";
+  std::ofstream out(temporary_, std::ios::binary);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.flush();
+  if (!out) {
     std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw Error(file.string(), "cannot be written: " + error.message(), "choose another name");
+    std::filesystem::remove(temporary_, ignored);
+    throw Error(file_.string(), "cannot be written", "check that its folder exists and has room");
   }
+}
+
+void Staged::put_in_place() {
+  std::error_code error;
+  std::filesystem::rename(temporary_, file_, error);
+  if (error) {
+    throw Error(file_.string(), "cannot be written: " + error.message(), "choose another name");
+  }
+  temporary_.clear();
+}
+
+}  // namespace
+
+void write_atomically(const std::filesystem::path& file, std::string_view content) {
+  Staged(file, content).put_in_place();
+}
+
+void write_atomically(
+    const std::vector<std::pair<std::filesystem::path, std::string>>& named_contents) {
+  std::vector<Staged> staged;
+  for (const auto& [file, content] : named_contents) staged.emplace_back(file, content);
+  for (Staged& file : staged) file.put_in_place();
 }
 
 std::string read_whole(const std::filesystem::path& file) {

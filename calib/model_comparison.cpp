@@ -112,8 +112,10 @@ void compare_parameters(const RigEstimate& estimate, const Rig& richer, ModelSco
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = std::find(others.begin(), others.end(), names[i]) - others.begin();
     const auto row = static_cast<Eigen::Index>(i);
+    const bool distorts =
+        names[i].find(".k") != std::string::npos || names[i].find(".p") != std::string::npos;
     const double sigma = std::sqrt(estimate.covariance->matrix(row, row));
-    if (k == static_cast<std::ptrdiff_t>(others.size()) || !(sigma > 0)) continue;
+    if (distorts || k == static_cast<std::ptrdiff_t>(others.size()) || !(sigma > 0)) continue;
     const double move = std::abs(b[k] - a[row]) / sigma;
     if (move <= score.largest_move_sigmas) continue;
     score.largest_move_sigmas = move;

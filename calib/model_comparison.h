@@ -14,7 +14,7 @@ struct ModelScore {
   double fitted_rms_px = 0;         ///< per coordinate, over all views
   int better_views = 0;             ///< left-out views it predicts better than the model in use
   double gain_sigmas = 0;  ///< its gain in squared error a view over the scatter of that gain
-  /// Largest move of a parameter that both models have, in honest standard deviations of the
+  /// Largest move of a parameter other than distortion, in honest standard deviations of the
   /// model in use, with its name.
   double largest_move_sigmas = 0;
   std::string largest_move;

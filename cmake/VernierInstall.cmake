@@ -20,7 +20,8 @@ endforeach()
 # The package asks for what the libraries link, and for nothing else.
 set(VERNIER_FIND_DEPENDENCIES "find_dependency(Eigen3 3.4)\n")
 foreach(package IN ITEMS "Ceres::|Ceres 2.1" "fmt::|fmt" "TBB::|TBB" "SQLite::|SQLite3"
-                         "tomlplusplus::|tomlplusplus" "spdlog::|spdlog" "Highway::|Highway")
+                         "tomlplusplus::|tomlplusplus" "spdlog::|spdlog" "Highway::|Highway"
+                         "yaml-cpp|yaml-cpp")
   string(REPLACE "|" ";" package "${package}")
   list(GET package 0 namespace)
   list(GET package 1 arguments)

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/colmap_cameras.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "calib/atomic_file.h"
+#include "calib/colmap_poses.h"
+#include "calib/error.h"
+#include "calib/opencv_intrinsics.h"
+
+namespace vernier {
+namespace {
+
+using colmap::Line;
+
+/// Where each number of a model goes. Core: fx fy cx cy by index into the parameters.
+struct Model {
+  const char* name;
+  int core[4];
+  std::size_t coefficients;
+  bool fisheye;
+};
+constexpr Model models[] = {{"SIMPLE_PINHOLE", {0, 0, 1, 2}, 0, false},
+                            {"PINHOLE", {0, 1, 2, 3}, 0, false},
+                            {"SIMPLE_RADIAL", {0, 0, 1, 2}, 1, false},
+                            {"RADIAL", {0, 0, 1, 2}, 2, false},
+                            {"OPENCV", {0, 1, 2, 3}, 4, false},
+                            {"FULL_OPENCV", {0, 1, 2, 3}, 8, false},
+                            {"SIMPLE_RADIAL_FISHEYE", {0, 0, 1, 2}, 1, true},
+                            {"RADIAL_FISHEYE", {0, 0, 1, 2}, 2, true},
+                            {"OPENCV_FISHEYE", {0, 1, 2, 3}, 4, true}};
+
+const Model& find_model(const std::string& name, const std::string& place) {
+  for (const Model& model : models) {
+    if (name == model.name) return model;
+  }
+  throw Error(place, "Vernier has no camera model like " + name,
+              "known are PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
+              "their simpler forms");
+}
+
+Camera read_camera(const Line& line, const ImportOptions& options) {
+  const Model& model = find_model(line.word(1), line.place());
+  const std::size_t core = static_cast<std::size_t>(model.core[3]) + 1;
+  line.check_count(4 + core + model.coefficients);
+  const auto value = [&](std::size_t i) { return line.number(4 + i); };
+  OpenCvIntrinsics in{value(model.core[0]),       value(model.core[1]), value(model.core[2]) - 0.5,
+                      value(model.core[3]) - 0.5, model.fisheye,        {}};
+  for (std::size_t i = 0; i < model.coefficients; ++i) in.coefficients.push_back(value(core + i));
+  if (model.fisheye) in.coefficients.resize(4, 0.0);
+  return camera_from_opencv(in, {line.whole(2), line.whole(3)}, line.place(), options.model);
+}
+
+std::string model_line(const Camera& camera) {
+  const OpenCvIntrinsics in = opencv_intrinsics(camera);
+  const double cx = in.cx_px + 0.5, cy = in.cy_px + 0.5;
+  if (std::holds_alternative<Radial1>(camera.model) && camera.ax() == 1) {
+    return fmt::format("SIMPLE_RADIAL {} {} {} {} {} {}", camera.size_px[0], camera.size_px[1],
+                       in.fx_px, cx, cy, in.coefficients[0]);
+  }
+  const std::size_t n = in.coefficients.size();
+  const std::vector<double> k = held_coefficients(camera, n > 4 ? 8 : n, "FULL_OPENCV");
+  return fmt::format("{} {} {} {} {} {} {}{}{}",
+                     in.fisheye ? "OPENCV_FISHEYE"
+                     : n > 4    ? "FULL_OPENCV"
+                     : n > 0    ? "OPENCV"
+                                : "PINHOLE",
+                     camera.size_px[0], camera.size_px[1], in.fx_px, in.fy_px, cx, cy,
+                     n > 0 ? " " : "", fmt::join(k, " "));
+}
+
+const std::string& plain_name(const Camera& camera) {
+  if (camera.name.find(' ') != std::string::npos) {
+    throw Error("camera \"" + camera.name + "\"", "COLMAP's names hold no blanks",
+                "name it otherwise");
+  }
+  return file_stem(camera);
+}
+
+/// w x y z, w at least 0.
+std::array<double, 4> quaternion(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond q(R);
+  q.normalize();
+  const double sign = q.w() < 0 ? -1 : 1;
+  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
+}
+
+std::string rig_config_entry(const Camera& camera, const Pose& T, bool first) {
+  const std::string line = model_line(camera);  // MODEL WIDTH HEIGHT PARAMS
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min(line.find(' ', at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end + 1;
+  }
+  const std::string pose = first ? "\"ref_sensor\": true"
+                                 : fmt::format(
+                                       "\"cam_from_rig_rotation\": [{}],\n        "
+                                       "\"cam_from_rig_translation\": [{}, {}, {}]",
+                                       fmt::join(quaternion(T.R), ", "), T.t[0], T.t[1], T.t[2]);
+  return fmt::format(
+      "      {{\n        \"image_prefix\": \"{}/\",\n        {},\n        "
+      "\"camera_model_name\": \"{}\",\n        \"camera_params\": [{}]\n      }}",
+      camera.name, pose, words[0], fmt::join(words.begin() + 3, words.end(), ", "));
+}
+
+}  // namespace
+
+ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
+                                const ImportOptions& options) {
+  const std::filesystem::path file = std::filesystem::is_directory(file_or_folder)
+                                         ? file_or_folder / "cameras.txt"
+                                         : file_or_folder;
+  std::map<int, Camera> cameras;
+  for (const Line& line : colmap::read_lines(file)) {
+    if (!cameras.emplace(line.whole(0), read_camera(line, options)).second) {
+      throw Error(line.place(), fmt::format("camera {} is there twice", line.whole(0)),
+                  "keep one of them");
+    }
+  }
+  if (cameras.empty()) throw Error(file.string(), "holds no camera", "name another file");
+  std::vector<int> ids;
+  for (const auto& [id, camera] : cameras) ids.push_back(id);
+
+  std::vector<PlacedCamera> placed;
+  for (const colmap::PlacedId& p : colmap::read_poses(file, ids, options.unit_m)) {
+    placed.push_back({cameras.at(p.id), p.T_camera_reference});
+    placed.back().camera.name = p.name;
+  }
+  return {rig_of(std::move(placed)), {}};
+}
+
+std::vector<ForeignFile> colmap_cameras(const Rig& rig) {
+  std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]; (0, 0) is a pixel's corner\n";
+  std::string images =
+      "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: each stands for the pose of a camera\n";
+  std::string config;
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    const Pose& T = rig.T_camera_first[i];
+    const std::string& name = plain_name(rig.cameras[i]);
+    cameras += fmt::format("{} {}\n", i + 1, model_line(rig.cameras[i]));
+    images += fmt::format("{0} {1} {2} {3} {4} {0} {5}/rig.png\n\n", i + 1,
+                          fmt::join(quaternion(T.R), " "), T.t[0], T.t[1], T.t[2], name);
+    config += (i ? ",\n" : "") + rig_config_entry(rig.cameras[i], T, i == 0);
+  }
+  return {{"cameras.txt", cameras},
+          {"images.txt", images},
+          {"points3D.txt", "# none\n"},
+          {"rig_config.json", "[\n  {\n    \"cameras\": [\n" + config + "\n    ]\n  }\n]\n"}};
+}
+
+}  // namespace vernier

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "calib/imported_rig.h"
+
+namespace vernier {
+
+/// COLMAP's cameras.txt (CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]) and, beside it, the poses.
+///
+/// COLMAP puts (0, 0) at the corner of the first pixel, so its centre is ours plus 0.5 in both
+/// directions; this is added on writing and taken off on reading. Its models in our terms:
+///
+///     PINHOLE, SIMPLE_PINHOLE                              pinhole
+///     SIMPLE_RADIAL                                        radial1 with ax = 1
+///     RADIAL, OPENCV                                       opencv4 (radial1 with any ax)
+///     FULL_OPENCV                                          opencv5, opencv8
+///     OPENCV_FISHEYE, RADIAL_FISHEYE, SIMPLE_RADIAL_FISHEYE  fisheye4
+///
+/// FOV, THIN_PRISM_FISHEYE and others are refused. ("Camera models", "Output format", "Rig support"
+/// of COLMAP's documentation.)
+
+/// Reads cameras.txt, or the one of a folder. Of two cameras or more the poses come from the first
+/// of these that lies beside it: rigs.txt (COLMAP 3.12 and later; one rig), rig_config.json (one
+/// rig, its cameras in the order of their CAMERA_ID), images.txt (one image a camera). Names are
+/// the folders of the images where they are given.
+ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
+                                const ImportOptions& options = {});
+
+/// cameras.txt; images.txt with one image a camera that stands for its pose, and an empty
+/// points3D.txt, which together are a model that every COLMAP opens; and rig_config.json for
+/// `colmap rig_configurator` of 3.12 and later.
+std::vector<ForeignFile> colmap_cameras(const Rig& rig);
+
+}  // namespace vernier

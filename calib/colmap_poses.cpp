@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/colmap_poses.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/rig_json.h"
+
+namespace vernier::colmap {
+namespace {
+
+using rig_json::Json;
+using rig_json::Node;
+
+Pose pose(const Eigen::Vector4d& wxyz, const Eigen::Vector3d& t_m, const std::string& place) {
+  if (!(std::abs(wxyz.norm() - 1) <= 1e-6)) {
+    throw Error(place, fmt::format("its quaternion has the length {}", wxyz.norm()),
+                "it must be 1 to 1e-6");
+  }
+  const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  return {q.normalized().toRotationMatrix(), t_m};
+}
+
+/// The pose that begins at word `at`: QW QX QY QZ TX TY TZ.
+Pose pose(const Line& line, std::size_t at, double unit_m) {
+  Eigen::Matrix<double, 7, 1> v;
+  for (std::size_t i = 0; i < 7; ++i) v[static_cast<Eigen::Index>(i)] = line.number(at + i);
+  return pose(v.head<4>(), unit_m * v.tail<3>(), line.place());
+}
+
+void check_camera(int id, const std::vector<int>& ids, const std::string& place) {
+  if (std::find(ids.begin(), ids.end(), id) == ids.end()) {
+    throw Error(place, fmt::format("cameras.txt has no camera {}", id),
+                "give the files of one rig");
+  }
+}
+
+std::vector<PlacedId> from_rigs(const std::filesystem::path& file,
+                                const std::vector<int>&,
+                                double unit_m) {
+  const std::vector<Line> lines = read_lines(file);
+  if (lines.size() != 1) {
+    throw Error(file.string(), fmt::format("holds {} rigs", lines.size()), "keep one");
+  }
+  const Line& line = lines[0];
+  std::vector<PlacedId> placed{{line.whole(3), "", Pose{}}};
+  for (std::size_t at = 4; at < line.size();) {
+    if (line.word(at) != "CAMERA") {
+      throw Error(line.place(), "holds a sensor " + line.word(at), "keep the cameras only");
+    }
+    if (line.whole(at + 2) == 0) {
+      throw Error(line.place(), fmt::format("camera {} has no pose", line.whole(at + 1)),
+                  "solve for it in COLMAP first");
+    }
+    placed.push_back({line.whole(at + 1), "", pose(line, at + 3, unit_m)});
+    at += 10;
+  }
+  return placed;
+}
+
+/// left of "rig1/left/".
+std::string name_of_prefix(std::string prefix) {
+  while (!prefix.empty() && prefix.back() == '/') prefix.pop_back();
+  return prefix.substr(prefix.rfind('/') + 1);
+}
+
+Json parse_json(const std::filesystem::path& file) {
+  try {
+    return Json::parse(read_whole(file));
+  } catch (const Json::parse_error&) {
+    throw Error(file.string(), "is not JSON: a comma, quote or bracket is wrong", "correct it");
+  }
+}
+
+PlacedId from_entry(const Node& camera, int id, double unit_m) {
+  PlacedId placed{camera.has("camera_id") ? camera.at("camera_id").integer() : id,
+                  name_of_prefix(camera.at("image_prefix").text()), Pose{}};
+  const bool reference = camera.has("ref_sensor") && camera.at("ref_sensor").json() == true;
+  if (reference) return placed;
+  const Node rotation = camera.at("cam_from_rig_rotation");
+  const Eigen::VectorXd q = rotation.vector();
+  if (q.size() != 4) throw Error(rotation.place(), "is not a quaternion of 4 numbers", "");
+  placed.T_camera_reference =
+      pose(q, unit_m * camera.at("cam_from_rig_translation").vector3(), rotation.place());
+  return placed;
+}
+
+std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
+                                      const std::vector<int>& ids,
+                                      double unit_m) {
+  const Json json = parse_json(file);
+  const Node root(json, file.string() + ":");
+  if (root.array().size() != 1) {
+    throw Error(file.string(), fmt::format("holds {} rigs", root.size()), "keep one");
+  }
+  const Node cameras = root.at(0).at("cameras");
+  if (cameras.array().size() != ids.size()) {
+    throw Error(cameras.place(),
+                fmt::format("holds {} cameras, cameras.txt {}", cameras.size(), ids.size()),
+                "give the files of one rig");
+  }
+  std::vector<PlacedId> placed;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    placed.push_back(from_entry(cameras.at(i), ids[i], unit_m));
+  }
+  return placed;
+}
+
+std::vector<PlacedId> from_images(const std::filesystem::path& file,
+                                  const std::vector<int>& ids,
+                                  double unit_m) {
+  std::vector<PlacedId> placed;
+  for (const Line& line : read_lines(file, true)) {
+    line.check_count(10);
+    const std::string& image = line.word(9);
+    const std::size_t slash = image.rfind('/');
+    const std::string name = slash == std::string::npos
+                                 ? std::filesystem::path(image).stem().string()
+                                 : name_of_prefix(image.substr(0, slash));
+    placed.push_back({line.whole(8), name, pose(line, 1, unit_m)});
+  }
+  if (placed.size() != ids.size()) {
+    if (ids.size() == 1) return {{ids[0], "", Pose{}}};
+    throw Error(file.string(),
+                fmt::format("holds {} images of {} cameras, so it does not say where the cameras "
+                            "are on the rig",
+                            placed.size(), ids.size()),
+                "keep one frame of the rig, or give rigs.txt or rig_config.json");
+  }
+  return placed;
+}
+
+std::vector<PlacedId> from_beside(const std::filesystem::path& cameras,
+                                  const std::vector<int>& ids,
+                                  double unit_m) {
+  const std::filesystem::path folder = cameras.parent_path();
+  for (const auto& [name, reader] :
+       {std::pair{"rigs.txt", &from_rigs}, std::pair{"rig_config.json", &from_rig_config},
+        std::pair{"images.txt", &from_images}}) {
+    if (std::filesystem::exists(folder / name)) return reader(folder / name, ids, unit_m);
+  }
+  if (ids.size() == 1) return {{ids[0], "", Pose{}}};
+  throw Error(cameras.string(),
+              fmt::format("holds {} cameras and nothing beside it says where they are", ids.size()),
+              "put rigs.txt, rig_config.json or images.txt beside it");
+}
+
+}  // namespace
+
+Line::Line(const std::string& text, std::string place) : place_(std::move(place)) {
+  std::istringstream in(text);
+  for (std::string word; in >> word;) words_.push_back(word);
+}
+
+const std::string& Line::word(std::size_t index) const {
+  if (index < words_.size()) return words_[index];
+  throw Error(place_, fmt::format("has only {} words", words_.size()), "correct it");
+}
+
+double Line::number(std::size_t index) const {
+  const std::string& text = word(index);
+  double value = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() && std::isfinite(value)) {
+    return value;
+  }
+  throw Error(place_, "\"" + text + "\" is not a finite number", "correct it");
+}
+
+int Line::whole(std::size_t index) const {
+  const double value = number(index);
+  if (value >= 0 && value <= 1e9 && value == std::round(value)) return static_cast<int>(value);
+  throw Error(place_, fmt::format("{} is not a whole number", value), "correct it");
+}
+
+void Line::check_count(std::size_t count) const {
+  if (words_.size() == count) return;
+  throw Error(place_, fmt::format("has {} words, not {}", words_.size(), count), "correct it");
+}
+
+std::vector<Line> read_lines(const std::filesystem::path& file, bool skip_every_second) {
+  std::istringstream in(read_whole(file));
+  std::vector<Line> lines;
+  int number = 0;
+  for (std::string text; std::getline(in, text);) {
+    ++number;
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos || text[first] == '#') continue;
+    lines.emplace_back(text, fmt::format("{}:{}", file.string(), number));
+    if (skip_every_second && std::getline(in, text)) ++number;
+  }
+  return lines;
+}
+
+std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
+                                 const std::vector<int>& ids,
+                                 double unit_m) {
+  const std::vector<PlacedId> placed = from_beside(cameras, ids, unit_m);
+  std::vector<int> found;
+  for (const PlacedId& p : placed) {
+    check_camera(p.id, ids, cameras.string());
+    found.push_back(p.id);
+  }
+  std::sort(found.begin(), found.end());
+  if (found != ids) {
+    throw Error(cameras.string(), "not every camera of it has one pose",
+                "give the files of one rig");
+  }
+  return placed;
+}
+
+}  // namespace vernier::colmap

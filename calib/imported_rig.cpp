@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/imported_rig.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <set>
+
+#include "calib/error.h"
+
+namespace vernier {
+
+std::string default_camera_name(std::size_t index) {
+  return index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
+}
+
+Rig rig_of(std::vector<PlacedCamera> cameras) {
+  std::set<std::string> names;
+  bool distinct = true;
+  for (const PlacedCamera& c : cameras) {
+    distinct = distinct && !c.camera.name.empty() && names.insert(c.camera.name).second;
+  }
+  Rig rig;
+  for (PlacedCamera& c : cameras) {
+    if (!distinct) c.camera.name = default_camera_name(rig.cameras.size());
+    rig.T_camera_first.push_back(rig.cameras.empty() ? Pose{}
+                                                     : c.T_camera_reference *
+                                                           cameras[0].T_camera_reference.inverse());
+    rig.cameras.push_back(std::move(c.camera));
+  }
+  return rig;
+}
+
+const std::string& file_stem(const Camera& camera) {
+  const std::string& name = camera.name;
+  bool plain = !name.empty() && name[0] != '.';
+  for (const char c : name) {
+    plain = plain && c != '/' && c != '\\' && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+  }
+  if (!plain) {
+    throw Error(fmt::format("camera \"{}\"", name), "its name cannot be that of a file",
+                "name it otherwise");
+  }
+  return name;
+}
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place) {
+  const double deviation = (M.transpose() * M - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= 1e-6)) {
+    throw Error(place, fmt::format("is no rotation: it is off orthonormal by {:.2g}", deviation),
+                "correct it; 1e-6 is allowed");
+  }
+  if (M.determinant() < 0) {
+    throw Error(place, "is no rotation but a mirror: its determinant is -1", "correct it");
+  }
+  if (deviation <= 1e-14) return M;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+}  // namespace vernier

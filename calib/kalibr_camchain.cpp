@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/kalibr_camchain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/opencv_intrinsics.h"
+#include "calib/yaml_node.h"
+
+namespace vernier {
+namespace {
+
+/// The part of a topic before the last: left of /stereo/left/image_raw.
+std::string camera_of_topic(const std::string& topic) {
+  const std::size_t last = topic.rfind('/');
+  if (last == std::string::npos || last == 0) return "";
+  const std::size_t before = topic.rfind('/', last - 1);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return topic.substr(begin, last - begin);
+}
+
+OpenCvIntrinsics read_intrinsics(const YamlNode& node) {
+  const YamlNode model = node.at("camera_model");
+  if (model.text() != "pinhole") {
+    throw Error(model.place(), "Vernier has no camera model like \"" + model.text() + "\"",
+                "calibrate with pinhole-radtan or pinhole-equi");
+  }
+  const std::vector<double> core = node.at("intrinsics").numbers(4);
+  const YamlNode distortion = node.at("distortion_model");
+  const std::string name = distortion.text();
+  if (name != "radtan" && name != "equidistant" && name != "none") {
+    throw Error(distortion.place(), "Vernier has no distortion model like \"" + name + "\"",
+                "known are radtan, equidistant and none");
+  }
+  OpenCvIntrinsics in{core[0], core[1], core[2], core[3], name == "equidistant", {}};
+  if (name != "none") in.coefficients = node.at("distortion_coeffs").numbers(4);
+  return in;
+}
+
+Pose read_step(const YamlNode& node, double unit_m) {
+  const YamlNode matrix = node.at("T_cn_cnm1");
+  const Eigen::Matrix4d T = matrix.matrix(4, 4);
+  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw Error(matrix.place(), "its last row is not 0 0 0 1", "correct it");
+  }
+  return {nearest_rotation(T.topLeftCorner<3, 3>(), matrix.place()),
+          unit_m * T.topRightCorner<3, 1>()};
+}
+
+std::string camera_text(const Camera& camera, const std::string& others) {
+  const OpenCvIntrinsics in = opencv_intrinsics(camera);
+  const bool none = in.coefficients.empty();
+  const std::vector<double> k = held_coefficients(camera, none ? 0 : 4, "Kalibr's radtan");
+  return fmt::format(
+      "  cam_overlaps: [{}]\n  camera_model: pinhole\n  intrinsics: [{}]\n"
+      "  distortion_model: {}\n  distortion_coeffs: [{}]\n  resolution: [{}, {}]\n"
+      "  rostopic: {}\n",
+      others, yaml_list(std::vector<double>{in.fx_px, in.fy_px, in.cx_px, in.cy_px}),
+      none         ? "none"
+      : in.fisheye ? "equidistant"
+                   : "radtan",
+      yaml_list(k), camera.size_px[0], camera.size_px[1],
+      yaml_text("/" + camera.name + "/image_raw"));
+}
+
+std::string step_text(const Pose& T) {
+  std::string text = "  T_cn_cnm1:\n";
+  for (int r = 0; r < 3; ++r) {
+    text += fmt::format("  - [{}, {}, {}, {}]\n", T.R(r, 0), T.R(r, 1), T.R(r, 2), T.t[r]);
+  }
+  return text + "  - [0.0, 0.0, 0.0, 1.0]\n";
+}
+
+}  // namespace
+
+ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const ImportOptions& options) {
+  const YamlNode root = YamlNode::parse(read_whole(file), file.string());
+  if (!root.has("cam0")) {
+    throw Error(file.string(), "is no camchain: it has no \"cam0\"", "name another file");
+  }
+  ImportedRig imported;
+  std::vector<PlacedCamera> cameras;
+  std::set<std::string> names;
+  for (std::size_t i = 0; root.has(fmt::format("cam{}", i)); ++i) {
+    const YamlNode node = root.at(fmt::format("cam{}", i));
+    Camera camera = camera_from_opencv(read_intrinsics(node), node.at("resolution").size_px(),
+                                       node.place(), options.model);
+    if (node.has("rostopic")) camera.name = camera_of_topic(node.at("rostopic").text());
+    if (!camera.name.empty()) names.insert(camera.name);
+    for (const char* key : {"T_cam_imu", "timeshift_cam_imu"}) {
+      if (node.has(key)) imported.notes.push_back(node.at(key).place() + " is left behind");
+    }
+    const Pose T =
+        i == 0 ? Pose{} : read_step(node, options.unit_m) * cameras.back().T_camera_reference;
+    cameras.push_back({camera, T});
+  }
+  if (names.size() != cameras.size()) {
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      cameras[i].camera.name = fmt::format("cam{}", i);
+    }
+  }
+  imported.rig = rig_of(std::move(cameras));
+  return imported;
+}
+
+std::vector<ForeignFile> kalibr_camchain(const Rig& rig) {
+  std::string text;
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    std::string others;
+    for (std::size_t other = 0; other < rig.cameras.size(); ++other) {
+      if (other != i) others += (others.empty() ? "" : ", ") + std::to_string(other);
+    }
+    text += fmt::format("cam{}:\n", i) + camera_text(rig.cameras[i], others);
+    if (i > 0) text += step_text(rig.T_camera_first[i] * rig.T_camera_first[i - 1].inverse());
+  }
+  return {{"camchain.yaml", text}};
+}
+
+}  // namespace vernier

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Internal to calib/: YAML as other tools write it. Not installed.
+namespace vernier {
+
+/// A node of a YAML file with the place it stands in, so that every complaint names file, line and
+/// key. All members but has() throw Error.
+class YamlNode {
+ public:
+  /// Reads a text; OpenCV's first line (%YAML:1.0, which is no YAML) is allowed.
+  static YamlNode parse(const std::string& text, const std::string& file);
+
+  bool has(const std::string& key) const;
+  YamlNode at(const std::string& key) const;
+  /// The key of these that is there, the first one first; complains of the first one otherwise.
+  YamlNode at_any(const std::vector<std::string>& keys) const;
+  std::vector<std::string> keys() const;
+
+  double number() const;  ///< finite
+  int count() const;      ///< a whole number, 1 to 1e6
+  std::string text() const;
+  std::vector<double> numbers() const;
+  std::vector<double> numbers(std::size_t count) const;
+  /// rows x cols, as a list of rows, one flat list, or rows, cols and data (OpenCV's and ROS's).
+  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index cols) const;
+  /// A vector however it is laid out: a flat list, or rows, cols and data with one of them 1.
+  std::vector<double> vector() const;
+
+  /// [width, height], whole numbers above 0.
+  Eigen::Vector2i size_px() const;
+
+  /// file:line: key
+  std::string place() const;
+
+ private:
+  YamlNode(YAML::Node node, std::string file, std::string path)
+      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
+  YamlNode item(std::size_t index) const;
+
+  YAML::Node node_;
+  std::string file_, path_;
+};
+
+/// "a, b, c" in the shortest form that reads back equal, for a YAML list.
+std::string yaml_list(const std::vector<double>& values);
+std::string yaml_list(const Eigen::MatrixXd& row_by_row);
+
+/// A text in the quotes that YAML wants.
+std::string yaml_text(const std::string& text);
+
+}  // namespace vernier

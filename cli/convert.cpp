@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+#include <sstream>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "cli/convert_formats.h"
+#include "cli/session.h"
+
+namespace vernier::cli {
+namespace {
+
+/// A camera farther than this from the first is likely in millimetres.
+constexpr double far_m = 10;
+
+using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+struct Options {
+  std::vector<std::string> inputs;
+  std::string output, from, to, model, names, size;
+  double unit_m = 1;
+};
+
+ImportOptions import_options(const Options& options) {
+  ImportOptions import;
+  import.unit_m = options.unit_m;
+  if (!options.model.empty()) import.model = camera_model(options.model);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_size(options.size, "--size");
+    import.size_px = Eigen::Vector2i(width, height);
+  }
+  return import;
+}
+
+RigFormat format_of(const std::vector<std::filesystem::path>& inputs, const std::string& from) {
+  if (!from.empty()) return rig_format(from, "--from");
+  const RigFormat format = input_format(inputs[0]);
+  for (const std::filesystem::path& input : inputs) {
+    if (input_format(input) == format) continue;
+    throw Error(input.string(),
+                fmt::format("is no {} file as {} is", name(format), inputs[0].string()),
+                "give files of one format, or --from");
+  }
+  return format;
+}
+
+void rename(Rig& rig, const std::string& list) {
+  if (list.empty()) return;
+  std::vector<std::string> names;
+  std::istringstream in(list);
+  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
+  if (names.size() != rig.cameras.size()) {
+    throw Error("--names", fmt::format("{} names for {} cameras", names.size(), rig.cameras.size()),
+                "give one a camera, separated by commas");
+  }
+  const std::set<std::string> different(names.begin(), names.end());
+  if (different.size() != names.size() || different.count("")) {
+    throw Error("--names", "two cameras have one name, or one has none", "name each its own");
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) rig.cameras[i].name = names[i];
+}
+
+/// Options that say what the input itself says.
+void check_options(const Options& options, RigFormat from) {
+  if (!options.size.empty() && from != RigFormat::opencv) {
+    throw Error("--size", fmt::format("the files of {} say how large the images are", name(from)),
+                "leave it out");
+  }
+  if (options.unit_m != 1 && from == RigFormat::vernier) {
+    throw Error("--unit-m", "a rig.json is in metres", "leave it out");
+  }
+}
+
+/// COLMAP's files have fixed names: those of a reconstruction must not be lost to a rig's.
+void spare_reconstruction(const NamedContents& files) {
+  const std::filesystem::path folder = files[0].first.parent_path();
+  bool reconstruction = false;
+  for (const char* name : {"cameras.bin", "images.bin", "rigs.txt", "rigs.bin"}) {
+    reconstruction = reconstruction || std::filesystem::exists(folder / name);
+  }
+  for (const auto& [file, content] : files) {
+    if (file.filename() != "points3D.txt" || !std::filesystem::is_regular_file(file)) continue;
+    reconstruction = reconstruction || read_whole(file) != content;
+  }
+  if (reconstruction) {
+    throw Error(folder.string(), "holds a reconstruction, whose files would be replaced",
+                "name another folder");
+  }
+}
+
+/// All files or none; a folder that the output names by its slash is made for them.
+void write_all(const NamedContents& files, const std::filesystem::path& output) {
+  const std::filesystem::path folder = files[0].first.parent_path();
+  std::error_code error;
+  const bool made = !output.has_filename() && std::filesystem::create_directory(folder, error);
+  try {
+    write_atomically(files);
+  } catch (...) {
+    if (made) std::filesystem::remove(folder, error);
+    throw;
+  }
+}
+
+void say_all(const ReadRig& read,
+             RigFormat from,
+             const std::vector<std::string>& losses,
+             const Session& session) {
+  for (const std::string& note : read.notes) session.say(note);
+  const Rig& rig = read.estimate.rig;
+  for (std::size_t i = 0; from != RigFormat::vernier && i < rig.cameras.size(); ++i) {
+    const double distance_m = rig.T_camera_first[i].t.norm();
+    if (distance_m < far_m) continue;
+    session.warn(
+        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in "
+                    "millimetres, add --unit-m 0.001",
+                    rig.cameras[i].name, distance_m));
+  }
+  for (const std::string& line : losses) session.say(line);
+}
+
+void run(const Options& options, Session& session) {
+  const std::vector<std::filesystem::path> inputs(options.inputs.begin(), options.inputs.end());
+  const RigFormat from = format_of(inputs, options.from);
+  const RigFormat to =
+      options.to.empty() ? output_format(options.output) : rig_format(options.to, "--to");
+  check_options(options, from);
+  ReadRig read = read_rig_as(from, inputs, import_options(options));
+  Rig& rig = read.estimate.rig;
+  rename(rig, options.names);
+  const auto files = files_of(to, read.estimate, options.output);
+  if (to == RigFormat::colmap) spare_reconstruction(files);
+  write_all(files, options.output);
+  const std::vector<std::string> losses = lost(to, read.estimate);
+  say_all(read, from, losses, session);
+
+  Json cameras = Json::array(), written = Json::array();
+  std::string text;
+  for (const Camera& camera : rig.cameras) {
+    cameras.push_back({{"name", camera.name},
+                       {"model", model_name(camera.model)},
+                       {"size_px", {camera.size_px[0], camera.size_px[1]}}});
+    text += fmt::format("  {}: {}, {} x {}\n", camera.name, model_name(camera.model),
+                        camera.size_px[0], camera.size_px[1]);
+  }
+  for (const auto& [file, content] : files) {
+    written.push_back(file.string());
+    text += fmt::format("written to {}\n", file.string());
+  }
+  session.result({{"from", name(from)},
+                  {"to", name(to)},
+                  {"cameras", cameras},
+                  {"files", written},
+                  {"lost", losses}},
+                 fmt::format("{} to {}, {} camera{}:\n", name(from), name(to), rig.cameras.size(),
+                             rig.cameras.size() == 1 ? "" : "s") +
+                     text);
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(
+      app, session, "convert", "rigs to and from mrcal, OpenCV, Kalibr, ROS and COLMAP",
+      "vernier convert rig.json --to mrcal -o models/\n"
+      "  vernier convert models/left.cameramodel models/right.cameramodel -o rig.json\n"
+      "  vernier convert intrinsics.yml extrinsics.yml --size 640x480 --unit-m 0.001 -o rig.json");
+  const std::string formats = std::string("one of ") + rig_format_names;
+  verb->add_option("input", o->inputs,
+                   "file, or files that are one rig (mrcal and ROS: one a camera, the left one "
+                   "first), or COLMAP's folder")
+      ->required();
+  verb->add_option("-o,--output", o->output,
+                   "file, or a folder (with a slash at its end) for formats of several files")
+      ->required();
+  verb->add_option("--from", o->from, formats + "; by name and content unless given");
+  verb->add_option("--to", o->to, formats + "; by the output's name unless given");
+  verb->add_option("--model", o->model,
+                   "camera model, instead of the smallest that holds the input exactly");
+  verb->add_option("--names", o->names, "of the cameras, like left,right");
+  verb->add_option("--size", o->size, "of the images, like 640x480, where an OpenCV file lacks it");
+  verb->add_option("--unit-m", o->unit_m, "the input's unit of length in metres (0.001: mm)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/convert_formats.h"
+
+#include <array>
+#include <fstream>
+
+#include "calib/atomic_file.h"
+#include "calib/colmap_cameras.h"
+#include "calib/error.h"
+#include "calib/kalibr_camchain.h"
+#include "calib/mrcal_cameramodel.h"
+#include "calib/opencv_calibration_file.h"
+#include "calib/opencv_intrinsics.h"
+#include "calib/rig_file.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "stereo/rectified_camera_info.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr std::array<RigFormat, 6> formats{RigFormat::vernier, RigFormat::mrcal, RigFormat::opencv,
+                                           RigFormat::kalibr,  RigFormat::ros,   RigFormat::colmap};
+
+/// Whether a line of the text begins with the key.
+bool has_key(const std::string& text, const std::string& key) {
+  return text.rfind(key + ":", 0) == 0 || text.find("\n" + key + ":") != std::string::npos;
+}
+
+/// What tells the three kinds of YAML apart.
+RigFormat yaml_format(const std::filesystem::path& file) {
+  const std::string text = read_whole(file);
+  if (text.find("opencv-matrix") != std::string::npos) return RigFormat::opencv;
+  if (has_key(text, "cam0")) return RigFormat::kalibr;
+  if (has_key(text, "projection_matrix") || has_key(text, "P") || has_key(text, "p")) {
+    return RigFormat::ros;
+  }
+  if (text.rfind("%YAML:", 0) == 0) return RigFormat::opencv;
+  throw Error(file.string(), "its keys are not those of OpenCV's, Kalibr's or ROS's files",
+              "say what it is with --from opencv, kalibr or ros");
+}
+
+const std::filesystem::path& only(const std::vector<std::filesystem::path>& inputs,
+                                  std::string_view format) {
+  if (inputs.size() > 1) {
+    throw Error(inputs[1].string(), fmt::format("a rig of {} is one input", format),
+                "name one; mrcal's, OpenCV's and ROS's may be several");
+  }
+  return inputs[0];
+}
+
+/// A rig.json keeps all it knows as long as its models stay.
+ReadRig read_vernier(const std::filesystem::path& input, const ImportOptions& options) {
+  RigFile file = read_rig(find_rig(input.string()));
+  ReadRig read{std::move(file.estimate), std::move(file.warnings)};
+  if (!options.model) return read;
+  bool changed = false;
+  for (Camera& camera : read.estimate.rig.cameras) {
+    changed = changed || camera.model.index() != options.model->index();
+    const std::string name = camera.name;
+    camera = camera_from_opencv(opencv_intrinsics(camera), camera.size_px,
+                                fmt::format("camera \"{}\"", name), options.model);
+    camera.name = name;
+  }
+  if (changed) {
+    const bool known = read.estimate.covariance || read.estimate.covariance_mvb;
+    if (known) read.notes.push_back("the covariance is of another model and is left behind");
+    read.estimate = {read.estimate.rig, {}, {}, {}, {}, read.estimate.other_keys};
+  }
+  return read;
+}
+
+std::vector<ForeignFile> foreign_files(RigFormat format, const Rig& rig, bool folder) {
+  switch (format) {
+    case RigFormat::mrcal:
+      return mrcal_cameramodels(rig);
+    case RigFormat::opencv:
+      return folder ? opencv_intrinsics_and_extrinsics(rig) : opencv_calibration(rig);
+    case RigFormat::kalibr:
+      return kalibr_camchain(rig);
+    case RigFormat::colmap:
+      return colmap_cameras(rig);
+    case RigFormat::ros: {
+      std::vector<ForeignFile> files;
+      for (const RosCameraInfo& info : rectified_camera_info(rig)) {
+        files.push_back(format_ros_camera_info(info));
+      }
+      return files;
+    }
+    case RigFormat::vernier:
+      break;
+  }
+  return {};
+}
+
+bool names_a_folder(const std::filesystem::path& output) {
+  return !output.has_filename() || std::filesystem::is_directory(output);
+}
+
+}  // namespace
+
+std::string_view name(RigFormat format) {
+  constexpr std::array<std::string_view, 6> names{"vernier", "mrcal", "opencv",
+                                                  "kalibr",  "ros",   "colmap"};
+  return names[static_cast<std::size_t>(format)];
+}
+
+RigFormat rig_format(const std::string& text, const std::string& option) {
+  for (const RigFormat format : formats) {
+    if (name(format) == text) return format;
+  }
+  throw Error(option, "there is no format \"" + text + "\"",
+              std::string("known are ") + rig_format_names);
+}
+
+RigFormat input_format(const std::filesystem::path& input) {
+  const std::string end = input.extension().string();
+  const std::string file = input.filename().string();
+  if (file == "cameras.txt" || file == "rig_config.json") return RigFormat::colmap;
+  if (std::filesystem::is_directory(input)) {
+    if (std::filesystem::exists(input / "cameras.txt")) return RigFormat::colmap;
+    throw Error(input.string(), "is a folder without a cameras.txt", "name the files in it");
+  }
+  if (end == ".cameramodel") return RigFormat::mrcal;
+  if (end == ".yaml" || end == ".yml") return yaml_format(input);
+  if (end == ".json" || end.empty()) return RigFormat::vernier;
+  throw Error(input.string(), "its name does not say what it is",
+              std::string("add --from, one of ") + rig_format_names);
+}
+
+RigFormat output_format(const std::filesystem::path& output) {
+  const std::string end = output.extension().string();
+  if (output.filename() == "cameras.txt") return RigFormat::colmap;
+  if (end == ".json") return RigFormat::vernier;
+  if (end == ".cameramodel") return RigFormat::mrcal;
+  throw Error(output.string(), "its name does not say which format is wanted",
+              std::string("add --to, one of ") + rig_format_names);
+}
+
+ReadRig read_rig_as(RigFormat format,
+                    const std::vector<std::filesystem::path>& inputs,
+                    const ImportOptions& options) {
+  const auto imported = [](ImportedRig rig) {
+    ReadRig read;
+    read.estimate.rig = std::move(rig.rig);
+    read.notes = std::move(rig.notes);
+    return read;
+  };
+  switch (format) {
+    case RigFormat::mrcal:
+      return imported(read_mrcal_cameramodels(inputs, options));
+    case RigFormat::opencv:
+      return imported(read_opencv_calibration(inputs, options));
+    case RigFormat::kalibr:
+      return imported(read_kalibr_camchain(only(inputs, "Kalibr"), options));
+    case RigFormat::ros:
+      return imported(read_ros_camera_info(inputs, options));
+    case RigFormat::colmap: {
+      std::filesystem::path input = only(inputs, "COLMAP");
+      if (input.filename() == "rig_config.json") input.replace_filename("cameras.txt");
+      return imported(read_colmap_cameras(input, options));
+    }
+    case RigFormat::vernier:
+      break;
+  }
+  return read_vernier(only(inputs, "Vernier"), options);
+}
+
+std::vector<std::pair<std::filesystem::path, std::string>> files_of(
+    RigFormat format, const RigEstimate& estimate, const std::filesystem::path& output) {
+  const bool folder = names_a_folder(output);
+  if (format == RigFormat::vernier) {
+    return {{folder ? output / "rig.json" : output, format_rig(estimate)}};
+  }
+  std::vector<std::pair<std::filesystem::path, std::string>> named;
+  const std::vector<ForeignFile> files = foreign_files(format, estimate.rig, folder);
+  const bool beside = format == RigFormat::colmap && output.filename() == "cameras.txt";
+  if (files.size() > 1 && !folder && !beside) {
+    throw Error(output.string(),
+                fmt::format("{} keeps this rig in {} files", name(format), files.size()),
+                "name a folder, with a slash at its end if it is not there yet");
+  }
+  for (const ForeignFile& file : files) {
+    named.emplace_back(folder   ? output / file.name
+                       : beside ? output.parent_path() / file.name
+                                : output,
+                       file.text);
+  }
+  return named;
+}
+
+std::vector<std::string> lost(RigFormat format, const RigEstimate& estimate) {
+  std::vector<std::string> lines;
+  if (format == RigFormat::vernier) return lines;
+  const auto add = [&](const std::string& what) {
+    lines.push_back(fmt::format("{} has no place for {}", name(format), what));
+  };
+  if (estimate.covariance || estimate.covariance_mvb) {
+    add("the covariance; only rig.json keeps how wrong the rig is");
+  }
+  if (estimate.calibration || estimate.evidence) {
+    add("what the rig was calibrated from (calibration, evidence)");
+  }
+  if (!estimate.other_keys.empty()) add("the keys of the file that are not Vernier's");
+  const Rig& rig = estimate.rig;
+  for (std::size_t i = 0; format == RigFormat::opencv && i < rig.cameras.size(); ++i) {
+    if (rig.cameras[i].name == default_camera_name(i)) continue;
+    add(fmt::format("names: camera \"{}\" is number {}", rig.cameras[i].name, i + 1));
+  }
+  if (format == RigFormat::ros && rig.cameras.size() > 2) {
+    add("the poses of three cameras or more: each file stands for its camera alone");
+  }
+  return lines;
+}
+
+}  // namespace vernier::cli

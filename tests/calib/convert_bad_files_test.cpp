@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "calib/colmap_cameras.h"
+#include "calib/kalibr_camchain.h"
+#include "calib/mrcal_cameramodel.h"
+#include "calib/opencv_calibration_file.h"
+#include "calib/ros_camera_info.h"
+#include "tests/support/foreign_files.h"
+
+namespace vernier {
+namespace {
+
+using test::complaint_of;
+using test::Folder;
+using test::rig_of_cameras;
+
+/// A change of a good file and what is said of it.
+struct Change {
+  const char *from, *to, *complaint;
+};
+
+/// The text with its first `from` replaced.
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+template <typename Read>
+void expect_complaints(const std::string& name,
+                       const std::string& good,
+                       const std::vector<Change>& changes,
+                       const Read& read) {
+  Folder folder;
+  EXPECT_EQ(complaint_of([&] { read(folder.write(name, good)); }), "");
+  for (const Change& change : changes) {
+    const std::string text = replaced(good, change.from, change.to);
+    const std::string said = complaint_of([&] { read(folder.write(name, text)); });
+    EXPECT_NE(said.find(change.complaint), std::string::npos) << change.to << "\n  said " << said;
+    EXPECT_NE(said.find(name), std::string::npos) << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+}
+
+/// Every beginning of a file is refused or read, most are refused, and none ends the program.
+template <typename Read>
+void expect_cuts_are_refused(const std::string& name, const std::string& good, const Read& read) {
+  Folder folder;
+  std::size_t refused = 0, tried = 0;
+  for (std::size_t length = 0; length < good.size(); length += 7, ++tried) {
+    const auto file = folder.write(name, good.substr(0, length));
+    refused += !complaint_of([&] { read(file); }).empty();
+  }
+  EXPECT_GT(refused, tried * 3 / 4);  // the rest lacks only what may be left out
+}
+
+Rig one_camera(const CameraModel& model = OpenCv5{}) { return rig_of_cameras(model, 1); }
+
+TEST(ConvertBadFiles, Mrcal) {
+  const auto read = [](const std::filesystem::path& file) { read_mrcal_cameramodels({file}); };
+  const std::string good = mrcal_cameramodels(one_camera())[0].text;
+  expect_complaints(
+      "left.cameramodel", good,
+      {{"'lensmodel'", "'model'", "has no 'lensmodel'"},
+       {"LENSMODEL_OPENCV5", "LENSMODEL_CAHVOR",
+        ":2: lensmodel: Vernier has no model like LENSMODEL_CAHVOR"},
+       {"LENSMODEL_OPENCV5", "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=30_Ny=20_fov_x_deg=150",
+        "no model like LENSMODEL_SPLINED"},
+       {"LENSMODEL_OPENCV5", "LENSMODEL_OPENCV8", ":5: intrinsics: holds 9 values, not 12"},
+       {"[ 526.05,", "[ 1e999,", "intrinsics[0]: is not a finite number"},
+       {"[ 526.05,", "[ nan,", "intrinsics[0]: is not a finite number"},
+       {"[ 526.05,", "[ -526.05,", "its focal lengths are -526.05 and 525"},
+       {"[ 526.05,", "[ 'f',", "intrinsics[0]: is not a finite number"},
+       {"'extrinsics': [ 0,", "'extrinsics': [ 1,", "is another pose than rt_cam_ref"},
+       {"'rt_cam_ref': [ 0,", "'rt_cam_ref': [", "rt_cam_ref: holds 5 values, not 6"},
+       {"[ 640, 480 ]", "[ 640 ]", "imagersize: holds 1 values, not 2"},
+       {"[ 640, 480 ]", "[ 640.5, 480 ]", "imagersize: is not [width, height]"},
+       {"'imagersize'", "'intrinsics'", "has the key 'intrinsics' twice"},
+       {"[ 640, 480 ],\n}", "[ 640, 480 ],\n", "ends too early: it was cut off"},
+       {"[ 640, 480 ],\n}", "[ 640, 480 ],\n} f", "has something after its end"},
+       {"'imagersize'", "'imagersize", "ends too early: a quote is not closed"}},
+      read);
+  expect_cuts_are_refused("left.cameramodel", good, read);
+}
+
+TEST(ConvertBadFiles, MrcalKeysOfOldAndNewVersions) {
+  Folder folder;
+  std::vector<std::string> notes;
+  const auto parse = [&](const std::string& text) {
+    return parse_mrcal_cameramodel(text, "m", {}, notes);
+  };
+  const std::string core = "'intrinsics': (4, +3., 4, 5.5e0,), 'imagersize': [110, 400], ";
+  const std::string pose = "[ 0., 1, 2, 33, 44e4, -55.3E-3, ]";
+  // as mrcal 0.x, 2.2 and later versions wrote them, with entries of other kinds between
+  for (const std::string& text :
+       {"{'distortion_model': 'DISTORTION_NONE', " + core + "'extrinsics': " + pose + "}",
+        "# note\n{ \"lens_model\": \"LENSMODEL_PINHOLE\", 'q': # c ]}\n b'a{\\'}', 'n': None, " +
+            core + "'extrinsics': " + pose + "} # end",
+        "{'lensmodel': 'LENSMODEL_' 'PINHOLE', " + core + "'rt_cam_ref': " + pose + "}"}) {
+    const std::string with_name = text.find("NONE") == std::string::npos
+                                      ? text
+                                      : replaced(text, "DISTORTION_NONE", "DISTORTION_PINHOLE");
+    const PlacedCamera read = parse(with_name);
+    EXPECT_EQ(read.camera.size_px, Eigen::Vector2i(110, 400));
+    EXPECT_EQ(read.camera.f_px(), 3);
+    EXPECT_EQ(read.camera.oy_px(), 5.5);
+    EXPECT_EQ(read.T_camera_reference.t, Eigen::Vector3d(33, 44e4, -55.3e-3));
+  }
+  EXPECT_TRUE(notes.empty());
+  parse("{'lensmodel': 'LENSMODEL_PINHOLE', " + core + "'extrinsics': " + pose +
+        ", 'icam_intrinsics': 0, 'optimization_inputs': b'0@}]'}");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "m: optimization_inputs is left behind");
+}
+
+TEST(ConvertBadFiles, OpenCv) {
+  const auto read = [](const std::filesystem::path& file) { read_opencv_calibration({file}); };
+  const std::string good = opencv_calibration(rig_of_cameras(OpenCv5{}, 2))[0].text;
+  expect_complaints(
+      "rig.yml", good,
+      {{"M1:", "N1:", "has no \"camera_matrix\""},
+       {"D2:", "E2:", "has no \"D2\""},
+       {"R:", "Q:", "has no \"R\""},
+       {"T:", "S:", "has no \"T\""},
+       {"[ 526.05, 0,", "[ 526.05, 0.125,", "M1: has a skew of 0.125"},
+       {"[ 526.05, 0,", "[ .Nan, 0,", "M1.data[0]: \".Nan\" is not a finite number"},
+       {"[ 526.05, 0,", "[ 526.05,", "M1.data: holds 8 numbers, not 9"},
+       {"rows: 3\n   cols: 3", "rows: 2\n   cols: 3", "M1: is 2x3, not 3x3"},
+       {"rows: 1\n   cols: 5\n   dt: d\n   data: [ -0.12,",
+        "rows: 1\n   cols: 6\n   dt: d\n   "
+        "data: [ 0, -0.12,",
+        "D1: holds 6 coefficients; OpenCV has 4, 5, 8, 12 or 14"},
+       {"image_width_1: 640", "image_wide: 640", "does not say how large the images are"},
+       {"image_width_1: 640", "image_width_1: -640", "is not a whole number above 0"},
+       {"distortion_model_2: opencv", "distortion_model_2: omni",
+        "no distortion model like \"omni\""},
+       {"distortion_model_2: opencv", "distortion_model_2: fisheye", "cv::fisheye has 4"},
+       {"---", "---\n\t: {", "is not YAML"}},
+      read);
+  expect_cuts_are_refused("rig.yml", good, read);
+}
+
+TEST(ConvertBadFiles, OpenCvSizesAndFisheyeMayBeSaidBesides) {
+  Folder folder;
+  const Rig rig = rig_of_cameras(Fisheye4{}, 2);
+  std::string text = opencv_calibration(rig)[0].text;
+  for (const char* i : {"1", "2"}) {
+    text = replaced(text, std::string("image_width_") + i, std::string("w") + i);
+    text =
+        replaced(text, std::string("distortion_model_") + i + ": fisheye", std::string("x: ") + i);
+    text = replaced(text, std::string("x: ") + i, std::string("x") + i + ": 0");
+  }
+  const auto file = folder.write("stereo.yml", text);
+  const ImportedRig read =
+      read_opencv_calibration({file}, {.model = Fisheye4{}, .size_px = Eigen::Vector2i(640, 480)});
+  EXPECT_EQ(read.rig.cameras[1].parameters.tail(4), rig.cameras[1].parameters.tail(4));
+  EXPECT_TRUE(std::holds_alternative<Fisheye4>(read.rig.cameras[0].model));
+  const ImportedRig brown = read_opencv_calibration({file}, {.size_px = Eigen::Vector2i(640, 480)});
+  EXPECT_TRUE(std::holds_alternative<OpenCv4>(brown.rig.cameras[0].model));
+  ASSERT_EQ(brown.notes.size(), 2u);
+  EXPECT_NE(brown.notes[0].find("if cv::fisheye made them, ask for fisheye4"), std::string::npos);
+
+  const auto sized = folder.write(opencv_calibration(rig));
+  EXPECT_NE(complaint_of([&] {
+              read_opencv_calibration(sized, {.size_px = Eigen::Vector2i(320, 240)});
+            }).find("its images are 640x480 by the file and 320x240 as given"),
+            std::string::npos);
+  EXPECT_NE(complaint_of([&] {
+              read_opencv_calibration({sized[0], sized[0]});
+            }).find("is in another of the files too"),
+            std::string::npos);
+}
+
+TEST(ConvertBadFiles, Kalibr) {
+  const auto read = [](const std::filesystem::path& file) { read_kalibr_camchain(file); };
+  const std::string good = kalibr_camchain(rig_of_cameras(OpenCv4{}, 2))[0].text;
+  expect_complaints(
+      "camchain.yaml", good,
+      {{"cam0:", "left:", "is no camchain: it has no \"cam0\""},
+       {"camera_model: pinhole", "camera_model: omni", ":3: cam0.camera_model: Vernier has no"},
+       {"radtan", "fov", "cam0.distortion_model: Vernier has no distortion model like \"fov\""},
+       {"intrinsics: [526.05, ", "intrinsics: [", "cam0.intrinsics: holds 3 numbers, not 4"},
+       {"intrinsics: [526.05, ", "intrinsics: [nan, ", "cam0.intrinsics[0]: \"nan\" is not a"},
+       {"resolution: [640, 480]", "resolution: [640, 0]", "is not [width, height]"},
+       {"resolution", "size", "cam0: has no \"resolution\""},
+       {"T_cn_cnm1", "T_cam_imu", "cam1: has no \"T_cn_cnm1\""},
+       {"[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.1, 1.0]", "its last row is not 0 0 0 1"},
+       {"  - [0.0, 0.0, 0.0, 1.0]\n", "", "cam1.T_cn_cnm1: is 3x4, not 4x4"},
+       {"  - [0.9", "  - [0.8", "cam1.T_cn_cnm1: is no rotation"}},
+      read);
+  expect_cuts_are_refused("camchain.yaml", good, read);
+}
+
+TEST(ConvertBadFiles, KalibrChainsAndNames) {
+  Folder folder;
+  const Rig rig = rig_of_cameras(OpenCv4{}, 3);
+  std::string text = kalibr_camchain(rig)[0].text;
+  text = replaced(text, "/left/image_raw", "/davis/left/image_raw");
+  text = replaced(text, "  T_cn_cnm1", "  timeshift_cam_imu: 0.01\n  T_cn_cnm1");
+  const ImportedRig read = read_kalibr_camchain(folder.write("c.yaml", text));
+  EXPECT_EQ(read.rig.cameras[0].name, "left");
+  EXPECT_EQ(read.rig.cameras[2].name, "camera2");
+  ASSERT_EQ(read.notes.size(), 1u);
+  EXPECT_NE(read.notes[0].find("cam1.timeshift_cam_imu is left behind"), std::string::npos);
+  // The third camera's pose is the product of two links.
+  EXPECT_LT((read.rig.T_camera_first[2].t - rig.T_camera_first[2].t).norm(), 1e-15);
+  text = replaced(text, "/camera2/image_raw", "/right/image_raw");
+  EXPECT_EQ(read_kalibr_camchain(folder.write("c.yaml", text)).rig.cameras[2].name, "cam2");
+}
+
+TEST(ConvertBadFiles, Ros) {
+  const auto read = [](const std::filesystem::path& file) { read_ros_camera_info({file}); };
+  RosCameraInfo info;
+  info.camera = one_camera().cameras[0];
+  const std::string good = format_ros_camera_info(info).text;
+  expect_complaints(
+      "left.yaml", good,
+      {{"camera_matrix", "matrix", "has no \"camera_matrix\""},
+       {"plumb_bob", "double_sphere", "no distortion model like \"double_sphere\""},
+       {"plumb_bob", "rational_polynomial", "holds 5 coefficients, which rational_polynomial"},
+       {"data: [526.05, 0,", "data: [526.05, 1,", "has a skew of 1"},
+       {"data: [526.05, 0,", "data: [0, 0,", "0: the camera was never calibrated"},
+       {"image_width: 640", "image_width: 640.5", "image_width: 640.5 is not a whole number"},
+       {"cols: 3\n  data: [1, 0", "cols: 3\n  data: [2, 0",
+        "rectification_matrix: is no rotation"}},
+      read);
+  expect_cuts_are_refused("left.yaml", good, read);
+}
+
+TEST(ConvertBadFiles, RosPairsWithoutABaselineAndMessages) {
+  Folder folder;
+  RosCameraInfo info;
+  info.camera = one_camera().cameras[0];
+  const auto file = folder.write("left.yaml", format_ros_camera_info(info).text);
+  EXPECT_NE(complaint_of([&] {
+              read_ros_camera_info({file, file});
+            }).find("has no baseline"),
+            std::string::npos);
+  // the message itself, as `rostopic echo` and `ros2 topic echo` print it
+  const std::string end = "[500, 0, 320, 0, 500, 240, 0, 0, 1]\n";
+  for (const char* keys : {"DKRP", "dkrp"}) {
+    const auto message = [&](double shift) {
+      const std::string k(keys);
+      return "header:\n  frame_id: x\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\n" +
+             k.substr(0, 1) + ": [0.1, 0.0, 0.0, 0.0, 0.0]\n" + k.substr(1, 1) + ": " + end +
+             k.substr(2, 1) + ": [1, 0, 0, 0, 1, 0, 0, 0, 1]\n" + k.substr(3, 1) +
+             ": [400, 0, 320, " + std::to_string(shift) + ", 0, 400, 240, 0, 0, 0, 1, 0]\n";
+    };
+    const Rig rig = read_ros_camera_info(
+                        {folder.write("a.yaml", message(0)), folder.write("b.yaml", message(-48))})
+                        .rig;
+    EXPECT_EQ(rig.cameras[1].name, "b");
+    EXPECT_EQ(model_name(rig.cameras[1].model), "radial1");
+    EXPECT_DOUBLE_EQ(rig.T_camera_first[1].t.x(), -0.12);
+    EXPECT_EQ(rig.T_camera_first[1].R, Eigen::Matrix3d::Identity());
+  }
+}
+
+TEST(ConvertBadFiles, Colmap) {
+  const std::vector<ForeignFile> files = colmap_cameras(rig_of_cameras(OpenCv4{}, 2));
+  const auto read = [](const std::filesystem::path& file) { read_colmap_cameras(file); };
+  Folder folder;
+  expect_complaints("cameras.txt", colmap_cameras(one_camera(OpenCv4{}))[0].text,
+                    {{"1 OPENCV", "1 FOV", ":2: Vernier has no camera model like FOV"},
+                     {"1 OPENCV", "1 FULL_OPENCV", ":2: has 12 words, not 16"},
+                     {"1 OPENCV", "1 PINHOLE", ":2: has 12 words, not 8"},
+                     {"1 OPENCV", "one OPENCV", ":2: \"one\" is not a finite number"},
+                     {"640", "0", "its image size is 0 x 480"},
+                     {"526.05", "nan", "\"nan\" is not a finite number"},
+                     {"1 OPENCV", "#1 OPENCV", "holds no camera"}},
+                    read);
+  const auto cameras = folder.write("cameras.txt", files[0].text);
+  EXPECT_NE(complaint_of([&] {
+              read(cameras);
+            }).find("holds 2 cameras and nothing beside it says where they are"),
+            std::string::npos);
+  folder.write("images.txt", files[1].text + files[1].text);
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("images.txt: holds 4 images of 2 cameras"),
+            std::string::npos);
+  folder.write("rig_config.json", replaced(files[3].text, "\"image_prefix\"", "\"prefix\""));
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("has no \"image_prefix\""),
+            std::string::npos);
+  folder.write("rig_config.json", replaced(files[3].text, "cam_from_rig_rotation\": [",
+                                           "cam_from_rig_rotation\": [2, "));
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("is not a quaternion of 4"),
+            std::string::npos);
+  folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 1 0.5 0 0 0 1 2 3\n");
+  EXPECT_NE(
+      complaint_of([&] { read(cameras); }).find("rigs.txt:1: its quaternion has the length 0.5"),
+      std::string::npos);
+  folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 0\n");
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("camera 2 has no pose"), std::string::npos);
+  folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 3 1 1 0 0 0 1 2 3\n");
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("cameras.txt has no camera 3"),
+            std::string::npos);
+  folder.write("rigs.txt", "1 1 CAMERA 1\n2 1 CAMERA 2\n");
+  EXPECT_NE(complaint_of([&] { read(cameras); }).find("holds 2 rigs"), std::string::npos);
+}
+
+TEST(ConvertBadFiles, ColmapRigsSayWhichCameraIsFirst) {
+  Folder folder;
+  const auto cameras = folder.write("cameras.txt",
+                                    "7 SIMPLE_RADIAL 640 480 500 320.5 240 0.25\n"
+                                    "3 RADIAL_FISHEYE 640 480 500 320.5 240 0.25 0.5\n");
+  folder.write("rigs.txt", "# Rigs\n1 2 CAMERA 7 CAMERA 3 1 0.6 0.8 0 0 1 2 3\n");
+  const Rig rig = read_colmap_cameras(cameras).rig;
+  EXPECT_EQ(model_name(rig.cameras[0].model), "radial1");
+  EXPECT_EQ(rig.cameras[0].parameters, (Eigen::VectorXd(5) << 500, 1, 320, 239.5, 0.25).finished());
+  EXPECT_EQ(rig.cameras[1].parameters,
+            (Eigen::VectorXd(8) << 500, 1, 320, 239.5, 0.25, 0.5, 0, 0).finished());
+  EXPECT_EQ(rig.T_camera_first[1].t, Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(rig.T_camera_first[1].R(2, 1), 0.96, 1e-15);  // 2 w x: Hamilton's order
+  EXPECT_EQ(rig.cameras[1].name, "right");
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""`vernier convert` from outside: formats by name, all files or none, what is lost is said.
+
+    convert_test.py PROGRAM [unittest's options]
+"""
+import json
+import os
+import sys
+import unittest
+
+import cli_test
+from cli_test import ROOT, Case
+
+NOMINAL = ROOT / 'datasets/rigs/nominal.rig.json'
+
+
+class Convert(Case):
+    def setUp(self):
+        super().setUp()
+        self.nominal = json.loads(NOMINAL.read_text())
+
+    def out(self, *parts):
+        return self.folder.joinpath(*parts)
+
+    def rig(self, name='back.json'):
+        return json.loads(self.out(name).read_text())
+
+    def fisheye(self):
+        rig = {'format': 'vernier/rig', 'version': 1, 'cameras': self.nominal['cameras']}
+        for camera in rig['cameras']:
+            camera['model'] = 'fisheye4'
+            camera['parameters'].update(k2=0.01, k3=0, k4=0)
+        self.out('fisheye.json').write_text(json.dumps(rig))
+        return self.out('fisheye.json')
+
+    def expect_nominal(self, *inputs):
+        self.works('convert', *inputs, '-o', self.out('back.json'))
+        back = self.rig()
+        self.assertEqual(back['parameter_names'], self.nominal['parameter_names'])
+        for name, a, b in zip(back['parameter_names'], back['parameters'],
+                              self.nominal['parameters']):
+            self.assertAlmostEqual(a, b, delta=1e-12 * (1 + abs(b)), msg=name)
+
+    def test_there_and_back_by_name(self):
+        cases = {'mrcal': ['left.cameramodel', 'right.cameramodel'],
+                 'opencv': ['intrinsics.yml', 'extrinsics.yml'],
+                 'kalibr': ['camchain.yaml'],
+                 'ros': ['left.yaml', 'right.yaml'],
+                 'colmap': ['cameras.txt', 'images.txt', 'points3D.txt', 'rig_config.json']}
+        for to, files in cases.items():
+            with self.subTest(to):
+                done = self.works('convert', 'nominal', '--to', to, '-o', f'{self.out(to)}/',
+                                  '--json')
+                said = json.loads(done.stdout)
+                self.assertEqual((said['from'], said['to']), ('vernier', to))
+                self.assertEqual(said['files'], [str(self.out(to, f)) for f in files])
+                self.assertEqual([c['name'] for c in said['cameras']], ['left', 'right'])
+                self.assertEqual(sorted(p.name for p in self.out(to).iterdir()), sorted(files))
+                inputs = [self.out(to)] if to == 'colmap' else [self.out(to, f) for f in files]
+                self.expect_nominal(*inputs)
+        self.expect_nominal(self.out('colmap', 'rig_config.json'))
+
+    def test_single_files(self):
+        for to, file in (('opencv', 'rig.yml'), ('kalibr', 'rig.yaml')):
+            self.works('convert', 'nominal', '--to', to, '-o', self.out(file))
+            self.expect_nominal(self.out(file))
+        self.complains('convert', 'nominal', '-o', self.out('x.cameramodel'),
+                       of='mrcal keeps this rig in 2 files; name a folder',
+                       leaves=[self.out('x.cameramodel')])
+        self.works('convert', 'nominal', '--to', 'mrcal', '-o', self.folder)
+        self.works('convert', self.out('left.cameramodel'), '-o', self.out('one.json'))
+        self.works('convert', self.out('one.json'), '-o', self.out('again.cameramodel'))
+        self.assertEqual(self.out('again.cameramodel').read_text(),
+                         self.out('left.cameramodel').read_text())
+
+    def test_what_is_lost_is_said(self):
+        done = self.works('convert', 'nominal', '--to', 'opencv', '--names', 'a,b', '-o',
+                          self.out('r.yml'), '--json')
+        lost = json.loads(done.stdout)['lost']
+        self.assertIn('opencv has no place for the covariance; only rig.json keeps how wrong the '
+                      'rig is', lost)
+        self.assertIn('opencv has no place for names: camera "a" is number 1', lost)
+        for line in lost:
+            self.assertIn(line, done.stderr.splitlines())
+        quiet = self.works('convert', 'nominal', '--to', 'kalibr', '-o', self.out('k.yaml'), '-q')
+        self.assertEqual(quiet.stderr, '')
+
+    def test_a_rig_json_keeps_all(self):
+        self.works('convert', 'nominal', '--names', 'port,starboard', '-o', self.out('back.json'))
+        back = self.rig()
+        self.assertEqual(back['covariance'], self.nominal['covariance'])
+        for a, b in zip(back['parameters'], self.nominal['parameters'], strict=True):
+            self.assertAlmostEqual(a, b, delta=1e-15)
+        self.assertEqual(back['parameter_names'][0], 'port.f_px')
+        self.assertEqual(len(back['evidence']['observations']),
+                         len(self.nominal['evidence']['observations']))
+        done = self.works('convert', 'nominal', '--model', 'opencv5', '-o', self.out('back.json'))
+        self.assertIn('the covariance is of another model and is left behind', done.stderr)
+        self.assertNotIn('covariance', self.rig())
+        self.assertEqual(self.rig()['cameras'][1]['model'], 'opencv5')
+        # and the smallest model that holds it is the first one again
+        self.works('convert', self.out('back.json'), '--to', 'opencv', '-o', self.out('r.yml'))
+        self.expect_nominal(self.out('r.yml'))
+
+    def test_all_files_or_none(self):
+        self.complains('convert', self.fisheye(), '--to', 'mrcal', '-o', f'{self.out("new")}/',
+                       of='mrcal has no lens model like fisheye4', leaves=[self.out('new')])
+        self.out('models').mkdir()
+        self.out('models', 'left.cameramodel').write_text('old')
+        os.mkfifo(self.out('models', 'right.cameramodel'))
+        self.complains('convert', 'nominal', '--to', 'mrcal', '-o', self.out('models'),
+                       of='right.cameramodel: is there and is no regular file')
+        self.assertEqual(self.out('models', 'left.cameramodel').read_text(), 'old')
+        self.assertEqual(len(list(self.out('models').iterdir())), 2)
+        self.complains('convert', 'nominal', '--to', 'mrcal', '-o', f'{self.out("no", "such")}/',
+                       of='cannot be written', leaves=[self.out('no')])
+
+    def test_a_reconstruction_is_spared(self):
+        self.works('convert', 'nominal', '--to', 'colmap', '-o', self.folder)
+        self.works('convert', 'nominal', '-o', self.out('cameras.txt'))  # our own may be replaced
+        self.out('points3D.txt').write_text('1 0 0 1 9 9 9 0.1 1 1\n')
+        before = self.out('images.txt').read_bytes()
+        self.complains('convert', self.fisheye(), '--to', 'colmap', '-o', self.folder,
+                       of='holds a reconstruction, whose files would be replaced')
+        self.assertEqual(self.out('images.txt').read_bytes(), before)
+
+    def test_millimetres(self):
+        self.works('convert', 'nominal', '--to', 'kalibr', '-o', self.out('k.yaml'))
+        text = self.out('k.yaml').read_text()
+        tx = json.dumps(self.nominal['cameras'][1]['from_first']['translation_m'][0])
+        self.assertIn(tx, text)
+        self.out('k.yaml').write_text(text.replace(tx, str(1000 * float(tx))))
+        done = self.works('convert', self.out('k.yaml'), '-o', self.out('back.json'))
+        self.assertIn('if the file is in millimetres, add --unit-m 0.001', done.stderr)
+        self.works('convert', self.out('k.yaml'), '--unit-m', '0.001', '-o', self.out('back.json'))
+        self.assertAlmostEqual(self.rig()['cameras'][1]['from_first']['translation_m'][0],
+                               float(tx), places=15)
+
+    def test_bad_usage(self):
+        out = self.out('out.json')
+        self.works('convert', 'nominal', '--to', 'kalibr', '-o', self.out('k.yaml'))
+        self.works('convert', 'nominal', '--to', 'mrcal', '-o', self.folder)
+        self.out('plain.yaml').write_text('key: 1\n')
+        self.out('broken.yaml').write_text('cam0: [1, 2\n')
+        for words, of in (
+                (['nominal', '-o', self.out('x.yaml')], 'add --to, one of vernier, mrcal'),
+                (['nominal', '--to', 'hugin', '-o', out], '--to: there is no format "hugin"'),
+                ([self.out('plain.yaml'), '-o', out], 'say what it is with --from'),
+                ([self.out('broken.yaml'), '-o', out], 'broken.yaml:2: is not YAML'),
+                ([self.folder, '-o', out], 'is a folder without a cameras.txt'),
+                ([self.out('a.xml'), '-o', out], 'its name does not say what it is'),
+                ([self.out('none.cameramodel'), '-o', out], 'none.cameramodel: cannot be read'),
+                ([self.out('k.yaml'), self.out('left.cameramodel'), '-o', out],
+                 'is no kalibr file as'),
+                ([self.out('k.yaml'), self.out('k.yaml'), '-o', out], 'a rig of Kalibr is one'),
+                ([self.out('k.yaml'), '--size', '640x480', '-o', out],
+                 '--size: the files of kalibr say how large'),
+                (['nominal', '--unit-m', '0.001', '-o', out], '--unit-m: a rig.json is in metres'),
+                (['nominal', '--unit-m', '-1', '-o', out], '--unit-m'),
+                (['nominal', '--names', 'a', '-o', out], '1 names for 2 cameras'),
+                (['nominal', '--names', 'a,a', '-o', out], 'two cameras have one name'),
+                (['nominal', '--names', '../a,b', '--to', 'ros', '-o', self.folder],
+                 'its name cannot be that of a file'),
+                ([self.out('k.yaml'), '--model', 'pinhole', '-o', out],
+                 'is not in the model pinhole; choose a larger model'),
+                (['nominal', '--model', 'fisheye9', '-o', out], 'there is no such model')):
+            with self.subTest(of):
+                self.complains('convert', *words, of=of, leaves=[out])
+
+    def test_opencv_without_sizes(self):
+        self.works('convert', 'nominal', '--to', 'opencv', '-o', self.out('r.yml'))
+        lines = self.out('r.yml').read_text().splitlines()
+        self.out('r.yml').write_text('\n'.join(x for x in lines if not x.startswith('image_')))
+        self.complains('convert', self.out('r.yml'), '-o', self.out('back.json'),
+                       of='the file does not say how large the images are')
+        self.works('convert', self.out('r.yml'), '--size', '640x480', '-o', self.out('back.json'))
+        self.assertEqual(self.rig()['cameras'][0]['size_px'], [640, 480])
+
+
+if __name__ == '__main__':
+    cli_test.PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main(module='__main__')

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,11 @@ struct PlacementOptions {
   int fills = 5;             ///< steps of the size
   double least_fill = 0.25;  ///< of the image's width or height that the facing board takes up
   double greatest_fill = 0.95;
-  int angles = 5;                     ///< steps of turn and of tilt
-  double greatest_angle_rad = 0.785;  ///< 45°
-  double greatest_slant_rad = 1.05;   ///< between the board's normal and the line of sight: 60°
-  double border_px = 5;               ///< that corners keep from the image's edge
-  bool partly = false;                ///< of several, one camera may see but a quarter of the corners
+  int angles = 5;  ///< steps of turn and of tilt
+  double greatest_angle_rad = std::numbers::pi / 4;
+  double greatest_slant_rad = std::numbers::pi / 3;  ///< between its normal and the line of sight
+  double border_px = 5;                              ///< that corners keep from the image's edge
+  bool partly = false;  ///< of several, one camera may see but a quarter of the corners
 };
 
 /// A placement with the corners that each camera sees of it (noise-free, frame 0).

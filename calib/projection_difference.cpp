@@ -3,7 +3,9 @@
 #include "calib/projection_difference.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "calib/error.h"
 #include "calib/rig_difference.h"
@@ -19,6 +21,7 @@ struct SeenPoint {
   Eigen::Vector3d x_camera;  // in a's camera: metres, a unit direction at infinity
   Eigen::Vector3d x_first;   // in a's frame
   double w = 1;
+  bool in_focus = false;
 };
 
 Eigen::Vector3d move(const Pose& T, const Eigen::Vector3d& x, double w) {
@@ -48,6 +51,7 @@ std::vector<SeenPoint> points_of(const Rig& a,
     result.pixels_px.push_back(grid_of(a.cameras[c], options.grid));
     const auto& pixels = result.pixels_px.back();
     const Pose T_first_camera = a.T_camera_first[c].inverse();
+    const Eigen::Vector2d middle = 0.5 * (a.cameras[c].size_px.array() - 1).cast<double>();
     for (const double distance : options.distances_m) {
       const bool far = std::isinf(distance);
       DifferenceMap map;
@@ -57,6 +61,8 @@ std::vector<SeenPoint> points_of(const Rig& a,
       map.after_px = map.before_px;
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         SeenPoint p{static_cast<int>(c), result.maps.size(), i, pixels[i], {}, {}, far ? 0.0 : 1.0};
+        p.in_focus =
+            (pixels[i] - middle).norm() <= options.focus_share * middle.norm() * (1 + 1e-12);
         const auto ray = try_unproject(a.cameras[c], pixels[i]);
         if (ray) {
           p.x_camera = ray->normalized() * (far ? 1 : distance);
@@ -124,12 +130,10 @@ Eigen::MatrixXd by_rig(const Rig& rig, const Pose& T, const std::vector<SeenPoin
 }
 
 /// The points that the alignment is fitted to.
-std::vector<SeenPoint> in_focus(const Rig& a, double share, const std::vector<SeenPoint>& points) {
+std::vector<SeenPoint> focus_of(const std::vector<SeenPoint>& points) {
   std::vector<SeenPoint> chosen;
-  for (const SeenPoint& p : points) {
-    const Eigen::Vector2d half = 0.5 * (a.cameras[p.camera].size_px.array() - 1).cast<double>();
-    if ((p.pixel - half).norm() <= share * half.norm() * (1 + 1e-12)) chosen.push_back(p);
-  }
+  std::copy_if(points.begin(), points.end(), std::back_inserter(chosen),
+               [](const SeenPoint& p) { return p.in_focus; });
   return chosen;
 }
 
@@ -194,6 +198,12 @@ DifferenceSize size_of(const std::vector<Eigen::Vector2d>& e) {
   return size;
 }
 
+std::vector<Eigen::Vector2d> vectors(const Eigen::VectorXd& e) {
+  std::vector<Eigen::Vector2d> list;
+  for (Eigen::Index i = 0; i + 1 < e.size(); i += 2) list.emplace_back(e.segment<2>(i));
+  return list;
+}
+
 void write_differences(const Rig& b,
                        const std::vector<SeenPoint>& points,
                        ProjectionDifference& result) {
@@ -203,36 +213,57 @@ void write_differences(const Rig& b,
     throw Error("projection difference", "the alignment takes points behind a camera",
                 "look whether the rigs look the same way");
   }
-  std::vector<Eigen::Vector2d> all_before, all_after;
+  std::vector<Eigen::Vector2d> all_focus;
+  std::vector<std::vector<Eigen::Vector2d>> focus(result.maps.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    DifferenceMap& map = result.maps[points[i].map];
+    const SeenPoint& p = points[i];
     const auto row = 2 * static_cast<Eigen::Index>(i);
-    all_before.push_back(map.before_px[points[i].cell] = before.segment<2>(row));
-    all_after.push_back(map.after_px[points[i].cell] = after.segment<2>(row));
+    result.maps[p.map].before_px[p.cell] = before.segment<2>(row);
+    result.maps[p.map].after_px[p.cell] = after.segment<2>(row);
+    if (!p.in_focus) continue;
+    focus[p.map].emplace_back(after.segment<2>(row));
+    all_focus.push_back(focus[p.map].back());
   }
-  result.before = size_of(all_before);
-  result.after = size_of(all_after);
-  for (DifferenceMap& map : result.maps) {
+  for (std::size_t m = 0; m < result.maps.size(); ++m) {
+    DifferenceMap& map = result.maps[m];
     map.before = size_of(map.before_px);
     map.after = size_of(map.after_px);
+    map.in_focus = size_of(focus[m]);
   }
+  result.before = size_of(vectors(before));
+  result.after = size_of(vectors(after));
+  result.in_focus = size_of(all_focus);
 }
+
+/// Mean of variances, as a root.
+struct MeanVariance {
+  double sum = 0, count = 0;
+  void add(double variance) {
+    sum += variance;
+    ++count;
+  }
+  double root() const { return count > 0 ? std::sqrt(sum / count) : 0; }
+};
 
 void write_expected(const Eigen::VectorXd& variance,
                     const std::vector<SeenPoint>& points,
                     ProjectionDifference& result) {
   for (DifferenceMap& map : result.maps) map.expected_px.assign(map.after_px.size(), std::nan(""));
-  std::vector<double> sums(result.maps.size(), 0), counts(result.maps.size(), 0);
+  std::vector<MeanVariance> all(result.maps.size()), focus(result.maps.size());
+  MeanVariance total;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    const SeenPoint& p = points[i];
     const double v = variance.segment<2>(2 * static_cast<Eigen::Index>(i)).sum();
-    result.maps[points[i].map].expected_px[points[i].cell] = std::sqrt(v);
-    sums[points[i].map] += v;
-    ++counts[points[i].map];
+    result.maps[p.map].expected_px[p.cell] = std::sqrt(v);
+    all[p.map].add(v);
+    if (p.in_focus) focus[p.map].add(v);
+    total.add(v);
   }
-  for (std::size_t m = 0; m < sums.size(); ++m) {
-    result.maps[m].expected_rms_px = counts[m] > 0 ? std::sqrt(sums[m] / counts[m]) : 0;
+  for (std::size_t m = 0; m < result.maps.size(); ++m) {
+    result.maps[m].expected_rms_px = all[m].root();
+    result.maps[m].expected_in_focus_px = focus[m].root();
   }
-  result.expected_rms_px = std::sqrt(variance.sum() / static_cast<double>(points.size()));
+  result.expected_rms_px = total.root();
 }
 
 /// diag of M C Mᵀ.
@@ -264,7 +295,7 @@ ProjectionDifference projection_difference(const Rig& a,
   check(options);
   ProjectionDifference result;
   const std::vector<SeenPoint> points = points_of(a, b, options, result);
-  const std::vector<SeenPoint> focus = in_focus(a, options.focus_share, points);
+  const std::vector<SeenPoint> focus = focus_of(points);
   if (focus.size() < 6) {
     throw Error("projection difference",
                 "fewer than 6 pixels have a ray in one rig and an image in the other",

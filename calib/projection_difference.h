@@ -14,9 +14,9 @@ namespace vernier {
 struct ProjectionDifferenceOptions {
   std::vector<double> distances_m{1, 3, 10, std::numeric_limits<double>::infinity()};
   Eigen::Vector2i grid{20, 15};  ///< columns and rows of pixels over each image
-  /// The alignment is fitted to pixels within this share of half the image's diagonal from its
-  /// middle: below 1 where the corners of the images were never calibrated.
-  double focus_share = 1;
+  /// The alignment is fitted to the focus: pixels within this share of half the image's diagonal
+  /// from its middle. Calibrations say little of the corners, which would spoil the fit.
+  double focus_share = 0.7;
 };
 
 /// Lengths of difference vectors over an image.
@@ -32,8 +32,8 @@ struct DifferenceMap {
   std::vector<Eigen::Vector2d> before_px;  ///< one a grid pixel, row by row
   std::vector<Eigen::Vector2d> after_px;   ///< the alignment taken out
   std::vector<double> expected_px;         ///< rms length if both are right; empty where unknown
-  DifferenceSize before, after;
-  double expected_rms_px = 0;
+  DifferenceSize before, after, in_focus;  ///< the last: after, and within the focus
+  double expected_rms_px = 0, expected_in_focus_px = 0;
 };
 
 /// Two rigs compared by where they see the same points:
@@ -51,7 +51,7 @@ struct ProjectionDifference {
   Pose T_b_a;
   std::vector<std::vector<Eigen::Vector2d>> pixels_px;  ///< the grid of each camera
   std::vector<DifferenceMap> maps;                      ///< camera by camera, distance by distance
-  DifferenceSize before, after;                         ///< over all maps
+  DifferenceSize before, after, in_focus;               ///< over all maps
   std::optional<double> expected_rms_px;                ///< over all maps
   int left_out = 0;                                     ///< pixel and distance pairs with NaN
 };

@@ -20,7 +20,7 @@ constexpr double too_close = 0.999;
 
 struct Options {
   std::string a, b, distances = "1,3,10,inf", grid = "20x15", covariance = "honest";
-  double focus_share = 1;
+  double focus_share = 0.7;
 };
 
 /// What the verb found.
@@ -135,7 +135,9 @@ Json vectors_json(const std::vector<Eigen::Vector2d>& vectors) {
 
 Json projection_json(const Comparison& found) {
   const ProjectionDifference& p = found.projection;
-  Json json{{"before", size_json(p.before)}, {"after", size_json(p.after)}};
+  Json json{{"before", size_json(p.before)},
+            {"after", size_json(p.after)},
+            {"in_focus", size_json(p.in_focus)}};
   if (p.expected_rms_px) json["expected_rms_px"] = *p.expected_rms_px;
   json["left_out"] = p.left_out;
   json["cameras"] = Json::array();
@@ -147,8 +149,12 @@ Json projection_json(const Comparison& found) {
   for (const DifferenceMap& map : p.maps) {
     Json m{{"distance_m", distance_json(map.distance_m)},
            {"before", size_json(map.before)},
-           {"after", size_json(map.after)}};
-    if (p.expected_rms_px) m["expected_rms_px"] = map.expected_rms_px;
+           {"after", size_json(map.after)},
+           {"in_focus", size_json(map.in_focus)}};
+    if (p.expected_rms_px) {
+      m["expected_rms_px"] = map.expected_rms_px;
+      m["expected_in_focus_px"] = map.expected_in_focus_px;
+    }
     m["before_px"] = vectors_json(map.before_px);
     m["after_px"] = vectors_json(map.after_px);
     if (p.expected_rms_px) m["expected_px"] = map.expected_px;
@@ -204,14 +210,19 @@ std::string projection_text(const Comparison& found) {
   const Eigen::Vector3d t = 1000 * p.T_b_a.t;
   std::string text = fmt::format(
       "projection of b against a, once its frame is turned by ({:.4f}, {:.4f}, {:.4f})° and moved "
-      "by ({:.2f}, {:.2f}, {:.2f}) mm; pixels\n{:<10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n",
+      "by ({:.2f}, {:.2f}, {:.2f}) mm; pixels\n{:<10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} "
+      "{:>10} {:>10}\n",
       w.x(), w.y(), w.z(), t.x(), t.y(), t.z(), "camera", "distance", "rms before", "mean after",
-      "rms after", "max after", "expected");
+      "rms after", "max after", "expected", "rms focus", "expected");
   for (const DifferenceMap& map : p.maps) {
-    text += fmt::format("{:<10} {:>10} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10}\n",
-                        found.a.rig.cameras[map.camera].name, fmt::format("{} m", map.distance_m),
-                        map.before.rms_px, map.after.mean_px, map.after.rms_px, map.after.max_px,
-                        p.expected_rms_px ? fmt::format("{:.3f}", map.expected_rms_px) : "unknown");
+    const auto expected = [&](double px) {
+      return p.expected_rms_px ? fmt::format("{:.3f}", px) : std::string("unknown");
+    };
+    text += fmt::format(
+        "{:<10} {:>10} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10} {:>10.3f} {:>10}\n",
+        found.a.rig.cameras[map.camera].name, fmt::format("{} m", map.distance_m),
+        map.before.rms_px, map.after.mean_px, map.after.rms_px, map.after.max_px,
+        expected(map.expected_rms_px), map.in_focus.rms_px, expected(map.expected_in_focus_px));
   }
   return text;
 }

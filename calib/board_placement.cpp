@@ -148,7 +148,8 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
   }
   if (boards.empty()) {
     throw Error("board", "nowhere do all cameras see it whole",
-                "give a smaller board, or let one camera see a part of it (--partly)");
+                "give a larger board, which is held farther away, or let one camera see a part of "
+                "it (--partly)");
   }
   return boards;
 }

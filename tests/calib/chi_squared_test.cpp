@@ -24,7 +24,7 @@ TEST(ChiSquared, HasItsClosedFormForOneAndTwoDegreesOfFreedom) {
 // An even number 2m of degrees of freedom is m Poisson terms (Abramowitz and Stegun 26.4.21).
 TEST(ChiSquared, IsAPoissonSumForEvenDegreesOfFreedom) {
   for (const int m : {4, 8, 50, 400}) {
-    for (const double share : {0.3, 0.8, 1.0, 1.2, 2.0}) {
+    for (const double share : {0.3, 0.8, 1.0, 1.2, 1.6}) {
       const double half = share * m;
       double term = std::exp(-half), sum = 0;
       for (int j = 0; j < m; ++j, term *= half / j) sum += term;

@@ -8,6 +8,7 @@
 #include "calib/calibrate.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/next_view.h"
+#include "calib/random.h"
 #include "calib/simulated_board.h"
 #include "tests/support/scenes.h"
 

@@ -25,19 +25,16 @@ void require_a_pair(const Rig& rig, const std::string& what) {
               "choose projection or a parameter");
 }
 
-/// Central differences along each parameter, by a step that moves pixels by about 1e-3.
+/// Central differences along each parameter: steps of 1e-3 px, 1e-6 in everything else.
 Eigen::MatrixXd derivative(const Rig& rig,
                            const std::function<Eigen::VectorXd(const Rig&)>& value) {
-  const int n = parameter_count(rig);
-  Eigen::MatrixXd G;
-  for (int k = 0; k < n; ++k) {
-    const std::vector<std::string> names = parameter_names(rig);
-    const double step = names[k].ends_with("_px") ? 1e-3 : 1e-6;
+  const std::vector<std::string> names = parameter_names(rig);
+  const auto n = static_cast<Eigen::Index>(names.size());
+  Eigen::MatrixXd G(value(rig).size(), n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double step = names[static_cast<std::size_t>(k)].ends_with("_px") ? 1e-3 : 1e-6;
     const Eigen::VectorXd delta = step * Eigen::VectorXd::Unit(n, k);
-    const Eigen::VectorXd d =
-        (value(retract(rig, delta)) - value(retract(rig, -delta))) / (2 * step);
-    if (k == 0) G.resize(d.size(), n);
-    G.col(k) = d;
+    G.col(k) = (value(retract(rig, delta)) - value(retract(rig, -delta))) / (2 * step);
   }
   return G;
 }

@@ -76,7 +76,7 @@ void judge(const Options& options, Comparison& found) {
   }
   if (found.shared_views > 0) {
     warn(fmt::format(
-        "{} of the {} views of {} were used for both, so their errors are not independent: the "
+        "{} of the {} images of {} were used for both, so their errors are not independent: the "
         "expected difference is too large and the p-value too near 1, unless the models differ",
         found.shared_views, found.a.evidence->observations.views.size(), options.a));
   } else if (found.parameters && found.parameters->p_value > too_close) {

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace vernier {
+
+/// Probability that a chi-squared variable of `dof` degrees of freedom exceeds x,
+///
+///     P(χ² > x) = Q(dof / 2, x / 2),   Q(a, x) = Γ(a, x) / Γ(a)
+///
+/// the regularised upper incomplete gamma function: by its power series where x < a + 1 and by its
+/// continued fraction (Lentz's recursion) elsewhere. Abramowitz and Stegun, Eqs. 6.5.29 and 6.5.31.
+/// Relative accuracy about 1e-12 in the upper tail up to 1000 degrees of freedom. 1 for x <= 0, 0
+/// for infinite x. Throws Error unless dof > 0 and x is a number.
+double chi_squared_survival(double x, double dof);
+
+}  // namespace vernier

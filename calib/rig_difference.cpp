@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_difference.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calib/chi_squared.h"
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr double null_direction = 1e-12;  // of the largest scaled variance
+constexpr double same_in_sigma = 1e-6;    // along a null direction
+
+/// Parameters that both rigs have, by index into each.
+struct CommonParameters {
+  std::vector<std::string> names;
+  std::vector<Eigen::Index> in_a, in_b;
+};
+
+/// Distortion coefficients of a fisheye act on the angle, those of the others on the tangent: the
+/// same names, another meaning.
+std::set<std::string> names_of_other_meaning(const Rig& a, const Rig& b) {
+  std::set<std::string> names;
+  for (std::size_t c = 0; c < a.cameras.size(); ++c) {
+    const CameraModel &model_a = a.cameras[c].model, &model_b = b.cameras[c].model;
+    if (std::holds_alternative<Fisheye4>(model_a) == std::holds_alternative<Fisheye4>(model_b)) {
+      continue;
+    }
+    for (const CameraModel* model : {&model_a, &model_b}) {
+      const std::vector<std::string> all = parameter_names(*model);
+      for (std::size_t i = core_parameter_count; i < all.size(); ++i) {
+        names.insert(a.cameras[c].name + "." + all[i]);
+      }
+    }
+  }
+  return names;
+}
+
+CommonParameters common_parameters(const Rig& a, const Rig& b, RigDifference& result) {
+  const std::vector<std::string> all_a = parameter_names(a), all_b = parameter_names(b);
+  const std::set<std::string> other = names_of_other_meaning(a, b);
+  CommonParameters common;
+  for (std::size_t i = 0; i < all_a.size(); ++i) {
+    const auto found = std::find(all_b.begin(), all_b.end(), all_a[i]);
+    if (found == all_b.end() || other.contains(all_a[i])) {
+      result.only_in_a.push_back(all_a[i]);
+      continue;
+    }
+    common.names.push_back(all_a[i]);
+    common.in_a.push_back(static_cast<Eigen::Index>(i));
+    common.in_b.push_back(found - all_b.begin());
+  }
+  for (const std::string& name : all_b) {
+    if (std::find(common.names.begin(), common.names.end(), name) == common.names.end()) {
+      result.only_in_b.push_back(name);
+    }
+  }
+  return common;
+}
+
+/// b's parameters less a's, rotations in the left tangent at a, in b's order.
+Eigen::VectorXd tangent_difference(const Rig& a, const Rig& b, const CommonParameters& common) {
+  const Eigen::VectorXd values_a = parameters(a), values_b = parameters(b);
+  Eigen::VectorXd in_order_of_b = values_b;  // of what a lacks, nothing is used
+  for (std::size_t k = 0; k < common.names.size(); ++k) {
+    in_order_of_b[common.in_b[k]] -= values_a[common.in_a[k]];
+  }
+  for (std::size_t c = 1; c < b.cameras.size(); ++c) {
+    in_order_of_b.segment<3>(pose_index(b, static_cast<int>(c))) =
+        vector_from_rotation(b.T_camera_first[c].R * a.T_camera_first[c].R.transpose());
+  }
+  return in_order_of_b(common.in_b);
+}
+
+void check_covariance(const Rig& rig, const Covariance& covariance, const char* place) {
+  const auto n = static_cast<Eigen::Index>(covariance.names.size());
+  if (covariance.names != parameter_names(rig) || covariance.matrix.rows() != n ||
+      covariance.matrix.cols() != n) {
+    throw Error(place, "its covariance is of other parameters than the rig's", "");
+  }
+  ScaledDecomposition{covariance};  // throws where it is not positive semi-definite
+}
+
+/// d² and what it is made of, over the parameters that have a variance.
+void measure(const Eigen::VectorXd& delta,
+             const Eigen::MatrixXd& covariance,
+             const std::vector<std::string>& names,
+             RigDifference& result) {
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd z = delta.cwiseQuotient(sigma);
+  const Eigen::MatrixXd correlation =
+      sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const Eigen::VectorXd& s = eigen.eigenvalues();
+  for (Eigen::Index k = s.size() - 1; k >= 0; --k) {
+    const Eigen::VectorXd u = eigen.eigenvectors().col(k);
+    const double along = u.dot(z);
+    const std::string words = describe_direction(u, names);
+    if (s[k] > null_direction * s[s.size() - 1]) {
+      result.directions.push_back({std::abs(along) / std::sqrt(s[k]), words});
+      result.mahalanobis2 += along * along / s[k];
+      ++result.dof;
+    } else if (std::abs(along) > same_in_sigma) {
+      result.held_apart.push_back("a direction without variance: " + words);
+    }
+  }
+  std::stable_sort(result.directions.begin(), result.directions.end(),
+                   [](const auto& x, const auto& y) { return x.in_sigma > y.in_sigma; });
+}
+
+const BoardView* same_image(const BoardView& view,
+                            const std::string& camera,
+                            const CalibrationEvidence& evidence,
+                            const Rig& rig) {
+  constexpr double same_image_px = 2;
+  for (const BoardView& other : evidence.observations.views) {
+    if (rig.cameras[other.camera].name != camera || other.ids != view.ids) continue;
+    double squares = 0;
+    for (std::size_t i = 0; i < view.pixels_px.size(); ++i) {
+      squares += (view.pixels_px[i] - other.pixels_px[i]).squaredNorm();
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(view.pixels_px.size()));
+    const bool same_name = !view.image.empty() && view.image == other.image;
+    if (rms == 0 || (same_name && rms < same_image_px)) return &other;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b) {
+  if (a.cameras.size() != b.cameras.size()) {
+    throw Error(place_b,
+                fmt::format("it has {} camera{} and the first rig {}", b.cameras.size(),
+                            b.cameras.size() == 1 ? "" : "s", a.cameras.size()),
+                "compare calibrations of the same cameras");
+  }
+  for (std::size_t c = 0; c < a.cameras.size(); ++c) {
+    const Camera &camera_a = a.cameras[c], &camera_b = b.cameras[c];
+    if (camera_a.name != camera_b.name) {
+      throw Error(place_b,
+                  fmt::format("its camera {} is \"{}\" and that of the first rig \"{}\"", c + 1,
+                              camera_b.name, camera_a.name),
+                  "give the same cameras the same names and order in both files");
+    }
+    if (camera_a.size_px != camera_b.size_px) {
+      throw Error(place_b,
+                  fmt::format("its camera \"{}\" has images of {}x{} and that of the first rig "
+                              "{}x{}",
+                              camera_b.name, camera_b.size_px[0], camera_b.size_px[1],
+                              camera_a.size_px[0], camera_a.size_px[1]),
+                  "calibrate both at one image size");
+    }
+  }
+}
+
+RigDifference rig_difference(const Rig& a,
+                             const Covariance& covariance_a,
+                             const Rig& b,
+                             const Covariance& covariance_b) {
+  check_same_cameras(a, b, "second rig");
+  check_covariance(a, covariance_a, "first rig");
+  check_covariance(b, covariance_b, "second rig");
+  RigDifference result;
+  const CommonParameters common = common_parameters(a, b, result);
+  const Eigen::VectorXd delta = tangent_difference(a, b, common);
+  const Eigen::MatrixXd sum =
+      covariance_a.matrix(common.in_a, common.in_a) + covariance_b.matrix(common.in_b, common.in_b);
+  const Eigen::VectorXd values_a = parameters(a), values_b = parameters(b);
+  std::vector<Eigen::Index> known;
+  std::vector<std::string> known_names;
+  for (Eigen::Index k = 0; k < delta.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    ParameterDifference p{
+        common.names[at], values_a[common.in_a[at]],           values_b[common.in_b[at]],
+        delta[k],         std::sqrt(std::max(0.0, sum(k, k))), false};
+    p.held = !(p.sigma > 0);
+    if (!p.held) {
+      known.push_back(k);
+      known_names.push_back(p.name);
+    } else if (std::abs(p.delta) > 1e-12 * (1 + std::abs(p.a))) {
+      result.held_apart.push_back(
+          fmt::format("{} is held at {} in one and at {} in the other", p.name, p.a, p.b));
+    }
+    result.parameters.push_back(std::move(p));
+  }
+  if (!known.empty()) measure(delta(known), sum(known, known), known_names, result);
+  if (!result.held_apart.empty()) {
+    result.mahalanobis2 = std::numeric_limits<double>::infinity();
+    result.p_value = 0;
+  } else if (result.dof > 0) {
+    result.p_value = chi_squared_survival(result.mahalanobis2, result.dof);
+  }
+  return result;
+}
+
+int shared_views(const CalibrationEvidence& a,
+                 const Rig& rig_a,
+                 const CalibrationEvidence& b,
+                 const Rig& rig_b) {
+  return static_cast<int>(std::count_if(
+      a.observations.views.begin(), a.observations.views.end(), [&](const BoardView& view) {
+        return same_image(view, rig_a.cameras[view.camera].name, b, rig_b) != nullptr;
+      }));
+}
+
+}  // namespace vernier

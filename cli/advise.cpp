@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <numbers>
+
+#include "calib/covariance_choice.h"
+#include "calib/error.h"
+#include "calib/next_view.h"
+#include "calib/rig_file.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+
+namespace vernier::cli {
+namespace {
+
+struct Options {
+  std::string rig, reduce = "depth", board, covariance = "mvb";
+  double at_m = 5, square_m = 0, pixel_sigma_px = 0;
+  int views = 1, more = 10;
+  bool partly = false;
+};
+
+/// The covariance that is planned on, and how its deviations become those that are stated.
+struct Basis {
+  Eigen::MatrixXd factor;     ///< of the covariance planned on
+  double pixel_sigma_px = 0;  ///< of a new view's corners
+  double scale = 1;           ///< stated sd over that of `factor`
+  CovarianceKind planned_on, stated;
+  double bound_ratio = 1;  ///< honest sd of the wanted error over the bound's
+};
+
+std::string find_target(const Options& options,
+                        const RigEstimate& rig,
+                        std::vector<Eigen::Vector3d>& target_m,
+                        Eigen::Vector2d& warp_m) {
+  if (!options.board.empty() || options.square_m > 0) {
+    if (options.board.empty() || !(options.square_m > 0)) {
+      throw Error("advise", "half of the board is given", "give both --board and --square-m");
+    }
+    const auto [columns, rows] = parse_size(options.board, "--board");
+    target_m = target_points({columns, rows, options.square_m});
+    return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
+  }
+  if (!rig.evidence) {
+    throw Error(options.rig, "it holds no evidence, so the board is unknown",
+                "give --board (inner corners, such as 9x6) and --square-m");
+  }
+  target_m = rig.evidence->observations.target_m;
+  warp_m = rig.evidence->warp_m;
+  return fmt::format("that of the calibration, {} corners", target_m.size());
+}
+
+Basis find_basis(const Options& options, const RigEstimate& rig, const WantedError& wanted) {
+  const Covariance& honest = required_covariance(rig, options.rig);
+  const Covariance bound = chosen_covariance(rig, CovarianceChoice::mvb).value_or(honest);
+  Basis basis;
+  basis.pixel_sigma_px = options.pixel_sigma_px;
+  if (!(basis.pixel_sigma_px > 0) && rig.calibration) {
+    basis.pixel_sigma_px = rig.calibration->pixel_sigma_px;
+  }
+  if (!(basis.pixel_sigma_px > 0)) {
+    throw Error(options.rig, "it does not say how noisy a corner is",
+                "give --pixel-sigma, the standard deviation of a coordinate in pixels");
+  }
+  const Eigen::MatrixXd honest_factor = ScaledDecomposition(honest).factor();
+  const Eigen::MatrixXd bound_factor = ScaledDecomposition(bound).factor();
+  const double bound_sd = sd_of(wanted, bound_factor);
+  if (bound_sd > 0) basis.bound_ratio = sd_of(wanted, honest_factor) / bound_sd;
+  basis.stated = honest.kind;
+  if (options.covariance == "mvb") {
+    basis.factor = bound_factor;
+    basis.scale = basis.bound_ratio;
+    basis.planned_on = bound.kind;
+  } else {
+    // a new view is worth less in the same measure as those before it were
+    basis.factor = honest_factor;
+    basis.pixel_sigma_px *= basis.bound_ratio;
+    basis.planned_on = honest.kind;
+  }
+  return basis;
+}
+
+double degrees(double rad) { return rad * 180 / std::numbers::pi; }
+
+Json view_json(const RatedView& view, const Rig& rig, double scale) {
+  const BoardPlacement& p = view.placement;
+  const Eigen::Vector3d w = vector_from_rotation(p.T_first_board.R), t = p.T_first_board.t;
+  return {{"words", placement_in_words(p, rig.cameras[0])},
+          {"rotation_rad", {w.x(), w.y(), w.z()}},
+          {"translation_m", {t.x(), t.y(), t.z()}},
+          {"centre_px", {p.centre_px.x(), p.centre_px.y()}},
+          {"distance_m", p.distance_m},
+          {"turn_deg", degrees(p.turn_rad)},
+          {"tilt_deg", degrees(p.tilt_rad)},
+          {"sd_before", scale * view.sd_before},
+          {"sd_after", scale * view.sd_after},
+          {"reduction", 1 - view.sd_after / view.sd_before}};
+}
+
+std::string percent(const RatedView& view) {
+  return fmt::format("{:.1f} %", 100 * (1 - view.sd_after / view.sd_before));
+}
+
+std::string table_line(const RatedView& view, double scale, const std::string& unit) {
+  const BoardPlacement& p = view.placement;
+  return fmt::format(
+      "  {:>8.2f} m {:>7.0f} {:>5.0f} px {:>6.0f}° {:>6.0f}° {:>10.3g} {:<3} {:>8}\n", p.distance_m,
+      p.centre_px.x(), p.centre_px.y(), degrees(p.turn_rad), degrees(p.tilt_rad),
+      scale * view.sd_after, unit, percent(view));
+}
+
+std::string advice_text(const ViewAdvice& advice,
+                        const WantedError& wanted,
+                        const Basis& basis,
+                        const Rig& rig) {
+  std::string text;
+  for (std::size_t i = 0; i < advice.views.size(); ++i) {
+    const RatedView& view = advice.views[i];
+    text += fmt::format("{}. {};\n   the sd of the {} falls from {:.3g} to {:.3g} {} ({})\n", i + 1,
+                        placement_in_words(view.placement, rig.cameras[0]), wanted.name,
+                        basis.scale * view.sd_before, basis.scale * view.sd_after, wanted.unit,
+                        percent(view));
+  }
+  text += fmt::format(
+      "\ninstead of the first (the least helpful of all last):\n  {:>10} {:>16} {:>7} "
+      "{:>7} {:>14} {:>8}\n",
+      "distance", "centre", "turn", "tilt", "sd after", "less by");
+  for (const RatedView& view : advice.alternatives) {
+    text += table_line(view, basis.scale, wanted.unit);
+  }
+  text += table_line(advice.least_helpful, basis.scale, wanted.unit);
+  if (!advice.sd_after_more.empty()) {
+    text += fmt::format("\n{} such views, each chosen after the former, would reach {:.3g} {}\n",
+                        advice.sd_after_more.size(), basis.scale * advice.sd_after_more.back(),
+                        wanted.unit);
+  }
+  return text;
+}
+
+std::string basis_text(const Basis& basis) {
+  std::string text =
+      fmt::format("planned on the covariance of kind {} and independent corner noise of {:.3g} px",
+                  name(basis.planned_on), basis.pixel_sigma_px);
+  if (basis.scale != 1) {
+    text += fmt::format("; deviations scaled by {:.3g} to those of kind {}", basis.scale,
+                        name(basis.stated));
+  }
+  return text + "\n";
+}
+
+void run(const Options& options, Session& session) {
+  const RigFile file = read_rig(find_rig(options.rig));
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  const RigEstimate& rig = file.estimate;
+  const WantedError wanted = wanted_error(rig.rig, options.reduce, options.at_m);
+  const Basis basis = find_basis(options, rig, wanted);
+  std::vector<Eigen::Vector3d> target_m;
+  Eigen::Vector2d warp_m(0, 0);
+  const std::string board = find_target(options, rig, target_m, warp_m);
+  const std::vector<CandidateView> candidates =
+      candidate_views(rig.rig, target_m, warp_m, basis.pixel_sigma_px, {.partly = options.partly});
+  const ViewAdvice advice = advise_views(basis.factor, candidates, wanted,
+                                         {.views = options.views, .more = options.more});
+
+  Json json{{"reduce", options.reduce},
+            {"error", wanted.name},
+            {"unit", wanted.unit},
+            {"board", board},
+            {"sd_now", basis.scale * advice.views.front().sd_before},
+            {"covariance_planned_on", name(basis.planned_on)},
+            {"covariance_stated", name(basis.stated)},
+            {"honest_over_bound", basis.bound_ratio},
+            {"pixel_sigma_px", basis.pixel_sigma_px},
+            {"candidates", candidates.size()}};
+  const auto list = [&](const std::vector<RatedView>& views) {
+    Json entries = Json::array();
+    for (const RatedView& view : views) entries.push_back(view_json(view, rig.rig, basis.scale));
+    return entries;
+  };
+  json["views"] = list(advice.views);
+  json["alternatives"] = list(advice.alternatives);
+  json["least_helpful"] = view_json(advice.least_helpful, rig.rig, basis.scale);
+  json["sd_after_more"] = Json::array();
+  for (const double sd : advice.sd_after_more) json["sd_after_more"].push_back(basis.scale * sd);
+  session.result(json, advice_text(advice, wanted, basis, rig.rig) + basis_text(basis));
+}
+
+}  // namespace
+
+void add_advise(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      add_verb(app, session, "advise", "say how to hold the board next, to reduce an error most",
+               "vernier advise rig.json --reduce depth --at-m 5 --views 3");
+  verb->add_option("rig", o->rig, "rig file with its covariance")->required();
+  verb->add_option("--reduce", o->reduce,
+                   "depth, projection, rectification, baseline or a parameter such as left.f_px")
+      ->capture_default_str();
+  verb->add_option("--at-m", o->at_m, "distance of the points meant")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--views", o->views, "how many views, each given those before it")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  verb->add_option("--more", o->more, "how many views to look ahead in the last line")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  verb->add_option("--board", o->board,
+                   "inner corners, such as 9x6 (else the calibration's board)");
+  verb->add_option("--square-m", o->square_m, "side of a square, metres")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--pixel-sigma", o->pixel_sigma_px,
+                   "noise of a pixel coordinate (else the calibration's)")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--covariance", o->covariance,
+                   "plan on mvb (minimum variance bound, its deviations then scaled) or honest")
+      ->check(CLI::IsMember({"mvb", "honest"}))
+      ->capture_default_str();
+  verb->add_flag("--partly", o->partly,
+                 "one camera may see only a part (a board whose corners have identities)");
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "calib/covariance_choice.h"
+#include "calib/error.h"
+#include "calib/projection_difference.h"
+#include "calib/rig_difference.h"
+#include "calib/rig_file.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double beyond = 0.01;  // p below which the two are said to differ
+constexpr double too_close = 0.999;
+
+struct Options {
+  std::string a, b, distances = "1,3,10,inf", grid = "20x15", covariance = "honest";
+  double focus_share = 0.7;
+};
+
+/// What the verb found.
+struct Comparison {
+  RigEstimate a, b;
+  std::optional<Covariance> covariance_a, covariance_b;
+  std::optional<RigDifference> parameters;  ///< where both have a covariance
+  ProjectionDifference projection;
+  int shared_views = 0;
+  std::vector<std::string> warnings;
+};
+
+std::vector<double> parse_distances(const std::string& text) {
+  std::vector<double> distances;
+  const char *at = text.data(), *end = at + text.size();
+  while (true) {
+    double value = 0;
+    const auto parsed = std::from_chars(at, end, value);  // reads inf too
+    if (parsed.ec != std::errc() || !(value > 0) || (parsed.ptr != end && *parsed.ptr != ',')) {
+      throw Error("--distances-m", "\"" + text + "\" is not a list of distances above 0",
+                  "separate metres by commas, such as 1,5,inf");
+    }
+    distances.push_back(value);
+    if (parsed.ptr == end) return distances;
+    at = parsed.ptr + 1;
+  }
+}
+
+RigEstimate load(const std::string& name, Comparison& found) {
+  RigFile file = read_rig(find_rig(name));
+  for (std::string& warning : file.warnings) found.warnings.push_back(std::move(warning));
+  return std::move(file.estimate);
+}
+
+/// Sets what says how far the numbers can be trusted.
+void judge(const Options& options, Comparison& found) {
+  const auto warn = [&](std::string line) { found.warnings.push_back(std::move(line)); };
+  for (const auto& [covariance, name] :
+       {std::pair(&found.covariance_a, &options.a), std::pair(&found.covariance_b, &options.b)}) {
+    if (covariance->has_value()) continue;
+    warn(fmt::format("{} has no {} covariance: only the projections are compared", *name,
+                     options.covariance == "mvb" ? "minimum variance" : "honest"));
+  }
+  if (found.projection.left_out > 0) {
+    warn(
+        fmt::format("{} of the grid's points have no ray in one rig or no image in the other, and "
+                    "are left out",
+                    found.projection.left_out));
+  }
+  if (found.a.evidence && found.b.evidence) {
+    found.shared_views =
+        shared_views(*found.a.evidence, found.a.rig, *found.b.evidence, found.b.rig);
+  }
+  if (found.shared_views > 0) {
+    warn(fmt::format(
+        "{} of the {} images of {} were used for both, so their errors are not independent: the "
+        "expected difference is too large and the p-value too near 1, unless the models differ",
+        found.shared_views, found.a.evidence->observations.views.size(), options.a));
+  } else if (found.parameters && found.parameters->p_value > too_close) {
+    warn(
+        "they agree better than their stated uncertainties allow: these are too wide, or the two "
+        "were made from the same images");
+  }
+}
+
+Comparison compare(const Options& options) {
+  Comparison found;
+  found.a = load(options.a, found);
+  found.b = load(options.b, found);
+  check_same_cameras(found.a.rig, found.b.rig, options.b);
+  const auto choice =
+      options.covariance == "mvb" ? CovarianceChoice::mvb : CovarianceChoice::honest;
+  found.covariance_a = chosen_covariance(found.a, choice);
+  found.covariance_b = chosen_covariance(found.b, choice);
+  const bool both = found.covariance_a && found.covariance_b;
+  if (both) {
+    found.parameters =
+        rig_difference(found.a.rig, *found.covariance_a, found.b.rig, *found.covariance_b);
+  }
+  const auto [columns, rows] = parse_size(options.grid, "--grid");
+  found.projection = projection_difference(found.a.rig, found.b.rig,
+                                           {.distances_m = parse_distances(options.distances),
+                                            .grid = {columns, rows},
+                                            .focus_share = options.focus_share},
+                                           both ? &*found.covariance_a : nullptr,
+                                           both ? &*found.covariance_b : nullptr);
+  judge(options, found);
+  return found;
+}
+
+std::string verdict(const RigDifference& d) {
+  if (!d.held_apart.empty()) return "they are held at different values";
+  return fmt::format("they {} their stated uncertainties (p = {:.2g})",
+                     d.p_value < beyond ? "differ beyond" : "agree within", d.p_value);
+}
+
+Json distance_json(double distance_m) {
+  return std::isinf(distance_m) ? Json("inf") : Json(distance_m);
+}
+
+Json size_json(const DifferenceSize& size) {
+  return {{"mean_px", size.mean_px}, {"rms_px", size.rms_px}, {"max_px", size.max_px}};
+}
+
+Json vectors_json(const std::vector<Eigen::Vector2d>& vectors) {
+  Json list = Json::array();
+  for (const Eigen::Vector2d& v : vectors) {
+    list.push_back(v.allFinite() ? Json{v.x(), v.y()} : Json(nullptr));
+  }
+  return list;
+}
+
+Json projection_json(const Comparison& found) {
+  const ProjectionDifference& p = found.projection;
+  Json json{{"before", size_json(p.before)},
+            {"after", size_json(p.after)},
+            {"in_focus", size_json(p.in_focus)}};
+  if (p.expected_rms_px) json["expected_rms_px"] = *p.expected_rms_px;
+  json["left_out"] = p.left_out;
+  json["cameras"] = Json::array();
+  for (std::size_t c = 0; c < p.pixels_px.size(); ++c) {
+    json["cameras"].push_back({{"name", found.a.rig.cameras[c].name},
+                               {"pixels_px", vectors_json(p.pixels_px[c])},
+                               {"distances", Json::array()}});
+  }
+  for (const DifferenceMap& map : p.maps) {
+    Json m{{"distance_m", distance_json(map.distance_m)},
+           {"before", size_json(map.before)},
+           {"after", size_json(map.after)},
+           {"in_focus", size_json(map.in_focus)}};
+    if (p.expected_rms_px) {
+      m["expected_rms_px"] = map.expected_rms_px;
+      m["expected_in_focus_px"] = map.expected_in_focus_px;
+    }
+    m["before_px"] = vectors_json(map.before_px);
+    m["after_px"] = vectors_json(map.after_px);
+    if (p.expected_rms_px) m["expected_px"] = map.expected_px;
+    json["cameras"][map.camera]["distances"].push_back(std::move(m));
+  }
+  return json;
+}
+
+void add_parameters(const RigDifference& d, Json& json) {
+  json["mahalanobis"] = std::sqrt(d.mahalanobis2);  // null where infinite
+  json["mahalanobis_squared"] = d.mahalanobis2;
+  json["dof"] = d.dof;
+  json["p_value"] = d.p_value;
+  json["verdict"] = verdict(d);
+  json["held_apart"] = d.held_apart;
+  json["parameters"] = Json::array();
+  for (const ParameterDifference& p : d.parameters) {
+    json["parameters"].push_back({{"name", p.name},
+                                  {"a", p.a},
+                                  {"b", p.b},
+                                  {"difference", p.delta},
+                                  {"sigma", p.sigma},
+                                  {"in_sigma", p.held ? Json(nullptr) : Json(p.delta / p.sigma)}});
+  }
+  json["only_in_a"] = d.only_in_a;
+  json["only_in_b"] = d.only_in_b;
+  json["directions"] = Json::array();
+  for (const DirectionDifference& direction : d.directions) {
+    json["directions"].push_back({{"in_sigma", direction.in_sigma}, {"words", direction.words}});
+  }
+}
+
+Json comparison_json(const Options& options, const Comparison& found) {
+  Json json{{"a", options.a}, {"b", options.b}, {"covariance", options.covariance}};
+  for (const auto& [key, covariance] : {std::pair("covariance_kind_a", &found.covariance_a),
+                                        std::pair("covariance_kind_b", &found.covariance_b)}) {
+    json[key] = *covariance ? Json(name((*covariance)->kind)) : Json(nullptr);
+  }
+  if (found.parameters) add_parameters(*found.parameters, json);
+  const Pose& T = found.projection.T_b_a;
+  const Eigen::Vector3d w = vector_from_rotation(T.R) * 180 / std::numbers::pi;
+  json["alignment"] = {{"rotation_deg", {w.x(), w.y(), w.z()}},
+                       {"translation_m", {T.t.x(), T.t.y(), T.t.z()}}};
+  json["projection"] = projection_json(found);
+  json["shared_views"] = found.shared_views;
+  json["warnings"] = found.warnings;
+  return json;
+}
+
+std::string projection_text(const Comparison& found) {
+  const ProjectionDifference& p = found.projection;
+  const Eigen::Vector3d w = vector_from_rotation(p.T_b_a.R) * 180 / std::numbers::pi;
+  const Eigen::Vector3d t = 1000 * p.T_b_a.t;
+  std::string text = fmt::format(
+      "projection of b against a, once its frame is turned by ({:.4f}, {:.4f}, {:.4f})° and moved "
+      "by ({:.2f}, {:.2f}, {:.2f}) mm; pixels\n{:<10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} "
+      "{:>10} {:>10}\n",
+      w.x(), w.y(), w.z(), t.x(), t.y(), t.z(), "camera", "distance", "rms before", "mean after",
+      "rms after", "max after", "expected", "rms focus", "expected");
+  for (const DifferenceMap& map : p.maps) {
+    const auto expected = [&](double px) {
+      return p.expected_rms_px ? fmt::format("{:.3f}", px) : std::string("unknown");
+    };
+    text += fmt::format(
+        "{:<10} {:>10} {:>10.3f} {:>10.3f} {:>10.3f} {:>10.3f} {:>10} {:>10.3f} {:>10}\n",
+        found.a.rig.cameras[map.camera].name, fmt::format("{} m", map.distance_m),
+        map.before.rms_px, map.after.mean_px, map.after.rms_px, map.after.max_px,
+        expected(map.expected_rms_px), map.in_focus.rms_px, expected(map.expected_in_focus_px));
+  }
+  return text;
+}
+
+std::string parameters_text(const RigDifference& d) {
+  std::string text = fmt::format("\n{:<14} {:>14} {:>14} {:>12} {:>12} {:>9}\n", "parameter", "a",
+                                 "b", "difference", "sigma", "in sigma");
+  for (const ParameterDifference& p : d.parameters) {
+    text +=
+        fmt::format("{:<14} {:>14.8g} {:>14.8g} {:>12.3g} {:>12.3g} {:>9}\n", p.name, p.a, p.b,
+                    p.delta, p.sigma, p.held ? "held" : fmt::format("{:.2f}", p.delta / p.sigma));
+  }
+  for (const auto& [only, rig] : {std::pair(&d.only_in_a, "a"), std::pair(&d.only_in_b, "b")}) {
+    if (!only->empty()) text += fmt::format("only in {}: {}\n", rig, fmt::join(*only, " "));
+  }
+  text += fmt::format(
+      "\nMahalanobis distance {:.3f}, its square {:.2f} for {} degrees of freedom: {}\n",
+      std::sqrt(d.mahalanobis2), d.mahalanobis2, d.dof, verdict(d));
+  for (const std::string& words : d.held_apart) text += "  " + words + "\n";
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, d.directions.size()); ++k) {
+    text += fmt::format("  {:.1f} sigma along a direction: {}\n", d.directions[k].in_sigma,
+                        d.directions[k].words);
+  }
+  return text;
+}
+
+void run(const Options& options, Session& session) {
+  const Comparison found = compare(options);
+  for (const std::string& warning : found.warnings) session.warn(warning);
+  std::string text = projection_text(found);
+  if (found.parameters) text += parameters_text(*found.parameters);
+  session.result(comparison_json(options, found), text);
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(app, session, "diff",
+                            "compare two calibrations of the same cameras: in projection, and "
+                            "against their uncertainties",
+                            "vernier diff monday.rig.json friday.rig.json --distances-m 1,5,inf");
+  verb->add_option("a", o->a, "rig file")->required();
+  verb->add_option("b", o->b, "rig file")->required();
+  verb->add_option("--distances-m", o->distances, "along the rays of the points compared")
+      ->capture_default_str();
+  verb->add_option("--grid", o->grid, "pixels compared over each image, columns x rows")
+      ->capture_default_str();
+  verb->add_option("--focus", o->focus_share,
+                   "fit the alignment within this share of half the image's diagonal")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
+  verb->add_option("--covariance", o->covariance,
+                   "honest (what is sampled) or mvb (minimum variance bound)")
+      ->check(CLI::IsMember({"honest", "mvb"}))
+      ->capture_default_str();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -6,21 +6,9 @@
 #include <string>
 
 #include "calib/mrcal/mrcal_solver.h"
+#include "calib/refined_minimum.h"
 
 namespace vernier {
-
-/// A calibration of ours as the comparison needs it.
-struct CheckedCalibration {
-  BoardState state;
-  Eigen::MatrixXd unit_bound;  ///< minimum variance bound of the tangent at a noise of 1 px
-  double cost_px2 = 0;         ///< Σ r²
-};
-
-/// Linearises at `state`. `held` has one entry a parameter; empty holds none. Throws Error where
-/// the observations leave a direction free.
-CheckedCalibration checked_calibration(const BoardObservations& observations,
-                                       const BoardState& state,
-                                       const std::vector<bool>& held = {});
 
 /// How far two solutions of one problem are apart, in mrcal's parameters.
 struct MrcalComparison {
@@ -38,9 +26,26 @@ inline constexpr double projection_covariance_gate = 1e-6;
 
 /// Converts ours to mrcal's parameters (θ, G C Gᵀ) and compares. `pixel_sigma_px` scales the
 /// standard deviations; normalised covariances do not depend on it.
-MrcalComparison compare(const CheckedCalibration& ours,
+MrcalComparison compare(const RefinedMinimum& ours,
                         const MrcalSolution& mrcals,
                         double pixel_sigma_px);
+
+/// The same problem by mrcal, and how far its answer is from ours.
+struct MrcalCheck {
+  MrcalSolution solution;
+  MrcalComparison comparison;
+  /// Why mrcal had to start again, one standard deviation from our minimum; empty where it did not.
+  std::string restarted;
+};
+
+/// Solves by mrcal from `start`, the start that ours had. Where mrcal finds no minimum from there
+/// or another one (opencv8 has several), it starts again near ours. Throws Error where mrcal is not
+/// built in or cannot express the problem.
+MrcalCheck check_against_mrcal(const BoardObservations& observations,
+                               const BoardState& start,
+                               const RefinedMinimum& ours,
+                               double pixel_sigma_px,
+                               const std::vector<bool>& held = {});
 
 /// max |A_ij − B_ij| / √(B_ii B_jj) over the rows whose B_ii is not zero; the two rows where it is.
 struct CovarianceDifference {

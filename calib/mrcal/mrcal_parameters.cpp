@@ -10,11 +10,6 @@
 namespace vernier {
 namespace {
 
-/// Whether any, or every, of n flags from `first` is set.
-int count_held(const std::vector<bool>& held, int first, int n) {
-  return static_cast<int>(std::count(held.begin() + first, held.begin() + first + n, true));
-}
-
 /// One free column that moves the states `rows` by `by`.
 struct Column {
   std::vector<std::pair<int, double>> moves;
@@ -46,11 +41,6 @@ void add_pose(const Rig& rig,
               const std::vector<bool>& held,
               std::vector<Column>& columns) {
   const int ours = pose_index(rig, camera);
-  const int turned = count_held(held, ours, 3);
-  if (turned != 0 && turned != 3) {
-    throw Error(rig.cameras[camera].name + ".w", "one component of a rotation is held",
-                "mrcal checks rotations that are free or held as a whole");
-  }
   for (int k = 0; k < 6; ++k) {
     if (!held[ours + k]) columns.push_back({{{first_state + k, 1}}});
   }

@@ -40,8 +40,8 @@ struct MrcalLift {
   bool native = true;      ///< nothing is locked or tied: mrcal's own solver does it
 };
 
-/// `held` has one entry a parameter of ours; empty holds none. A held ax ties fx to fy. Throws
-/// Error where one component of a rotation is held without the others, which mrcal cannot say.
+/// `held` has one entry a parameter of ours; empty holds none. A held ax ties fx to fy; a component
+/// of a rotation is held as that component of the rotation vector.
 MrcalLift mrcal_lift(const Rig& rig, const std::vector<bool>& held = {});
 
 /// mrcal's lens model for a rig. All cameras of a problem of mrcal's have the same; the models that

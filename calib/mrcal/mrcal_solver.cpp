@@ -9,7 +9,7 @@
 #include "calib/error.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
-#include "calib/mrcal/square_root_system.h"
+#include "calib/square_root_system.h"
 
 namespace vernier {
 namespace {
@@ -28,6 +28,44 @@ class Stopwatch {
   std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
 };
 
+/// Rows of one frame, [B | A L | r]; zero rows (corners not seen) are left out.
+Eigen::MatrixXd frame_rows_of(const MrcalEvaluation& e,
+                              int begin,
+                              int end,
+                              Eigen::Index frame_state,
+                              const Eigen::MatrixXd& L) {
+  const auto p = L.cols();
+  Eigen::MatrixXd rows(end - begin, 6 + p + 1);
+  Eigen::Index used = 0;
+  for (int row = begin; row < end; ++row) {
+    auto out = rows.row(used);
+    out.setZero();
+    bool seen = false;
+    for (int k = e.row_start[row]; k < e.row_start[row + 1]; ++k) {
+      seen = seen || e.value[k] != 0;
+      if (e.state[k] < L.rows()) {
+        out.segment(6, p) += e.value[k] * L.row(e.state[k]);
+      } else {
+        out[e.state[k] - frame_state] = e.value[k];
+      }
+    }
+    out[6 + p] = e.residual_px[row];
+    if (seen) ++used;
+  }
+  return rows.topRows(used);
+}
+
+/// 1 / scale of each free parameter: that of the state it moves most.
+Eigen::VectorXd inverse_scales(const Eigen::MatrixXd& L, const Eigen::VectorXd& scales) {
+  Eigen::VectorXd inverse(L.cols());
+  for (Eigen::Index j = 0; j < L.cols(); ++j) {
+    Eigen::Index state = 0;
+    L.col(j).cwiseAbs().maxCoeff(&state);
+    inverse[j] = 1 / scales[state];
+  }
+  return inverse;
+}
+
 /// Levenberg and Marquardt on mrcal's residuals and Jacobian over the free parameters.
 class ReducedSolver {
  public:
@@ -40,7 +78,7 @@ class ReducedSolver {
 
   double cost() const { return cost_; }
   /// The rig's correction still due, in standard deviations at a noise of σ̂.
-  double distance_sigma() const { return system(0).s.norm() / noise_px(); }
+  double distance_sigma() const { return system(0).step_sigma() / noise_px(); }
   Eigen::MatrixXd covariance() const { return system(0).covariance(); }
 
   /// To the minimum as far as rounding lets it. False where it does not get there.
@@ -56,8 +94,28 @@ class ReducedSolver {
   }
 
  private:
+  /// With damping λ > 0 every unknown has the further residual √λ times itself over its scale.
   SquareRootSystem system(double damping) const {
-    return square_root_system(at_, problem_.frame_rows(), lift_, scales_, damping);
+    const auto p = lift_.cols();
+    const double root = std::sqrt(damping);
+    SquareRootSystem out(static_cast<int>(p));
+    const std::vector<int>& begins = problem_.frame_rows();
+    for (std::size_t f = 0; f + 1 < begins.size(); ++f) {
+      const Eigen::Index state = lift_.rows() + 6 * static_cast<Eigen::Index>(f);
+      Eigen::MatrixXd rows = frame_rows_of(at_, begins[f], begins[f + 1], state, lift_);
+      if (damping > 0) {
+        rows.conservativeResize(rows.rows() + 6, Eigen::NoChange);
+        rows.bottomRows<6>().setZero();
+        rows.bottomLeftCorner<6, 6>().diagonal() = root * scales_.segment<6>(state).cwiseInverse();
+      }
+      out.add_frame(rows);
+    }
+    if (damping > 0) {
+      Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(p, p + 1);
+      rows.leftCols(p).diagonal() = root * inverse_scales(lift_, scales_);
+      out.add_rows(rows);
+    }
+    return out;
   }
 
   double noise_px() const {
@@ -75,7 +133,7 @@ class ReducedSolver {
     const Eigen::VectorXd start = problem_.state();
     for (int attempt = 0; attempt < 30; ++attempt) {
       const SquareRootSystem linear = system(damping);
-      const Eigen::VectorXd rig = linear.rig_step();
+      const Eigen::VectorXd rig = linear.step();
       Eigen::VectorXd& b = problem_.state();
       b.head(lift_.rows()) += lift_ * rig;
       b.tail(b.size() - lift_.rows()) += linear.frame_steps(rig);

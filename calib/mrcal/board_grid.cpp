@@ -11,8 +11,11 @@
 namespace vernier {
 namespace {
 
-/// Of 1 m; positions in a file have at least this many digits.
+/// Points of a file have at least this many digits.
 constexpr double coincidence_m = 1e-9;
+
+/// For each point: a grid much larger than its points is none, but a point out of place.
+constexpr double most_cells = 4;
 
 /// Smallest distance between different coordinates along an axis.
 double pitch_along(std::vector<double> values) {
@@ -48,7 +51,9 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
   }
   const Eigen::Vector3d extent = far - grid.origin_m;
   const Eigen::Vector2d steps = (extent.head<2>() / pitch).array().round();
-  if (!(steps.minCoeff() >= 1 && steps.maxCoeff() < 10000) || extent.z() > coincidence_m) {
+  const double cells = (steps.array() + 1).prod();
+  if (!(steps.minCoeff() >= 1 && cells <= most_cells * static_cast<double>(target_m.size())) ||
+      extent.z() > coincidence_m) {
     throw refused;
   }
   // the longest side divided, so that rounding in one coordinate does not grow along it

@@ -17,7 +17,8 @@ struct BoardGrid {
   int points() const { return columns * rows; }
 };
 
-/// The grid that the target's points lie on; cells without a point are allowed. Throws Error where
+/// The grid that the target's points lie on; cells without a point are allowed
+/// (up to three of four). Throws Error where
 /// the points are not on a flat, square grid along the target's axes, at least 2 x 2.
 BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m);
 

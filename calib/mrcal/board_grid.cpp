@@ -51,8 +51,8 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
   }
   const Eigen::Vector3d extent = far - grid.origin_m;
   const Eigen::Vector2d steps = (extent.head<2>() / pitch).array().round();
-  const double cells = (steps.array() + 1).prod();
-  if (!(steps.minCoeff() >= 1 && cells <= most_cells * static_cast<double>(target_m.size())) ||
+  const double area = (steps.array() + 1).prod();
+  if (!(steps.minCoeff() >= 1 && area <= most_cells * static_cast<double>(target_m.size())) ||
       extent.z() > coincidence_m) {
     throw refused;
   }

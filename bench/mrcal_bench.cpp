@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "calib/calibrate.h"
+#include "calib/minimise_reprojection.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_solver.h"
 #include "calib/simulated_board.h"

@@ -3,7 +3,6 @@
 #include "calib/refined_minimum.h"
 
 #include "calib/board_warp.h"
-#include "calib/error.h"
 #include "calib/square_root_system.h"
 #include "calib/view_linearisation.h"
 
@@ -11,6 +10,7 @@ namespace vernier {
 namespace {
 
 struct Linearisation {
+  Eigen::MatrixXd free;  // directions
   SquareRootSystem system;
   double cost_px2 = 0;
 };
@@ -30,9 +30,11 @@ void write_rows(const Rig& rig, int camera, const ViewLinearisation& J, Eigen::M
 Linearisation linearise(const BoardObservations& observations,
                         const std::vector<Eigen::Vector3d>& target_m,
                         const BoardState& state,
-                        const std::vector<int>& kept) {
+                        const std::vector<bool>& held) {
   const int n = parameter_count(state.rig);
-  Linearisation out{SquareRootSystem(static_cast<int>(kept.size()) - 7), 0};
+  Linearisation out{free_directions(state.rig, held), SquareRootSystem(0), 0};
+  const auto free = out.free.cols();
+  out.system = SquareRootSystem(static_cast<int>(free));
   auto view = observations.views.begin();
   ViewLinearisation J;
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
@@ -44,61 +46,51 @@ Linearisation linearise(const BoardObservations& observations,
       write_rows(state.rig, c, J, rows);
       out.cost_px2 += J.residual_px.squaredNorm();
     }
-    out.system.add_frame(rows(Eigen::all, kept));
+    Eigen::MatrixXd free_rows(rows.rows(), 6 + free + 1);
+    free_rows << rows.leftCols<6>(), rows.middleCols(6, n) * out.free, rows.rightCols<1>();
+    out.system.add_frame(free_rows);
   }
   return out;
 }
 
-/// Columns of [B | A | r] that stay: poses, free parameters, residual.
-std::vector<int> kept_columns(int parameters, const std::vector<bool>& held) {
-  std::vector<int> kept{0, 1, 2, 3, 4, 5};
-  for (int i = 0; i < parameters; ++i) {
-    if (i >= static_cast<int>(held.size()) || !held[i]) kept.push_back(6 + i);
-  }
-  kept.push_back(6 + parameters);
-  return kept;
-}
-
-void move(BoardState& state, const SquareRootSystem& system, const std::vector<int>& kept) {
-  const Eigen::VectorXd step = system.step();
-  Eigen::VectorXd delta = Eigen::VectorXd::Zero(parameter_count(state.rig));
-  for (Eigen::Index i = 0; i < step.size(); ++i) delta[kept[6 + i] - 6] = step[i];
-  const Eigen::VectorXd poses = system.frame_steps(step);
-  if (!delta.allFinite() || !poses.allFinite()) {
-    throw Error("calibration", "the views leave a direction free",
-                "add views at other tilts and distances, or use a model with fewer parameters");
-  }
-  state.rig = retract(state.rig, delta);
+/// False where the views leave a direction free.
+bool move(BoardState& state, const Linearisation& at) {
+  const Eigen::VectorXd step = at.system.step();
+  const Eigen::VectorXd poses = at.system.frame_steps(step);
+  if (!step.allFinite() || !poses.allFinite()) return false;
+  state.rig = retract(state.rig, at.free * step);
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
     state.T_first_board[f] =
         retract(state.T_first_board[f], poses.segment<6>(6 * static_cast<Eigen::Index>(f)));
   }
+  return true;
 }
 
 }  // namespace
 
 RefinedMinimum refine_minimum(const BoardObservations& observations,
-                              BoardState state,
-                              const std::vector<bool>& held) {
+                              const BoardState& start,
+                              std::vector<bool> held) {
   constexpr int most_steps = 20;
   constexpr double enough_px = 1e-9;
-  const auto target_m = warped_target(observations.target_m, state.warp_m);
-  const int n = parameter_count(state.rig);
-  const std::vector<int> kept = kept_columns(n, held);
+  held.resize(parameter_count(start.rig), false);
+  const auto target_m = warped_target(observations.target_m, start.warp_m);
   RefinedMinimum result;
-  Linearisation at = linearise(observations, target_m, state, kept);
+  result.state = start;
+  Linearisation at = linearise(observations, target_m, result.state, held);
   for (int i = 0; i < most_steps && !result.converged; ++i) {
     result.last_step_px = at.system.step_sigma();
+    if (!move(result.state, at)) break;
     result.converged = result.last_step_px < enough_px;
-    move(state, at.system, kept);
-    at = linearise(observations, target_m, state, kept);
+    at = linearise(observations, target_m, result.state, held);
   }
-  result.state = std::move(state);
+  if (!result.converged) {
+    result.state = start;
+    at = linearise(observations, target_m, start, held);
+  }
   result.cost_px2 = at.cost_px2;
-  result.unit_bound = Eigen::MatrixXd::Zero(n, n);
-  std::vector<int> free;
-  for (std::size_t i = 6; i + 1 < kept.size(); ++i) free.push_back(kept[i] - 6);
-  result.unit_bound(free, free) = at.system.covariance();
+  result.free_bound = at.system.covariance();
+  result.unit_bound = at.free * result.free_bound * at.free.transpose();
   return result;
 }
 

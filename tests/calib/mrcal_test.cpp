@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "calib/calibrate.h"
 #include "calib/error.h"
+#include "calib/minimise_reprojection.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"

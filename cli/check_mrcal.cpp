@@ -125,7 +125,10 @@ CheckPart check_by_mrcal(const CheckedProblem& p, const Session& session) {
   if (!mrcal_available()) {
     part.reason = "this build has no libmrcal (Debian's libmrcal-dev, then build again)";
   } else {
+    bool possible = false;
     try {
+      MrcalProblem(p.observations, p.start);
+      possible = true;
       const LikeWithLike like = like_with_like(p, session);
       const MrcalCheck solved = check_against_mrcal(p.observations, p.start, like.ours,
                                                     p.problem.pixel_sigma_px, p.problem.held);
@@ -138,6 +141,7 @@ CheckPart check_by_mrcal(const CheckedProblem& p, const Session& session) {
                      cpu_ms([&] { resolver.resolve(); }));
     } catch (const Error& error) {
       part.reason = error.what();
+      if (possible) part.failures.push_back("mrcal could not check it: " + part.reason);
     }
   }
   part.text = "mrcal was left out: " + part.reason + "\n";

@@ -9,6 +9,8 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
+#include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/mrcal_uncertainty.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "localise/bhattacharyya.h"
@@ -41,6 +43,21 @@ Finding image_finding() {
           "missing: install Debian's opencv-doc, or unpack it into build/opencv-doc", false};
 }
 
+Finding library_finding() {
+  const bool there = mrcal_available();
+  return {"mrcal, C library",
+          there ? mrcal_version()
+                : "missing: install Debian's libmrcal-dev and build again, for vernier check",
+          there};
+}
+
+Finding python_finding(const fs::path& share) {
+  const std::string version = mrcal_python_version(share / "python" / "mrcal_uncertainty.py");
+  return {"mrcal, Python",
+          version.empty() ? "missing: install Debian's python3-mrcal, for vernier check" : version,
+          !version.empty()};
+}
+
 std::vector<Finding> findings() {
   const fs::path share = share_folder();
   const char* data = std::getenv("VERNIER_DATA");
@@ -65,6 +82,8 @@ std::vector<Finding> findings() {
       file_finding("report page", share / "page" / "report.html", "install again"),
       {"report plots (plotly)",
        plotly ? "found" : "missing: run npm ci in cli/page; pages hold tables only", plotly},
+      library_finding(),
+      python_finding(share),
       image_finding(),
       {"VERNIER_DATA",
        data ? (fs::is_directory(data) ? "found" : "names no folder")

@@ -8,7 +8,7 @@ set -euo pipefail
 usage() {
   cat <<'USAGE'
 usage: scripts/install_packages.sh [--demo | --test]
-  --demo   leave out what only tests and benchmarks need
+  --demo   leave out what only tests, benchmarks and the check against mrcal need
   --test   add what only the test script needs: clang-format, Python, Chromium, mrcal, COLMAP
 USAGE
 }
@@ -36,7 +36,7 @@ packages=(
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
   libhwy-dev libyaml-cpp-dev
 )
-if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev); fi
+if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
 if [[ $scope == test ]]; then packages+=(clang-format git python3 chromium python3-mrcal colmap); fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data

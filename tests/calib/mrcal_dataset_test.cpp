@@ -117,11 +117,13 @@ TEST_P(SolvedNow, EverythingIsWithinTheGates) {
   EXPECT_LE(propagated.max_observation_covariance_diff, projection_covariance_gate);
 }
 
+// Not opencv8: these views, of narrow lenses, leave its eight coefficients in a curved valley of
+// the cost (numerator and denominator cancel), where neither program reaches a minimum.
 INSTANTIATE_TEST_SUITE_P(
     Mrcal,
     SolvedNow,
     testing::Combine(testing::Values("real_opencv", "vga_radial1", "hd_opencv4"),
-                     testing::Values("pinhole", "radial1", "opencv4", "opencv5", "opencv8")),
+                     testing::Values("pinhole", "radial1", "opencv4", "opencv5")),
     [](const auto& info) {
       return std::string(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
     });

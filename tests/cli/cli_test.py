@@ -252,6 +252,81 @@ class Doubt(Case):
         self.assertTrue((self.folder / 'rig.json').exists())
 
 
+class Check(Case):
+    """The shipped rig holds its corners; mrcal may be absent, in whole or in part."""
+
+    def share(self, script):
+        """A share folder whose script is another."""
+        share = self.folder / 'share'
+        (share / 'python').mkdir(parents=True)
+        (share / 'python/mrcal_uncertainty.py').write_text(script)
+        (share / 'rigs').symlink_to(ROOT / 'datasets/rigs')
+        return dict(os.environ, VERNIER_SHARE=str(share))
+
+    def test_json_holds_what_was_promised(self):
+        found = json.loads(self.works('check', 'nominal', '--trials', '60', '--json').stdout)
+        copies = found['monte_carlo']
+        self.assertEqual(copies['trials'], 60)
+        self.assertEqual(copies['nees_expected'], 16)
+        low, high = copies['nees_interval_95']
+        self.assertTrue(low < 16 < high)
+        self.assertTrue(0.5 < copies['std_ratio_min'] < 1 < copies['std_ratio_max'] < 1.6)
+        self.assertTrue(0 <= copies['ks_p'] <= 1)
+        if found['mrcal'] is None:
+            self.assertIn('mrcal', found['mrcal_reason'])
+            self.skipTest('mrcal is not here')
+        mrcal = found['mrcal']
+        self.assertLessEqual(mrcal['max_parameter_diff_sigma'], 1e-6)
+        self.assertLessEqual(mrcal['max_covariance_diff'], 1e-7)
+        for key in ('mrcal_solve_ms', 'vernier_solve_ms', 'vernier_resolve_ms'):
+            self.assertGreater(mrcal[key], 0)
+        if mrcal['max_projection_covariance_diff'] is None:
+            self.skipTest(mrcal['projection_reason'])
+        self.assertLessEqual(mrcal['max_projection_covariance_diff'], 1e-6)
+        self.assertLessEqual(mrcal['max_triangulation_covariance_diff'], 1e-6)
+
+    def test_noisy_copies_without_mrcal(self):
+        words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--json', '--threads')
+        one = json.loads(self.works(*words, '1').stdout)
+        self.assertIsNone(one['mrcal'])
+        self.assertEqual(one['mrcal_reason'], '--no-mrcal')
+        self.assertEqual(one, json.loads(self.works(*words, '3').stdout))
+
+    def test_python_without_mrcal_is_said(self):
+        environment = self.share('import sys\nsys.exit(4)\n')
+        done = self.works('check', 'nominal', '--trials', '40', '--json', env=environment)
+        found = json.loads(done.stdout)
+        if found['mrcal'] is None:
+            self.skipTest('the build has no mrcal')
+        self.assertIsNone(found['mrcal']['max_projection_covariance_diff'])
+        self.assertIn('no Python has mrcal', found['mrcal']['projection_reason'])
+
+    def test_a_gate_that_fails_is_exit_code_3(self):
+        script = ROOT / 'python/mrcal_uncertainty.py'
+        environment = self.share(
+            'import json, runpy, sys\n'
+            f'sys.path.insert(0, {str(script.parent)!r})\n'
+            f'runpy.run_path({str(script)!r}, run_name="__main__")\n'
+            'answer = json.load(open(sys.argv[2]))\n'
+            'answer["projection"][0][0][0][0] *= 1 + 1e-4\n'
+            'json.dump(answer, open(sys.argv[2], "w"))\n')
+        done = vernier('check', 'nominal', '--trials', '40', '--json', env=environment)
+        found = json.loads(done.stdout)
+        if found['mrcal'] is None or found['mrcal']['max_projection_covariance_diff'] is None:
+            self.skipTest('mrcal is not here')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertAlmostEqual(found['mrcal']['max_projection_covariance_diff'], 1e-4, delta=1e-6)
+        self.assertIn('projection covariance', found['doubts'][0])
+
+    def test_bad_input(self):
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        del rig['evidence']
+        (self.folder / 'bare.json').write_text(json.dumps(rig))
+        self.complains('check', self.folder / 'bare.json', of='no evidence to solve again')
+        self.complains('check', of='exactly one kind of input')
+        self.complains('check', 'nominal', '--trials', '0', of='trials')
+
+
 class Simulation(Case):
     def test_simulate_is_repeatable_and_none_is_exact(self):
         words = ('simulate', '--pose', '10,7.5,0', '--seed', '4', '--json')

@@ -17,8 +17,8 @@ struct MrcalSolution {
   /// Of mrcal_parameters (calib/mrcal/mrcal_parameters.h), from mrcal's own Jacobian, for a noise
   /// of 1 px: S⁻¹ with the board poses eliminated. Zero where a parameter is held.
   Eigen::MatrixXd unit_covariance;
-  /// mrcal_optimize alone, from the start. Where parameters are locked one by one, which it
-  /// cannot do, this is its solve of the whole lens model named here.
+  /// mrcal_optimize alone, from the start, the best of three runs. Where parameters are locked one
+  /// by one, which it cannot do, this is its solve of the whole lens model named here.
   std::string timed_lens;
   double solve_cpu_ms = 0, solve_wall_ms = 0;
   /// How far mrcal_optimize stopped from the minimum: the last correction by Gauss and Newton on

@@ -213,14 +213,15 @@ BoardState Solution::moved(const BoardState& state, const Eigen::VectorXd& step)
   if (views_.warp()) next.warp_m += step.tail<2>();
   const Eigen::VectorXd kernel_step = kernel_by_step(state.rig) * step;
   for (std::size_t g = 0; g < views_.groups().size(); ++g) {
+    Lanes twists[6];
+    frame_steps(&factors_[g * frame_factor_size(parameters_)], kernel_step, twists);
     for (int l = 0; l < kernel_lanes; ++l) {
       const int frame = views_.groups()[g].frames[l];
       if (frame < 0) continue;
-      const Eigen::Matrix<double, 6, 1> twist =
-          frame_step(&factors_[g * frame_factor_size(parameters_)], l, kernel_step);
-      const Eigen::Matrix3d turn = rotation_from_vector(twist.head<3>());
+      const auto at = [&](int k) { return twists[k].of[l]; };
+      const Eigen::Matrix3d turn = rotation_from_vector({at(0), at(1), at(2)});
       Pose& T = next.T_first_board[frame];
-      T = {turn * T.R, turn * T.t + twist.tail<3>()};
+      T = {turn * T.R, turn * T.t + Eigen::Vector3d(at(3), at(4), at(5))};
     }
   }
   return next;

@@ -377,4 +377,24 @@ ResolveResult Resolver::resolve(const Eigen::Matrix2Xd& pixels_px, const BoardSt
   return result;
 }
 
+Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
+  const int n = problem_->parameters;
+  Solution solution(problem_->views, problem_->cost, problem_->views.pack(problem_->pixels_px), n,
+                    problem_->options.threads);
+  const System system = solution.linearise(state, 0);
+  Eigen::MatrixXd E = directions(state.rig, problem_->cost.held, n);
+  if (E.size() == 0) E = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd S = E.transpose() * system.information * E;
+  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * S * scale.asDiagonal());
+  if (factor.info() != Eigen::Success || !(factor.rcond() > least_rcond)) {
+    throw Error("calibration", "the views leave a direction free",
+                "add views at other tilts and distances, or use a model with fewer parameters");
+  }
+  const Eigen::MatrixXd half =
+      factor.matrixL().solve(Eigen::MatrixXd(scale.asDiagonal() * E.transpose()));
+  return (half.transpose() * half)
+      .topLeftCorner(problem_->rig_parameters, problem_->rig_parameters);
+}
+
 }  // namespace vernier

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/monte_carlo_check.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "calib/distributions.h"
+#include "calib/draw_sources.h"
+#include "calib/error.h"
+#include "calib/ordered_parallel.h"
+#include "calib/outliers.h"
+#include "calib/resolve.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::uint32_t prior_feature = 0xffff0000;  // views count from 0
+constexpr int wishart_draws = 2000;
+constexpr double least_p = 0.005;
+
+/// A root and its pseudo-inverse of a positive semi-definite matrix, scaled before it is
+/// decomposed: matrix = root rootᵀ, white root = I.
+struct Root {
+  Eigen::MatrixXd root;   // p x q
+  Eigen::MatrixXd white;  // q x p
+
+  explicit Root(const Eigen::MatrixXd& matrix) {
+    const Eigen::ArrayXd sd = matrix.diagonal().array().max(0).sqrt();
+    const Eigen::VectorXd inverse = (sd > 0).select(1 / sd.max(1e-300), 0.0);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * matrix *
+                                                               inverse.asDiagonal());
+    const Eigen::VectorXd& s = eigen.eigenvalues();
+    const auto q = (s.array() > 1e-12 * s[s.size() - 1]).count();
+    const Eigen::MatrixXd U = eigen.eigenvectors().rightCols(q);
+    const Eigen::VectorXd half = s.tail(q).cwiseSqrt();
+    root = sd.matrix().asDiagonal() * U * half.asDiagonal();
+    white = half.cwiseInverse().asDiagonal() * U.transpose() * inverse.asDiagonal();
+  }
+};
+
+/// Makes the noisy copies of one calibration.
+class Copies {
+ public:
+  Copies(const BoardObservations& observations,
+         const BoardState& state,
+         const ReprojectionProblem& problem,
+         std::uint64_t seed)
+      : observations_(observations), state_(state), problem_(problem), seed_(seed) {
+    const CornerResiduals residuals = corner_residuals(observations, state);
+    for (std::size_t v = 0; v < residuals.size(); ++v) {
+      auto& predicted = predicted_.emplace_back(observations.views[v].pixels_px);
+      for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] += residuals[v][i];
+      corners_ += static_cast<Eigen::Index>(predicted.size());
+    }
+    for (const RigPrior& prior : problem.priors) priors_.emplace_back(prior.information);
+    if (problem.priors.empty()) resolver_.emplace(observations, state, problem);
+  }
+
+  ResolveResult solve(std::uint32_t trial) const {
+    if (resolver_) return resolver_->resolve(pixels(trial));
+    ReprojectionProblem problem = problem_;
+    for (std::size_t k = 0; k < priors_.size(); ++k) {
+      // P = root rootᵀ: the mean's covariance is the pseudo-inverse, of root whiteᵀ z.
+      Draws draws(place(trial, prior_feature + static_cast<std::uint32_t>(k)));
+      const Eigen::MatrixXd& white = priors_[k].white;
+      problem.priors[k].mean =
+          retract(state_.rig, white.transpose() * draws.normals(static_cast<int>(white.rows())));
+    }
+    return Resolver(observations_, state_, problem).resolve(pixels(trial));
+  }
+
+ private:
+  DrawPlace place(std::uint32_t trial, std::uint32_t feature) const {
+    return {.seed = seed_,
+            .trial = trial,
+            .feature = feature,
+            .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)};
+  }
+
+  Eigen::Matrix2Xd pixels(std::uint32_t trial) const {
+    Eigen::Matrix2Xd all(2, corners_);
+    Eigen::Index at = 0;
+    for (std::size_t v = 0; v < predicted_.size(); ++v) {
+      Draws draws(place(trial, static_cast<std::uint32_t>(v)));
+      for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
+        const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
+        const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);
+        const double du = draws.normal(), dv = draws.normal();
+        all.col(at++) = predicted_[v][i] + sigma * Eigen::Vector2d(du, dv);
+      }
+    }
+    return all;
+  }
+
+  const BoardObservations& observations_;
+  const BoardState& state_;
+  const ReprojectionProblem& problem_;
+  std::uint64_t seed_;
+  std::vector<std::vector<Eigen::Vector2d>> predicted_;
+  Eigen::Index corners_ = 0;
+  std::vector<Root> priors_;
+  std::optional<Resolver> resolver_;
+};
+
+/// Quantiles, each with probability 0.5 % beyond, of the extreme eigenvalues of W / n with W a
+/// Wishart matrix of n degrees of freedom, by Bartlett's decomposition.
+std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
+  std::vector<double> least(wishart_draws), largest(wishart_draws);
+  for (int k = 0; k < wishart_draws; ++k) {
+    Draws draws({.seed = seed,
+                 .trial = static_cast<std::uint32_t>(k),
+                 .source = static_cast<std::uint32_t>(DrawSource::wishart)});
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(q, q);
+    for (int i = 0; i < q; ++i) {
+      A(i, i) = std::sqrt(draw_chi_squared(draws, n - i));
+      for (int j = 0; j < i; ++j) A(i, j) = draws.normal();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A * A.transpose() / n,
+                                                               Eigen::EigenvaluesOnly);
+    least[k] = eigen.eigenvalues()[0];
+    largest[k] = eigen.eigenvalues()[q - 1];
+  }
+  const int tail = wishart_draws / 200;
+  std::nth_element(least.begin(), least.begin() + tail, least.end());
+  std::nth_element(largest.begin(), largest.end() - 1 - tail, largest.end());
+  return {least[tail], *(largest.end() - 1 - tail)};
+}
+
+std::array<double, 2> mean_interval(double q, double n, double probability) {
+  const double tail = 0.5 * (1 - probability);
+  return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
+}
+
+/// Fills in what the errors (a column a copy) say of the covariance.
+void judge(const Eigen::MatrixXd& errors,
+           const Eigen::MatrixXd& covariance,
+           const Root& root,
+           std::uint64_t seed,
+           MonteCarloCheck& check) {
+  const auto n = static_cast<double>(errors.cols());
+  const Eigen::MatrixXd white = root.white * errors;
+  const auto q = static_cast<int>(white.rows());
+  const Eigen::VectorXd nees = white.colwise().squaredNorm();
+  check.nees_mean = nees.mean();
+  check.nees_expected = q;
+  check.nees_interval_95 = mean_interval(q, n, 0.95);
+  check.nees_interval_99 = mean_interval(q, n, 0.99);
+
+  check.std_ratio_min = 1e300;
+  for (Eigen::Index i = 0; i < errors.rows(); ++i) {
+    const double sd = std::sqrt(std::max(0.0, covariance(i, i)));
+    const double ratio = sd > 0 ? std::sqrt(errors.row(i).squaredNorm() / n) / sd : 0;
+    check.std_ratios.push_back(ratio);
+    if (!(sd > 0)) continue;
+    check.std_ratio_min = std::min(check.std_ratio_min, ratio);
+    check.std_ratio_max = std::max(check.std_ratio_max, ratio);
+  }
+
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(white * white.transpose() / n,
+                                                             Eigen::EigenvaluesOnly);
+  check.eigenvalues = {eigen.eigenvalues()[0], eigen.eigenvalues()[q - 1]};
+  check.eigenvalue_band_99 = wishart_band(q, static_cast<int>(n), seed);
+  check.ks_p = kolmogorov_smirnov_p({nees.begin(), nees.end()},
+                                    [&](double x) { return chi_squared_cdf(x, q); });
+  double least = 1;
+  for (int i = 0; i < q; ++i) {
+    const Eigen::VectorXd row = white.row(i);
+    least = std::min(least, kolmogorov_smirnov_p({row.begin(), row.end()}, normal_cdf));
+  }
+  check.ks_p_components = std::min(1.0, q * least);
+}
+
+}  // namespace
+
+bool MonteCarloCheck::consistent() const {
+  return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
+         eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
+         ks_p > least_p && ks_p_components > least_p;
+}
+
+MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
+                                  const BoardState& state,
+                                  const ReprojectionProblem& problem,
+                                  const Eigen::MatrixXd& covariance,
+                                  const MonteCarloOptions& options) {
+  const int p = parameter_count(state.rig);
+  if (covariance.rows() != p || covariance.cols() != p) {
+    throw Error("covariance", "it has another size than the rig has parameters",
+                "give it in full, with zeros for held parameters");
+  }
+  const Root root(covariance);
+  const Copies copies(observations, state, problem, options.seed);
+  Eigen::MatrixXd errors(p, options.trials);
+  std::vector<char> solved(static_cast<std::size_t>(options.trials), 0);
+  for_each_index(solved.size(), options.threads, [&](std::size_t trial) {
+    const ResolveResult result = copies.solve(static_cast<std::uint32_t>(trial));
+    solved[trial] = result.status == ResolveStatus::converged;
+    errors.col(static_cast<Eigen::Index>(trial)) = difference(result.state.rig, state.rig);
+  });
+  MonteCarloCheck check;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    if (solved[i]) errors.col(check.trials++) = errors.col(static_cast<Eigen::Index>(i));
+  }
+  check.failed = options.trials - check.trials;
+  if (check.trials < 2 * root.white.rows() || root.white.rows() == 0) {
+    throw Error("Monte-Carlo check",
+                std::to_string(check.trials) + " copies were solved, too few to judge " +
+                    std::to_string(root.white.rows()) + " parameters",
+                "ask for more trials");
+  }
+  const Eigen::MatrixXd found = errors.leftCols(check.trials);
+  judge(found, covariance, root, options.seed, check);
+  return check;
+}
+
+}  // namespace vernier

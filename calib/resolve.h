@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "calib/minimise_reprojection.h"
+
+namespace vernier {
+
+struct ResolveOptions {
+  double tolerance_sigma = 1e-7;  ///< largest error left, in standard deviations of the rig
+  int threads = 1;                ///< the result does not depend on it
+};
+
+enum class ResolveStatus {
+  converged,
+  iteration_limit,  ///< the state is the best that was met
+  singular,         ///< the observations leave a direction free, or a frame's pose
+};
+
+struct ResolveResult {
+  BoardState state;
+  double chi2 = 0;     ///< Σ (r / σ)², with the prior's term
+  int iterations = 0;  ///< linearisations
+  ResolveStatus status = ResolveStatus::singular;
+  double error_left_sigma = 0;  ///< estimate of what separates the rig from the minimum
+};
+
+/// Solves a board calibration again and again: the cost of minimise_reprojection(), priors, held
+/// parameters and a free warp included, for other pixels of the same corners (Monte-Carlo) or from
+/// another start.
+///
+/// Gauss–Newton with Levenberg–Marquardt damping where a step fails. Each view gives the normal
+/// equations of (intrinsics, twist of T_camera_board, residual); the derivative by the board's pose
+/// is that by the camera's twist times a 6 x 6 adjoint; board poses are eliminated frame by frame
+/// (docs/calibration.md, "Re-solving").
+///
+/// Stops when the length of the step in standard deviations, sqrt(δᵀ S δ) / σ̂, times the rate at
+/// which these lengths fall leaves less than tolerance_sigma. Thread-safe; the same bits for any
+/// number of threads.
+class Resolver {
+ public:
+  /// `around` supplies models, frames and, where it is known, the warp. Observations sorted as by
+  /// check_and_sort; throws Error where they do not match the state, or the problem the rig.
+  Resolver(const BoardObservations& observations,
+           const BoardState& around,
+           ReprojectionProblem problem = {},
+           ResolveOptions options = {});
+
+  /// With the observed pixels, from `around`.
+  ResolveResult resolve() const;
+  /// With other pixels, a column a corner in the order of the observations. Throws Error for
+  /// pixels that are not finite or too few.
+  ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px) const;
+  ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px, const BoardState& start) const;
+
+  /// The minimum variance bound at `state`, parameters x parameters, zero where held: the inverse
+  /// of the reduced information, priors included, a free warp eliminated. Throws Error where it is
+  /// singular.
+  Eigen::MatrixXd covariance(const BoardState& state) const;
+
+ private:
+  struct Problem;
+  std::shared_ptr<const Problem> problem_;
+};
+
+}  // namespace vernier

@@ -10,6 +10,7 @@
 #include "calib/error.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/model_nesting.h"
+#include "calib/refined_minimum.h"
 #include "calib/small_sample_covariance.h"
 
 namespace vernier {
@@ -55,6 +56,11 @@ ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig
 
 /// The normal equations and the bound at the solution's state.
 void linearise(Solution& s) {
+  RefinedMinimum refined;
+  if (s.problem.priors.empty() && s.problem.warp == BoardWarp::known) {
+    refined = refine_minimum(s.observations, s.state, s.problem.held);
+    if (refined.converged) s.state = refined.state;
+  }
   const BoardState& state = s.state;
   s.free = free_directions(state.rig, s.problem.held);
   s.names = free_names(state.rig, s.problem.held);
@@ -67,6 +73,9 @@ void linearise(Solution& s) {
     add_prior(s.equations, J.transpose() * prior.information * J);
   }
   s.bound = minimum_variance_bound(s.equations, s.names);
+  if (refined.converged) {  // the same with more digits
+    s.bound = s.problem.pixel_sigma_px * s.problem.pixel_sigma_px * refined.free_bound;
+  }
   s.data_parameters = static_cast<double>(s.names.size());
   if (!s.problem.priors.empty()) {
     s.data_parameters -= (s.bound * s.equations.prior_information).trace();

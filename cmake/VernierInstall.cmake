@@ -53,6 +53,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake
 # the report's page holds tables only.
 set(vernier_share_dir ${CMAKE_INSTALL_DATADIR}/vernier)
 install(DIRECTORY datasets/worlds datasets/rigs DESTINATION ${vernier_share_dir})
+install(FILES python/mrcal_uncertainty.py DESTINATION ${vernier_share_dir}/python)
 install(DIRECTORY cli/page/js DESTINATION ${vernier_share_dir}/page)
 install(FILES cli/page/report.html cli/page/report.css DESTINATION ${vernier_share_dir}/page)
 install(FILES cli/page/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "calib/mrcal/mrcal_solver.h"
+#include "calib/refined_minimum.h"
+
+namespace vernier {
+
+/// How far two solutions of one problem are apart, in mrcal's parameters.
+struct MrcalComparison {
+  double max_parameter_diff_sigma = 0;  ///< |θ − θ_mrcal| over mrcal's standard deviation
+  std::string worst_parameter;
+  double max_covariance_diff = 0;  ///< |C_ij − C_mrcal,ij| / √(C_mrcal,ii C_mrcal,jj)
+  std::string worst_covariance;
+  double cost_relative_diff = 0;  ///< (ours − mrcal's) / mrcal's
+};
+
+/// Gates of the check (docs/calibration.md).
+inline constexpr double parameter_gate_sigma = 1e-6;
+inline constexpr double covariance_gate = 1e-7;
+inline constexpr double projection_covariance_gate = 1e-6;
+
+/// Converts ours to mrcal's parameters (θ, G C Gᵀ) and compares. `pixel_sigma_px` scales the
+/// standard deviations; normalised covariances do not depend on it.
+MrcalComparison compare(const RefinedMinimum& ours,
+                        const MrcalSolution& mrcals,
+                        double pixel_sigma_px);
+
+/// The same problem by mrcal, and how far its answer is from ours.
+struct MrcalCheck {
+  MrcalSolution solution;
+  MrcalComparison comparison;
+  /// Why mrcal had to start again, one standard deviation from our minimum; empty where it did not.
+  std::string restarted;
+};
+
+/// Solves by mrcal from `start`, the start that ours had. Where mrcal finds no minimum from there
+/// or another one (opencv8 has several), it starts again near ours. Throws Error where mrcal is not
+/// built in or cannot express the problem.
+MrcalCheck check_against_mrcal(const BoardObservations& observations,
+                               const BoardState& start,
+                               const RefinedMinimum& ours,
+                               double pixel_sigma_px,
+                               const std::vector<bool>& held = {});
+
+/// max |A_ij − B_ij| / √(B_ii B_jj) over the rows whose B_ii is not zero; the two rows where it is.
+struct CovarianceDifference {
+  double largest = 0;
+  int row = 0, column = 0;
+};
+CovarianceDifference normalised_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+}  // namespace vernier

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/minimise_reprojection.h"
+#include "calib/refined_minimum.h"
+#include "cli/session.h"
+
+namespace vernier::cli {
+
+/// A calibration to be checked.
+struct CheckedProblem {
+  BoardObservations observations;  ///< without outliers
+  BoardState start;                ///< where every solver starts
+  BoardState state;                ///< what was calibrated
+  ReprojectionProblem problem;     ///< held parameters, priors, warp, σ
+  Eigen::MatrixXd bound;           ///< its minimum variance bound, full size
+};
+
+/// One part of `vernier check`.
+struct CheckPart {
+  Json json;                          ///< null where it could not be done
+  std::string text;                   ///< its table, or the line that says why there is none
+  std::string reason;                 ///< why there is none, else empty
+  std::vector<std::string> failures;  ///< gates that do not hold
+};
+
+/// The same problem by mrcal: its parameters, covariance, projection and triangulation uncertainty
+/// and solving time beside ours, against the gates.
+CheckPart check_by_mrcal(const CheckedProblem& problem, const Session& session);
+
+/// Noisy copies of the calibration, solved again: errors against the covariance.
+struct NoisyCopies {
+  int trials = 200, threads = 0;
+  std::uint64_t seed = 1;
+};
+CheckPart check_by_noisy_copies(const CheckedProblem& problem, const NoisyCopies& copies);
+
+}  // namespace vernier::cli

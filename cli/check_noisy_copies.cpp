@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/monte_carlo_check.h"
+#include "cli/check_mrcal.h"
+
+namespace vernier::cli {
+
+CheckPart check_by_noisy_copies(const CheckedProblem& p, const NoisyCopies& copies) {
+  const MonteCarloCheck check =
+      monte_carlo_check(p.observations, p.state, p.problem, p.bound,
+                        {.trials = copies.trials, .seed = copies.seed, .threads = copies.threads});
+  CheckPart part;
+  part.json = {{"trials", check.trials},
+               {"failed", check.failed},
+               {"nees_mean", check.nees_mean},
+               {"nees_expected", check.nees_expected},
+               {"nees_interval_95", check.nees_interval_95},
+               {"nees_interval_99", check.nees_interval_99},
+               {"std_ratio_min", check.std_ratio_min},
+               {"std_ratio_max", check.std_ratio_max},
+               {"std_ratios", check.std_ratios},
+               {"eigenvalues", check.eigenvalues},
+               {"eigenvalue_band_99", check.eigenvalue_band_99},
+               {"ks_p", check.ks_p},
+               {"ks_p_components", check.ks_p_components},
+               {"consistent", check.consistent()}};
+  part.text = fmt::format(
+      "by {} noisy copies, solved again{}:\n"
+      "  error squared over covariance (NEES)   {:.2f}, expected {:.0f}, 95 % of means in "
+      "[{:.2f}, {:.2f}]\n"
+      "  sampled over predicted sigma           {:.3f} to {:.3f}\n"
+      "  eigenvalues of the whitened samples    {:.3f} to {:.3f}, band [{:.3f}, {:.3f}]\n"
+      "  Kolmogorov and Smirnov                 p = {:.2g} (NEES), {:.2g} (components)\n",
+      check.trials, check.failed > 0 ? fmt::format(" ({} more failed)", check.failed) : "",
+      check.nees_mean, check.nees_expected, check.nees_interval_95[0], check.nees_interval_95[1],
+      check.std_ratio_min, check.std_ratio_max, check.eigenvalues[0], check.eigenvalues[1],
+      check.eigenvalue_band_99[0], check.eigenvalue_band_99[1], check.ks_p, check.ks_p_components);
+  if (!check.consistent()) {
+    part.failures.push_back(fmt::format(
+        "noisy copies scatter otherwise than the covariance says: NEES {:.2f} for {:.0f}, sigmas "
+        "{:.2f} to {:.2f} times the predicted",
+        check.nees_mean, check.nees_expected, check.std_ratio_min, check.std_ratio_max));
+  }
+  return part;
+}
+
+}  // namespace vernier::cli

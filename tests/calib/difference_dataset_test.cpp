@@ -18,8 +18,8 @@ TEST(RealPairs, TwoModelsDifferBeyondTheirBounds) {
   const auto data = test::data_folder();
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
-  const PairDetections found =
-      detect_pairs(folder + "/left*.png", folder + "/right*.png", {9, 6, 0.025});
+  const ImageDetections found =
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025});
   const RigEstimate a = calibrate(found.observations);
   const RigEstimate b = calibrate(found.observations, {.model = OpenCv4{}});
   const RigDifference d = rig_difference(a.rig, *chosen_covariance(a, CovarianceChoice::mvb), b.rig,

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   cli::add_doctor(app, session);
   cli::add_detect(app, session);
   cli::add_calibrate(app, session);
+  cli::add_uncertainty(app, session);
   cli::add_sample(app, session);
   cli::add_convert(app, session);
   cli::add_diff(app, session);

@@ -52,12 +52,21 @@ double nice_step(double extent) {
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
+/// From values to shares of the colour scale; logarithmic where a few large values would leave
+/// everything else in one colour.
 struct Scale {
   double least, greatest;
 
+  bool logarithmic() const { return least > 0 && greatest > 4 * least; }
+  double value_at(double share) const {
+    return logarithmic() ? least * std::pow(greatest / least, share)
+                         : least + share * (greatest - least);
+  }
   int shade(double value) const {
     if (!(greatest > least)) return 0;
-    return static_cast<int>(std::lround((shades - 1) * (value - least) / (greatest - least)));
+    const double share = logarithmic() ? std::log(value / least) / std::log(greatest / least)
+                                       : (value - least) / (greatest - least);
+    return static_cast<int>(std::lround((shades - 1) * share));
   }
 };
 
@@ -126,7 +135,7 @@ std::string colour_bar(const HeatMap& map, double height, const Scale& scale) {
                        x, top + height - h * (i + 1), bar, h + 0.3, colour(i / double(shades - 1)));
   }
   for (int i = 0; i <= 4; ++i) {
-    const double value = scale.least + (scale.greatest - scale.least) * i / 4;
+    const double value = scale.value_at(i / 4.0);
     const double y = top + height * (1 - i / 4.0);
     svg += fmt::format("<path d=\"M{} {:.1f}h5\"/>\n", x + bar, y);
     svg += text(x + bar + 8, y + 4, "start", fmt::format("{:.3g}", value));
@@ -160,7 +169,7 @@ std::string heat_map_svg(const HeatMap& map) {
   if (std::isfinite(scale.least)) svg += colour_bar(map, height, scale);
   const bool missing =
       std::any_of(map.values.begin(), map.values.end(), [](double v) { return !std::isfinite(v); });
-  if (missing) svg += text(left + width, top + height + 36, "end", "grey: not seen");
+  if (missing) svg += text(left + width, top + height + 36, "end", "grey: no ray, or not seen");
   return svg + "</svg>\n";
 }
 

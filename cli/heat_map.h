@@ -14,8 +14,9 @@ struct HeatMap {
   std::vector<double> values;      ///< row by row; NaN is drawn grey
 };
 
-/// A self-contained SVG: cells coloured from the least to the greatest value, axes in pixels (v
-/// down, as the image), a colour scale. Throws Error unless there is a value a cell and at least
+/// A self-contained SVG: cells coloured from the least to the greatest value (by their logarithms
+/// where these are more than a factor of 4 apart), axes in pixels (v down, as the image), a colour
+/// scale. Throws Error unless there is a value a cell and at least
 /// two columns and rows.
 std::string heat_map_svg(const HeatMap& map);
 

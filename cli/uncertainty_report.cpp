@@ -54,6 +54,10 @@ void summarise(ProjectionReport& report) {
   if (count == 0) report.worst_sd_px = std::numeric_limits<double>::quiet_NaN();
 }
 
+void note_once(const std::string& note, std::vector<std::string>& notes) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
 /// One camera and one way of fixing the point, at all distances: the draws are shared.
 void add_projection(const Input& in, int camera, PointFixedTo fixed_to, UncertaintyReport& out) {
   const UncertaintyRequest& request = out.request;
@@ -69,6 +73,12 @@ void add_projection(const Input& in, int camera, PointFixedTo fixed_to, Uncertai
     report.distance_m = distance_m;
     report.grid = projection_grid(linear, request.columns, request.rows, distance_m);
     summarise(report);
+    if (report.grid.absent > 0 && distance_m == distances.front()) {
+      const std::string note = fmt::format(
+          "{} of the {} pixels of the {} camera's grid have no ray: its distortion folds there",
+          report.grid.absent, report.grid.covariance.size(), lens.name);
+      note_once(note, out.notes);
+    }
     for (const Place& place : places(lens.size_px)) {
       report.figures.push_back({place, linear.covariance(place.pixel_px, distance_m), {}});
       const Eigen::Vector3d ray =
@@ -122,9 +132,7 @@ std::vector<std::pair<Place, PixelPair>> seen_pairs(const RigEstimate& pair,
   }
   const std::string note = fmt::format("at {} m the {} camera does not see: {}", distance_m,
                                        pair.rig.cameras[1].name, unseen);
-  if (!unseen.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
-    notes.push_back(note);
-  }
+  if (!unseen.empty()) note_once(note, notes);
   return seen;
 }
 

@@ -66,7 +66,7 @@ std::string triangulation_text(const UncertaintyReport& report) {
 std::string disparity_text(const UncertaintyReport& report) {
   std::string text =
       "\nrectification: standard deviation of the vertical disparity, px (linear / sampled)\n";
-  text += fmt::format("{:<8} {:>8} {:>15} {:>15} {:>15} {:>15} {:>15} {:>7} {:>7} {:>9} {:>9}\n",
+  text += fmt::format("{:<8} {:>8} {:>15} {:>15} {:>15} {:>15} {:>15} {:>7} {:>7} {:>9} {:>11}\n",
                       "camera", "distance", "centre", "top left", "top right", "bottom left",
                       "bottom right", "rms", "worst", "less mean", "less affine");
   for (const DisparityReport& r : report.vertical_disparity) {
@@ -78,7 +78,7 @@ std::string disparity_text(const UncertaintyReport& report) {
                                          ? "-"
                                          : both(found->linear_sd_px, found->sampled.sd_px));
     }
-    text += fmt::format(" {:>7} {:>7} {:>9} {:>9}\n", number(r.map.rms_px), number(r.worst_sd_px),
+    text += fmt::format(" {:>7} {:>7} {:>9} {:>11}\n", number(r.map.rms_px), number(r.worst_sd_px),
                         number(r.map.rms_less_mean_px), number(r.map.rms_less_affine_px));
   }
   return text;

@@ -79,7 +79,7 @@ void run(const Options& options, Session& session) {
         "give --pair-sigma-px");
   }
   std::string written;
-  Json json;
+  Json json = Json::object();
   if (!options.output.empty()) {
     const auto names = write_uncertainty(report, options.output);
     written = fmt::format("{} files written to {}\n", names.size(), options.output);

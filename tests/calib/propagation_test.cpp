@@ -65,6 +65,10 @@ class BruteForce : public testing::Test {
         simulate_board(test::stereo_rig(), {4, 3, 0.1}, 5, 0, {.frames = 6, .pixel_sigma_px = 0});
     observations_ = board.observations;
     truth_ = board.truth;
+  }
+
+  /// The bound at the truth with everything free.
+  void estimate_all() {
     estimate_.rig = truth_.rig;
     const auto equations = reduced_normal_equations(observations_, truth_, 1.0);
     const auto names = parameter_names(truth_.rig);

@@ -16,11 +16,16 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import time
 
-import mrcal
-import numpy as np
+try:
+    import mrcal
+    import numpy as np
+except ImportError:
+    sys.exit('projection_vs_mrcal.py: no mrcal here; install python3-mrcal, and run it with the '
+             "system's Python")
 
 SIGMA_PX = 0.2
 SPACING_M = 0.05

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/chessboard_finder.h"
+
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+#include <optional>
+
+#include "calib/corner_refinement.h"
+#include "calib/image_fault.h"
+
+namespace vernier {
+namespace {
+
+/// Corners of a grid, row by row, as OpenCV's finders return them.
+struct CornerGrid {
+  int columns = 0, rows = 0;
+  std::vector<cv::Point2f> corners;
+
+  const cv::Point2f& at(int column, int row) const { return corners[row * columns + column]; }
+};
+
+/// Mean grey value of the middle of a square given by its corners in turn; nothing where it is not
+/// all in the image.
+std::optional<double> brightness(const cv::Mat& grey, const std::array<cv::Point2d, 4>& square) {
+  double sum = 0;
+  int count = 0;
+  for (double s = 0.3; s < 0.75; s += 0.1) {
+    for (double t = 0.3; t < 0.75; t += 0.1) {
+      const cv::Point2d p = square[0] * (1 - s) * (1 - t) + square[1] * s * (1 - t) +
+                            square[2] * s * t + square[3] * (1 - s) * t;
+      const int x = cvRound(p.x), y = cvRound(p.y);
+      if (x < 0 || y < 0 || x >= grey.cols || y >= grey.rows) return std::nullopt;
+      sum += grey.at<unsigned char>(y, x);
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+/// The corner of a grid, or where the grid would have one on going beyond its sides: second
+/// differences along rows and columns stay what they are at the side.
+cv::Point2d beyond(const CornerGrid& grid, int column, int row) {
+  const auto extend = [](auto at, int i, int n) -> cv::Point2d {
+    if (i >= 0 && i < n) return at(i);
+    const int edge = i < 0 ? 0 : n - 1, in = i < 0 ? 1 : -1, k = i < 0 ? -i : i - n + 1;
+    const cv::Point2d a = at(edge), b = at(edge + in), c = at(edge + 2 * in);
+    const cv::Point2d first = a - b, second = a - 2 * b + c;
+    return a + k * first + (0.5 * k * (k + 1)) * second;
+  };
+  const auto along_row = [&](int r) {
+    return extend([&](int c) { return cv::Point2d(grid.at(c, r)); }, column, grid.columns);
+  };
+  return extend(along_row, row, grid.rows);
+}
+
+/// The square whose upper left corner is (column, row); those from -1 to columns - 1 are the
+/// board's.
+std::optional<double> square_brightness(const cv::Mat& grey,
+                                        const CornerGrid& grid,
+                                        int column,
+                                        int row) {
+  return brightness(grey, {beyond(grid, column, row), beyond(grid, column + 1, row),
+                           beyond(grid, column + 1, row + 1), beyond(grid, column, row + 1)});
+}
+
+/// Mean brightness of the inner squares of either colour; first of those like square (0, 0).
+std::array<double, 2> colours(const cv::Mat& grey, const CornerGrid& grid) {
+  std::array<double, 2> sum{}, count{};
+  for (int row = 0; row + 1 < grid.rows; ++row) {
+    for (int column = 0; column + 1 < grid.columns; ++column) {
+      if (const auto value = square_brightness(grey, grid, column, row)) {
+        sum[(row + column) % 2] += *value;
+        count[(row + column) % 2] += 1;
+      }
+    }
+  }
+  return {sum[0] / std::max(count[0], 1.0), sum[1] / std::max(count[1], 1.0)};
+}
+
+/// Whether squares of the right colours follow beyond the board's own outer squares, on any side.
+bool goes_on(const cv::Mat& grey, const CornerGrid& grid) {
+  const std::array<double, 2> colour = colours(grey, grid);
+  const double middle = 0.5 * (colour[0] + colour[1]);
+  const auto matches = [&](const std::vector<cv::Point>& squares) {
+    int seen = 0, right = 0;
+    std::array<int, 2> of_colour{};
+    for (const cv::Point& s : squares) {
+      const auto value = square_brightness(grey, grid, s.x, s.y);
+      if (!value) continue;
+      const int parity = (s.x + s.y + 4) % 2;
+      ++seen;
+      ++of_colour[parity];
+      right += (*value > middle) == (colour[parity] > middle);
+    }
+    // A plain margin gets at most three quarters right: two colours a side are asked for.
+    return of_colour[0] >= 2 && of_colour[1] >= 2 && right >= 0.9 * seen;
+  };
+  std::array<std::vector<cv::Point>, 4> sides;
+  for (int column = -1; column < grid.columns; ++column) {
+    sides[0].emplace_back(column, -2);
+    sides[1].emplace_back(column, grid.rows);
+  }
+  for (int row = -1; row < grid.rows; ++row) {
+    sides[2].emplace_back(-2, row);
+    sides[3].emplace_back(grid.columns, row);
+  }
+  return std::any_of(sides.begin(), sides.end(), matches);
+}
+
+/// Makes the first square dark by a half turn where that changes its colour.
+void make_order_unique(const cv::Mat& grey, CornerGrid& grid) {
+  if ((grid.columns + grid.rows) % 2 == 0) return;
+  const auto first = square_brightness(grey, grid, 0, 0),
+             beside = square_brightness(grey, grid, 1, 0);
+  if (first && beside && *first > *beside) std::reverse(grid.corners.begin(), grid.corners.end());
+}
+
+double smallest_spacing(const CornerGrid& grid) {
+  double least = 1e9;
+  for (int r = 0; r < grid.rows; ++r) {
+    for (int c = 0; c < grid.columns; ++c) {
+      if (c + 1 < grid.columns)
+        least = std::min(least, cv::norm(grid.at(c, r) - grid.at(c + 1, r)));
+      if (r + 1 < grid.rows) least = std::min(least, cv::norm(grid.at(c, r) - grid.at(c, r + 1)));
+    }
+  }
+  return least;
+}
+
+bool find_corners(const cv::Mat& grey, CornerGrid& grid) {
+  const cv::Size size(grid.columns, grid.rows);
+  if (cv::findChessboardCorners(grey, size, grid.corners,
+                                cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
+    return true;
+  }
+  return cv::findChessboardCornersSB(grey, size, grid.corners,
+                                     cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
+}
+
+/// The largest grid of corners that can be followed in the image, 3 x 3 at least.
+std::optional<CornerGrid> find_any_grid(const cv::Mat& grey) {
+  CornerGrid grid;
+  cv::Mat meta;
+  if (!cv::findChessboardCornersSB(
+          grey, {3, 3}, grid.corners,
+          cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_LARGER, meta)) {
+    return std::nullopt;
+  }
+  grid.columns = meta.cols;
+  grid.rows = meta.rows;
+  if (grid.corners.size() != static_cast<std::size_t>(grid.columns) * grid.rows) {
+    return std::nullopt;
+  }
+  return grid;
+}
+
+std::string size_text(int columns, int rows) {
+  return std::to_string(columns) + "x" + std::to_string(rows);
+}
+
+/// Whether the next corners beyond one of the grid's sides would lie outside the image.
+bool cut_by_border(const cv::Mat& grey, const CornerGrid& grid) {
+  const auto outside = [&](int column, int row) {
+    const cv::Point2d p = beyond(grid, column, row);
+    return p.x < 0 || p.y < 0 || p.x > grey.cols - 1 || p.y > grey.rows - 1;
+  };
+  for (int column = 0; column < grid.columns; ++column) {
+    if (outside(column, -1) || outside(column, grid.rows)) return true;
+  }
+  for (int row = 0; row < grid.rows; ++row) {
+    if (outside(-1, row) || outside(grid.columns, row)) return true;
+  }
+  return false;
+}
+
+std::string bigger(const Chessboard& board) {
+  return "the board seems to have more inner corners than " + size_text(board.columns, board.rows);
+}
+
+/// Why no board of this size was found, by what is there instead.
+std::string fault_of(const cv::Mat& grey, const Chessboard& board) {
+  std::string reason = "no " + size_text(board.columns, board.rows) + " board found";
+  if (const auto grid = find_any_grid(grey)) {
+    const auto [least, most] = std::minmax(grid->columns, grid->rows);
+    const auto [short_side, long_side] = std::minmax(board.columns, board.rows);
+    const std::string seen = size_text(grid->columns, grid->rows);
+    if (least >= short_side && most >= long_side) {
+      return reason + "; " + bigger(board) + ": " + seen + " are seen";
+    }
+    reason += "; only " + seen + " of its corners can be followed, " +
+              (cut_by_border(grey, *grid) ? "the image's border cuts the board off"
+                                          : "something covers the others, or the board has fewer");
+    const double spacing = smallest_spacing(*grid);
+    if (spacing < 10) reason += ", and they are only " + std::to_string(int(spacing)) + " px apart";
+  }
+  const std::string fault = image_fault(grey);
+  return fault.empty() ? reason : reason + "; " + fault;
+}
+
+}  // namespace
+
+void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
+  CornerGrid grid{board.columns, board.rows, {}};
+  if (!find_corners(grey, grid)) {
+    result.reason = fault_of(grey, board);
+    return;
+  }
+  if (goes_on(grey, grid)) {
+    result.reason = bigger(board);
+    return;
+  }
+  make_order_unique(grey, grid);
+  const int half = std::clamp(static_cast<int>(0.35 * smallest_spacing(grid)), 2, 11);
+  std::vector<CornerGuess> guesses;
+  for (std::size_t i = 0; i < grid.corners.size(); ++i) {
+    guesses.push_back({static_cast<int>(i), {grid.corners[i].x, grid.corners[i].y}, half});
+  }
+  refine_corners(grey, std::move(guesses), target_points(board), CornerKind::crossing, result);
+  if (2 * result.ids.size() < grid.corners.size()) {
+    result.ids.clear();
+    result.corners_px.clear();
+    result.reason = "more than half of its corners are refused";
+  }
+}
+
+}  // namespace vernier

@@ -38,6 +38,9 @@ struct BoardDetection {
   int camera = 0;                              ///< index of the pattern it came by
 };
 
+/// Its corners that were seen and not used, as "3 corners at the image's border, 1 corner …".
+std::string refused_corners_text(const BoardDetection& image);
+
 /// Finds the corners of a target in an image, then refines each by the gradient's orthogonality
 /// (Förstner and Gülch 1987, as OpenCV's cornerSubPix does it) in a window that holds no other edge
 /// of the pattern, and refuses corners one by one that this fails for.

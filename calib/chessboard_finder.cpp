@@ -38,15 +38,15 @@ std::optional<double> brightness(const cv::Mat& grey, const std::array<cv::Point
   return sum / count;
 }
 
-/// The corner of a grid, or where the grid would have one on going beyond its sides: second
-/// differences along rows and columns stay what they are at the side.
-cv::Point2d beyond(const CornerGrid& grid, int column, int row) {
-  const auto extend = [](auto at, int i, int n) -> cv::Point2d {
-    if (i >= 0 && i < n) return at(i);
-    const int edge = i < 0 ? 0 : n - 1, in = i < 0 ? 1 : -1, k = i < 0 ? -i : i - n + 1;
+/// The corner of a grid, or where one would be on going beyond its sides, by whole or broken steps:
+/// second differences along rows and columns stay what they are at the side.
+cv::Point2d beyond(const CornerGrid& grid, double column, double row) {
+  const auto extend = [](auto at, double i, int n) -> cv::Point2d {
+    if (i >= 0 && i <= n - 1) return at(static_cast<int>(i));
+    const int edge = i < 0 ? 0 : n - 1, in = i < 0 ? 1 : -1;
+    const double k = i < 0 ? -i : i - (n - 1);
     const cv::Point2d a = at(edge), b = at(edge + in), c = at(edge + 2 * in);
-    const cv::Point2d first = a - b, second = a - 2 * b + c;
-    return a + k * first + (0.5 * k * (k + 1)) * second;
+    return a + k * (a - b) + (0.5 * k * (k + 1)) * (a - 2 * b + c);
   };
   const auto along_row = [&](int r) {
     return extend([&](int c) { return cv::Point2d(grid.at(c, r)); }, column, grid.columns);
@@ -54,14 +54,20 @@ cv::Point2d beyond(const CornerGrid& grid, int column, int row) {
   return extend(along_row, row, grid.rows);
 }
 
-/// The square whose upper left corner is (column, row); those from -1 to columns - 1 are the
-/// board's.
-std::optional<double> square_brightness(const cv::Mat& grey,
-                                        const CornerGrid& grid,
-                                        int column,
-                                        int row) {
-  return brightness(grey, {beyond(grid, column, row), beyond(grid, column + 1, row),
-                           beyond(grid, column + 1, row + 1), beyond(grid, column, row + 1)});
+/// A piece of a square, from one place of the grid to another.
+struct Piece {
+  int column, row;  ///< its square's upper left corner; (-1, -1) is the board's first
+  double left, top, right, bottom;
+};
+
+std::optional<double> brightness(const cv::Mat& grey, const CornerGrid& grid, const Piece& piece) {
+  return brightness(
+      grey, {beyond(grid, piece.left, piece.top), beyond(grid, piece.right, piece.top),
+             beyond(grid, piece.right, piece.bottom), beyond(grid, piece.left, piece.bottom)});
+}
+
+Piece whole_square(int column, int row) {
+  return {column, row, double(column), double(row), column + 1.0, row + 1.0};
 }
 
 /// Mean brightness of the inner squares of either colour; first of those like square (0, 0).
@@ -69,7 +75,7 @@ std::array<double, 2> colours(const cv::Mat& grey, const CornerGrid& grid) {
   std::array<double, 2> sum{}, count{};
   for (int row = 0; row + 1 < grid.rows; ++row) {
     for (int column = 0; column + 1 < grid.columns; ++column) {
-      if (const auto value = square_brightness(grey, grid, column, row)) {
+      if (const auto value = brightness(grey, grid, whole_square(column, row))) {
         sum[(row + column) % 2] += *value;
         count[(row + column) % 2] += 1;
       }
@@ -78,41 +84,46 @@ std::array<double, 2> colours(const cv::Mat& grey, const CornerGrid& grid) {
   return {sum[0] / std::max(count[0], 1.0), sum[1] / std::max(count[1], 1.0)};
 }
 
+/// The halves of the squares next to the board's own outer squares, on its four sides. Outer
+/// squares are often cut narrow, so only the nearer halves are looked at, and not those at the
+/// ends.
+std::array<std::vector<Piece>, 4> pieces_beyond(const CornerGrid& grid) {
+  std::array<std::vector<Piece>, 4> sides;
+  for (int c = 0; c + 1 < grid.columns; ++c) {
+    sides[0].push_back({c, -2, double(c), -1.5, c + 1.0, -1.0});
+    sides[1].push_back({c, grid.rows, double(c), double(grid.rows), c + 1.0, grid.rows + 0.5});
+  }
+  for (int r = 0; r + 1 < grid.rows; ++r) {
+    sides[2].push_back({-2, r, -1.5, double(r), -1.0, r + 1.0});
+    sides[3].push_back(
+        {grid.columns, r, double(grid.columns), double(r), grid.columns + 0.5, r + 1.0});
+  }
+  return sides;
+}
+
 /// Whether squares of the right colours follow beyond the board's own outer squares, on any side.
 bool goes_on(const cv::Mat& grey, const CornerGrid& grid) {
   const std::array<double, 2> colour = colours(grey, grid);
   const double middle = 0.5 * (colour[0] + colour[1]);
-  const auto matches = [&](const std::vector<cv::Point>& squares) {
+  const auto follow = [&](const std::vector<Piece>& pieces) {
     int seen = 0, right = 0;
-    std::array<int, 2> of_colour{};
-    for (const cv::Point& s : squares) {
-      const auto value = square_brightness(grey, grid, s.x, s.y);
+    for (const Piece& piece : pieces) {
+      const auto value = brightness(grey, grid, piece);
       if (!value) continue;
-      const int parity = (s.x + s.y + 4) % 2;
       ++seen;
-      ++of_colour[parity];
-      right += (*value > middle) == (colour[parity] > middle);
+      right += (*value > middle) == (colour[(piece.column + piece.row + 4) % 2] > middle);
     }
-    // A plain margin gets at most three quarters right: two colours a side are asked for.
-    return of_colour[0] >= 2 && of_colour[1] >= 2 && right >= 0.9 * seen;
+    return seen >= 3 && right >= 0.9 * seen;  // a plain margin gets two thirds right at most
   };
-  std::array<std::vector<cv::Point>, 4> sides;
-  for (int column = -1; column < grid.columns; ++column) {
-    sides[0].emplace_back(column, -2);
-    sides[1].emplace_back(column, grid.rows);
-  }
-  for (int row = -1; row < grid.rows; ++row) {
-    sides[2].emplace_back(-2, row);
-    sides[3].emplace_back(grid.columns, row);
-  }
-  return std::any_of(sides.begin(), sides.end(), matches);
+  const auto sides = pieces_beyond(grid);
+  return std::any_of(sides.begin(), sides.end(), follow);
 }
 
 /// Makes the first square dark by a half turn where that changes its colour.
 void make_order_unique(const cv::Mat& grey, CornerGrid& grid) {
   if ((grid.columns + grid.rows) % 2 == 0) return;
-  const auto first = square_brightness(grey, grid, 0, 0),
-             beside = square_brightness(grey, grid, 1, 0);
+  const auto first = brightness(grey, grid, whole_square(0, 0));
+  const auto beside = brightness(grey, grid, whole_square(1, 0));
   if (first && beside && *first > *beside) std::reverse(grid.corners.begin(), grid.corners.end());
 }
 
@@ -220,7 +231,9 @@ void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetect
   if (2 * result.ids.size() < grid.corners.size()) {
     result.ids.clear();
     result.corners_px.clear();
-    result.reason = "more than half of its corners are refused";
+    const std::string fault = image_fault(grey);
+    result.reason = "more than half of its corners are refused: " + refused_corners_text(result) +
+                    (fault.empty() ? "" : "; " + fault);
   }
 }
 

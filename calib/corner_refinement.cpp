@@ -3,6 +3,7 @@
 #include "calib/corner_refinement.h"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -56,8 +57,8 @@ std::optional<Eigen::Vector2d> settle(const cv::Mat& grey, const Eigen::Vector2d
   return std::nullopt;
 }
 
-/// The refined place, or why there is none.
-std::optional<CornerRefusal> refine(const cv::Mat& grey, CornerKind kind, CornerGuess& guess) {
+/// The refined place and the window it was found in, or why there is none.
+std::optional<CornerRefusal> refine(const cv::Mat& grey, CornerGuess& guess) {
   const Eigen::Vector2d far(grey.cols - 1 - guess.pixel_px.x(), grey.rows - 1 - guess.pixel_px.y());
   const double room = std::min(guess.pixel_px.minCoeff(), far.minCoeff()) - 1;
   const int half = std::min(guess.half_window_px, static_cast<int>(std::floor(room)));
@@ -65,9 +66,7 @@ std::optional<CornerRefusal> refine(const cv::Mat& grey, CornerKind kind, Corner
   const auto moved_to = settle(grey, guess.pixel_px, half);
   if (!moved_to) return CornerRefusal::moved_too_far;
   guess.pixel_px = *moved_to;
-  if (kind == CornerKind::crossing && !is_crossing(grey, guess.pixel_px, half)) {
-    return CornerRefusal::not_crossing;
-  }
+  guess.half_window_px = half;
   return std::nullopt;
 }
 
@@ -91,9 +90,35 @@ double strangeness(const std::vector<CornerGuess>& corners,
   }
   const auto H = fit_homography(from, to);
   if (!H) return 0;
-  const double spacing = (corners[near[0].second].pixel_px - corners[index].pixel_px).norm();
-  const double tolerable = std::max(1.5, 0.06 * spacing);
+  // Distortion bends the neighbourhood: what the neighbours themselves deviate by is no fault.
+  double squares = 0, apart = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    squares += (map_point(*H, from[k]) - to[k]).squaredNorm();
+    apart += (to[k] - corners[index].pixel_px).norm() / static_cast<double>(count);
+  }
+  const double deviation = std::sqrt(squares / static_cast<double>(count));
+  const double tolerable = std::max({1.0, 0.02 * apart, 6 * deviation});
   return (map_point(*H, own) - corners[index].pixel_px).norm() / tolerable;
+}
+
+/// Takes out the corners where no squares cross, if squares are to cross there.
+void drop_covered_corners(const cv::Mat& grey,
+                          CornerKind kind,
+                          std::vector<CornerGuess>& corners,
+                          std::vector<RefusedCorner>& refused) {
+  std::vector<CornerGuess> crossings;
+  std::vector<RefusedCorner> others;
+  for (const CornerGuess& corner : corners) {
+    if (is_crossing(grey, corner.pixel_px, corner.half_window_px)) {
+      crossings.push_back(corner);
+    } else {
+      others.push_back({corner.id, CornerRefusal::not_crossing});
+    }
+  }
+  constexpr double most = 0.6;
+  if (kind == CornerKind::as_most && crossings.size() < most * corners.size()) return;
+  corners = std::move(crossings);
+  refused.insert(refused.end(), others.begin(), others.end());
 }
 
 /// Takes out the strangest corner until none is strange.
@@ -132,6 +157,17 @@ std::string text_of(CornerRefusal refusal) {
   return "";
 }
 
+std::string refused_corners_text(const BoardDetection& image) {
+  std::map<CornerRefusal, int> count;
+  for (const RefusedCorner& corner : image.refused_corners) ++count[corner.why];
+  std::string text;
+  for (const auto& [why, corners] : count) {
+    text += (text.empty() ? "" : ", ") + std::to_string(corners) +
+            (corners == 1 ? " corner " : " corners ") + text_of(why);
+  }
+  return text;
+}
+
 void refine_corners(const cv::Mat& grey,
                     std::vector<CornerGuess> guesses,
                     const std::vector<Eigen::Vector3d>& target_m,
@@ -141,12 +177,13 @@ void refine_corners(const cv::Mat& grey,
             [](const CornerGuess& a, const CornerGuess& b) { return a.id < b.id; });
   std::vector<CornerGuess> refined;
   for (CornerGuess& guess : guesses) {
-    if (const auto refusal = refine(grey, kind, guess)) {
+    if (const auto refusal = refine(grey, guess)) {
       result.refused_corners.push_back({guess.id, *refusal});
     } else {
       refined.push_back(guess);
     }
   }
+  drop_covered_corners(grey, kind, refined, result.refused_corners);
   drop_strange_corners(refined, target_m, result.refused_corners);
   for (const CornerGuess& corner : refined) {
     result.ids.push_back(corner.id);

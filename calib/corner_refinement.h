@@ -16,8 +16,9 @@ struct CornerGuess {
   int half_window_px = 2;
 };
 
-/// Whether squares cross at every corner, dark opposite dark; not so at a lone tag's corners.
-enum class CornerKind { crossing, any };
+/// Whether squares cross at every corner, dark opposite dark. At the corners of tags they do where
+/// the sheet has squares between the tags, which most of the corners tell.
+enum class CornerKind { crossing, as_most };
 
 /// Refines the guesses into `result`, corner by corner, in the order of their ids. Windows shrink
 /// towards the image's border. A corner is refused for the reasons of CornerRefusal; the last of

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/grey_image.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -69,7 +73,27 @@ std::string jpeg_fault(std::string_view bytes) {
   return ends ? "" : cut;
 }
 
+/// Whether a binary Netpbm file holds as many pixels as its header says.
+std::string netpbm_fault(std::string_view bytes) {
+  std::array<std::size_t, 3> number{};  // width, height, largest value
+  std::size_t at = 2;
+  for (std::size_t& value : number) {
+    while (at < bytes.size() &&
+           (std::isspace(static_cast<unsigned char>(bytes[at])) || bytes[at] == '#')) {
+      at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    }
+    const auto parsed = std::from_chars(bytes.data() + at, bytes.data() + bytes.size(), value);
+    if (parsed.ec != std::errc()) return "has no Netpbm header that can be read";
+    at = static_cast<std::size_t>(parsed.ptr - bytes.data());
+  }
+  const std::size_t pixel = (bytes[1] == '6' ? 3 : 1) * (number[2] > 255 ? 2 : 1);
+  const bool whole = number[0] <= 1u << 20 && number[1] <= 1u << 20 &&
+                     bytes.size() >= at + 1 + number[0] * number[1] * pixel;
+  return whole ? "" : "is cut off (it has fewer pixels than its header says)";
+}
+
 std::string fault_of(std::string_view bytes) {
+  if (bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6") return netpbm_fault(bytes);
   if (bytes.substr(0, 8) == png_signature) return png_fault(bytes);
   if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_fault(bytes);
   return "";

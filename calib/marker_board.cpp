@@ -47,6 +47,8 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
   if (corners < least_corners) {
     result.reason = "only " + std::to_string(corners) + " good corners of the " + name +
                     ", at least " + std::to_string(least_corners) + " are needed";
+    if (!result.refused_corners.empty())
+      result.reason += "; not used: " + refused_corners_text(result);
   } else if (!span_plane(result.ids, target_m)) {
     result.reason = "all good corners of the " + name + " lie on one line";
   } else {
@@ -231,7 +233,7 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
       guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
     }
   }
-  refine_corners(grey, std::move(guesses), target_m, CornerKind::any, result);
+  refine_corners(grey, std::move(guesses), target_m, CornerKind::as_most, result);
   judge(target_m, name, result);
 }
 

@@ -141,6 +141,42 @@ bool inside(const cv::Mat& grey, const MarkerCorners& corners) {
   });
 }
 
+/// The corners moved to where the image has them, in windows of a tenth of the marker.
+MarkerCorners settled(const cv::Mat& grey, const MarkerCorners& corners) {
+  double side = 1e9;
+  std::vector<cv::Point2f> points;
+  for (int k = 0; k < 4; ++k) {
+    side = std::min(side, (corners[k] - corners[(k + 1) % 4]).norm());
+    points.emplace_back(float(corners[k].x()), float(corners[k].y()));
+  }
+  const int half = std::clamp(static_cast<int>(0.1 * side), 2, 8);
+  cv::cornerSubPix(grey, points, {half, half}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 30, 1e-2});
+  MarkerCorners moved;
+  for (int k = 0; k < 4; ++k) moved[k] = {points[k].x, points[k].y};
+  return moved;
+}
+
+/// Marker `id` where the nearest few, or more, of those seen put it, if its pattern stands there.
+std::optional<SeenMarker> read_at_prediction(const cv::Mat& grey,
+                                             const cv::aruco::Dictionary& dictionary,
+                                             const MarkerLayout& layout,
+                                             const SeenMarkers& seen,
+                                             int id) {
+  for (const std::size_t count : {3u, 6u}) {
+    const auto H = homography_near(seen.markers, layout, centre(layout.corners_m[id]), count,
+                                   2.3 * layout.pitch_m);
+    if (!H) return std::nullopt;
+    SeenMarker marker{id, {}};
+    for (int k = 0; k < 4; ++k) marker.corners_px[k] = map_point(*H, layout.corners_m[id][k]);
+    for (int attempt = 0; attempt < 2 && inside(grey, marker.corners_px); ++attempt) {
+      if (reads_as(grey, dictionary, marker, seen.border_bits)) return marker;
+      marker.corners_px = settled(grey, marker.corners_px);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 MarkerLayout layout_of(const CharucoBoard& board) {
@@ -224,14 +260,9 @@ void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, SeenMar
     grown = false;
     for (int id = 0; id < static_cast<int>(have.size()); ++id) {
       if (have[id]) continue;
-      const auto H = homography_near(seen.markers, layout, centre(layout.corners_m[id]), 6,
-                                     2.3 * layout.pitch_m);
-      if (!H) continue;
-      SeenMarker marker{id, {}};
-      for (int k = 0; k < 4; ++k) marker.corners_px[k] = map_point(*H, layout.corners_m[id][k]);
-      if (!inside(grey, marker.corners_px)) continue;
-      if (!reads_as(grey, *dictionary, marker, seen.border_bits)) continue;
-      seen.markers.push_back(marker);
+      const auto marker = read_at_prediction(grey, *dictionary, layout, seen, id);
+      if (!marker) continue;
+      seen.markers.push_back(*marker);
       have[id] = grown = true;
     }
   }

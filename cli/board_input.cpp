@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/board_input.h"
 
-#include <map>
-
 #include "calib/error.h"
 #include "calib/kalibr_target.h"
 #include "calib/observations_file.h"
@@ -119,17 +117,6 @@ BoardTarget target_of(const BoardInput& input) {
   }
   throw Error("--board", "\"" + kind + "\" is no kind of board",
               "write 9x6, charuco:8x6 or apriltag:6x6");
-}
-
-std::string refused_corners_text(const BoardDetection& image) {
-  std::map<CornerRefusal, int> count;
-  for (const RefusedCorner& corner : image.refused_corners) ++count[corner.why];
-  std::string text;
-  for (const auto& [why, corners] : count) {
-    text += fmt::format("{}{} corner{} {}", text.empty() ? "" : ", ", corners,
-                        corners == 1 ? "" : "s", text_of(why));
-  }
-  return text;
 }
 
 BoardObservations load(const BoardInput& input, Session& session) {

@@ -38,9 +38,6 @@ std::vector<std::string> image_patterns(const BoardInput& input);
 /// The board. Throws Error where it is not given in full.
 BoardTarget target_of(const BoardInput& input);
 
-/// Its corners that were seen and not used, as "3 corners at the image's border, 1 …".
-std::string refused_corners_text(const BoardDetection& image);
-
 /// Reads or detects the corners; images without a board are warned of.
 BoardObservations load(const BoardInput& input, Session& session);
 

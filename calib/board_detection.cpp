@@ -64,6 +64,22 @@ void add_detection(const BoardDetection& found, ImageDetections& result) {
   result.used.push_back(found);
 }
 
+void check_found(const ImageDetections& found, const std::string& place, const std::string& name) {
+  const auto& refused = found.refused;
+  const auto bigger = std::count_if(refused.begin(), refused.end(),
+                                    [](const BoardDetection& image) { return image.goes_on; });
+  if (bigger > static_cast<long>(found.used.size())) {
+    throw Error(place,
+                "in " + std::to_string(bigger) + " of " +
+                    std::to_string(refused.size() + found.used.size()) +
+                    " images the board seems to have more inner corners than the " + name,
+                "count them again");
+  }
+  if (found.used.empty()) {
+    throw Error(place, "no " + name + " in any image", "of the first: " + refused.front().reason);
+  }
+}
+
 }  // namespace
 
 BoardDetection detect_board(const std::filesystem::path& image, const BoardTarget& target) {
@@ -109,10 +125,7 @@ ImageDetections detect_images(const std::vector<std::string>& patterns, const Bo
       add_detection(found, result);
     }
   }
-  if (result.observations.views.empty()) {
-    throw Error(patterns.front(), "no " + name_of(target) + " in any image",
-                "of the first: " + result.refused.front().reason);
-  }
+  check_found(result, patterns.front(), name_of(target));
   check_and_sort(result.observations);
   return result;
 }

@@ -35,6 +35,7 @@ struct BoardDetection {
   std::vector<Eigen::Vector2d> corners_px;
   std::vector<RefusedCorner> refused_corners;  ///< seen, not used
   std::string reason;                          ///< why there is no board, where there is none
+  bool goes_on = false;                        ///< the board has more corners than asked for
   int camera = 0;                              ///< index of the pattern it came by
 };
 
@@ -68,8 +69,8 @@ struct ImageDetections {
 
 /// Observations from the images of one or more cameras, one pattern a camera: images of the same
 /// number are one frame. Frames whose board was found by some cameras only count for those. Throws
-/// Error where a camera has no frame number in common with those before it, sizes disagree, or no
-/// board is found.
+/// Error where a camera has no frame number in common with those before it, sizes disagree, no
+/// board is found, or more images show a board of more corners than of those asked for.
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target);
 
 /// A corners file of all the images, with a line of dashes for each that was refused.

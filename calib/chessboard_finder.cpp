@@ -113,7 +113,7 @@ bool goes_on(const cv::Mat& grey, const CornerGrid& grid) {
       ++seen;
       right += (*value > middle) == (colour[(piece.column + piece.row + 4) % 2] > middle);
     }
-    return seen >= 3 && right >= 0.9 * seen;  // a plain margin gets two thirds right at most
+    return seen >= 3 && right >= 0.8 * seen;  // a plain margin gets two thirds right at most
   };
   const auto sides = pieces_beyond(grid);
   return std::any_of(sides.begin(), sides.end(), follow);
@@ -190,18 +190,22 @@ std::string bigger(const Chessboard& board) {
 }
 
 /// Why no board of this size was found, by what is there instead.
-std::string fault_of(const cv::Mat& grey, const Chessboard& board) {
+std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
   std::string reason = "no " + size_text(board.columns, board.rows) + " board found";
   if (const auto grid = find_any_grid(grey)) {
     const auto [least, most] = std::minmax(grid->columns, grid->rows);
     const auto [short_side, long_side] = std::minmax(board.columns, board.rows);
     const std::string seen = size_text(grid->columns, grid->rows);
     if (least >= short_side && most >= long_side) {
+      result.goes_on = true;
       return reason + "; " + bigger(board) + ": " + seen + " are seen";
     }
-    reason += "; only " + seen + " of its corners can be followed, " +
-              (cut_by_border(grey, *grid) ? "the image's border cuts the board off"
-                                          : "something covers the others, or the board has fewer");
+    reason += "; only " + seen + " of its corners can be followed";
+    if (grid->columns * grid->rows > 0.4 * board.columns * board.rows) {  // surely the board's own
+      reason += cut_by_border(grey, *grid)
+                    ? ", the image's border cuts the board off"
+                    : ", something covers the others, or the board has fewer";
+    }
     const double spacing = smallest_spacing(*grid);
     if (spacing < 10) reason += ", and they are only " + std::to_string(int(spacing)) + " px apart";
   }
@@ -214,10 +218,11 @@ std::string fault_of(const cv::Mat& grey, const Chessboard& board) {
 void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
   CornerGrid grid{board.columns, board.rows, {}};
   if (!find_corners(grey, grid)) {
-    result.reason = fault_of(grey, board);
+    result.reason = fault_of(grey, board, result);
     return;
   }
   if (goes_on(grey, grid)) {
+    result.goes_on = true;
     result.reason = bigger(board);
     return;
   }
@@ -228,13 +233,18 @@ void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetect
     guesses.push_back({static_cast<int>(i), {grid.corners[i].x, grid.corners[i].y}, half});
   }
   refine_corners(grey, std::move(guesses), target_points(board), CornerKind::crossing, result);
-  if (2 * result.ids.size() < grid.corners.size()) {
-    result.ids.clear();
-    result.corners_px.clear();
-    const std::string fault = image_fault(grey);
-    result.reason = "more than half of its corners are refused: " + refused_corners_text(result) +
-                    (fault.empty() ? "" : "; " + fault);
-  }
+  const auto astray = std::count_if(
+      result.refused_corners.begin(), result.refused_corners.end(),
+      [](const RefusedCorner& corner) { return corner.why != CornerRefusal::at_border; });
+  // The finders find whole boards only: several corners that are none are a board of another size.
+  const bool wrong = 10 * astray > static_cast<long>(grid.corners.size());
+  if (!wrong && 2 * result.ids.size() >= grid.corners.size()) return;
+  const std::string fault = image_fault(grey);
+  result.reason = "a " + size_text(board.columns, board.rows) +
+                  " board does not fit: " + refused_corners_text(result) +
+                  (fault.empty() ? "" : "; " + fault);
+  result.ids.clear();
+  result.corners_px.clear();
 }
 
 }  // namespace vernier

@@ -97,7 +97,7 @@ double strangeness(const std::vector<CornerGuess>& corners,
     apart += (to[k] - corners[index].pixel_px).norm() / static_cast<double>(count);
   }
   const double deviation = std::sqrt(squares / static_cast<double>(count));
-  const double tolerable = std::max({1.0, 0.02 * apart, 6 * deviation});
+  const double tolerable = std::max({0.8, 0.01 * apart, 6 * deviation});
   return (map_point(*H, own) - corners[index].pixel_px).norm() / tolerable;
 }
 

@@ -238,6 +238,22 @@ TEST_F(RenderedBoards, WrongBoardsAreRefusedWithARemedy) {
   EXPECT_EQ(detect(tags, from_top).ids.size(), 120u);
 }
 
+TEST_F(RenderedBoards, BoardOfMoreCornersThanSaidIsNoResult) {
+  const cv::Mat chess = photograph(draw(chessboard), usual_camera(chessboard, 0.4));
+  save(chess, "left01.png");
+  save(chess, "left02.png");
+  try {
+    detect_images({(folder_ / "left*.png").string()}, Chessboard{8, 6});
+    FAIL() << "no Error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("in 2 of 2 images the board seems to have more inner corners than the 8x6 "
+                        "board; count them again"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(RenderedBoards, ReasonsAreMeasured) {
   const BoardCamera camera = usual_camera(chessboard, 0.4);
   const cv::Mat sharp = photograph(draw(chessboard), camera);

@@ -88,7 +88,7 @@ void run(const Options& options, Session& session) {
 void add_calibrate(CLI::App& app, Session& session) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      add_verb(app, session, "calibrate", "calibrate a rig from images or corners of a chessboard",
+      add_verb(app, session, "calibrate", "calibrate a rig from images or corners of a board",
                "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
                "--square-m 0.025 -o rig.json");
   add_board_options(verb, o->board);

@@ -136,11 +136,77 @@ class RealPairs(Case):
     def test_wrong_board_size(self):
         self.complains('calibrate', '--left', IMAGES / 'left0[12].jpg', '--right',
                        IMAGES / 'right0[12].jpg', '--board', '11x8', '--square-m', '0.025', '-o',
-                       self.folder / 'rig.json', of='no board of 11x8',
+                       self.folder / 'rig.json', of='no 11x8 board in any image',
                        leaves=[self.folder / 'rig.json'])
 
 
+    def test_smaller_board_than_there_is(self):
+        for size in ('8x6', '9x5'):
+            self.complains('detect', '--left', IMAGES / 'left0[1-4].jpg', '--board', size, '-o',
+                           self.folder / 'c.vnl', of='more inner corners than the ' + size,
+                           leaves=[self.folder / 'c.vnl'])
+
+    def test_one_camera_and_cameras_by_name(self):
+        done = self.works('detect', '--left', IMAGES / 'left0[1-4].jpg', '--board', '9x6', '-o',
+                          self.folder / 'c.vnl', '--json')
+        found = json.loads(done.stdout)
+        self.assertEqual((found['boards'], found['frames'], found['refused']), (4, 4, []))
+        self.assertEqual([(u['camera'], u['corners']) for u in found['used']], [(0, 54)] * 4)
+        pair = self.works('detect', '--left', IMAGES / 'left0[1-4].jpg', '--right',
+                          IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'a.vnl')
+        self.assertIn('8 boards found in 4 frames', pair.stdout)
+        self.works('detect', '--camera', IMAGES / 'left0[1-4].jpg', '--camera',
+                   IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'b.vnl')
+        self.assertEqual((self.folder / 'a.vnl').read_text(), (self.folder / 'b.vnl').read_text())
+        done = self.works('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--board', '9x6',
+                          '--square-m', '0.025', '-o', self.folder / 'one.json', '--json')
+        self.assertEqual(len(json.loads(done.stdout)['parameters']), 5)
+
+    def test_a_truncated_image(self):
+        for name in ('left01.jpg', 'left02.jpg'):
+            data = (IMAGES / name).read_bytes()
+            (self.folder / name).write_bytes(data if name == 'left01.jpg' else data[:9000])
+        self.complains('detect', '--left', self.folder / 'left*.jpg', '--board', '9x6', '-o',
+                       self.folder / 'c.vnl', of='left02.jpg: is cut off',
+                       leaves=[self.folder / 'c.vnl'])
+
+    def test_kalibrs_checkerboard_file(self):
+        target = self.folder / 'target.yaml'
+        target.write_text("target_type: 'checkerboard'\ntargetCols: 9   # inner corners\n"
+                          'targetRows: 6\nrowSpacingMeters: 0.025\ncolSpacingMeters: 0.025\n')
+        self.works('detect', '--left', IMAGES / 'left0[12].jpg', '--target', target, '-o',
+                   self.folder / 'c.vnl')
+        target.write_text('target_type: circlegrid\n')
+        self.complains('detect', '--left', IMAGES / 'left0[12].jpg', '--target', target, '-o',
+                       self.folder / 'd.vnl', of='target.yaml:1: a circlegrid is not detected')
+
+    def test_levels_of_a_corners_file(self):
+        self.works('detect', '--left', IMAGES / 'left[0-9]*.jpg', '--board', '9x6', '-o',
+                   self.folder / 'c.vnl')
+        lines = (self.folder / 'c.vnl').read_text().splitlines()
+        lines[1] = lines[1][:-1] + '1'
+        lines[2] = lines[2][:-1] + '-'
+        (self.folder / 'c.vnl').write_text('\n'.join(lines))
+        done = self.works('calibrate', '--corners', self.folder / 'c.vnl', '--board', '9x6',
+                          '--square-m', '0.025', '--size', '640x480', '-o', self.folder / 'r.json')
+        self.assertIn('1 corners of level above 0', done.stderr)
+        view = json.loads((self.folder / 'r.json').read_text())['evidence']['observations'][0]
+        self.assertEqual(view['ids'], [0] + list(range(2, 54)))
+
+
 class BadInput(Case):
+    def test_boards_that_are_not_given(self):
+        for board, of in (('', 'the board is not given'), ('hexagons:3x3', 'no kind of board'),
+                          ('charuco:8x6', '--square-m is missing'), ('9by6', 'two whole numbers')):
+            self.complains('detect', '--left', 'left*.png', '--board', board, '-o', 'c.vnl', of=of)
+        self.complains('detect', '--left', 'left*.png', '--board', 'charuco:8x6', '--square-m',
+                       '0.03', '--marker-m', '0.02', '--dictionary', '4x5', '-o', 'c.vnl',
+                       of='no file matches')
+        self.complains('detect', '--right', 'right*.png', '--board', '9x6', '-o', 'c.vnl',
+                       of='--left is missing')
+        self.complains('detect', '--left', 'a*.png', '--camera', 'b*.png', '--board', '9x6', '-o',
+                       'c.vnl', of='--camera stands beside')
+
     def test_missing_images(self):
         self.complains('calibrate', '--left', self.folder / 'l*.png', '--right',
                        self.folder / 'r*.png', '--board', '9x6', '--square-m', '0.025', '-o',

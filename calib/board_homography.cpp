@@ -119,13 +119,4 @@ std::optional<double> focal_length_px(const std::vector<BoardHomography>& views,
   return f;
 }
 
-Eigen::Vector3d board_normal(const BoardHomography& view,
-                             double focal_px,
-                             const Eigen::Vector2i& size_px) {
-  Eigen::Matrix3d H = centre_at_origin(view.H, size_px);
-  H.topRows<2>() /= focal_px;
-  const Eigen::Vector3d normal = H.col(0).cross(H.col(1)).normalized();
-  return normal.z() < 0 ? Eigen::Vector3d(-normal) : normal;
-}
-
 }  // namespace vernier

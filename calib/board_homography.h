@@ -37,10 +37,4 @@ BoardHomography board_homography(const std::vector<Eigen::Vector3d>& target_m,
 std::optional<double> focal_length_px(const std::vector<BoardHomography>& views,
                                       const Eigen::Vector2i& size_px);
 
-/// Unit normal of the board in the camera's frame, pointing away from the camera, for a camera of
-/// this focal length without distortion.
-Eigen::Vector3d board_normal(const BoardHomography& view,
-                             double focal_px,
-                             const Eigen::Vector2i& size_px);
-
 }  // namespace vernier

@@ -180,6 +180,7 @@ InitialCamera initial_camera(const BoardObservations& observations,
     homographies.push_back(board_homography(observations.target_m, view));
   }
   if (const auto f = focal_length_px(homographies, size)) consider(*f);
+  consider(0.8 * size.maxCoeff());  // a common lens: noise and distortion may mislead the first
   if (best.typical_rms_px < good_px) return best;
   for (const double widths : {0.5, 0.7, 0.35, 1.0, 0.25, 1.4, 2.0, 3.0}) {
     consider(widths * size[0]);

@@ -17,13 +17,13 @@ struct InitialCamera {
 };
 
 /// A start for one camera from its views of a flat target alone. The focal length comes from the
-/// homographies (calib/board_homography.h) with the centre in the middle of the image; poses follow
-/// by PnP; then f and k1, with ax and k2, then all parameters are improved by Gauss and Newton's
-/// method on the typical views (residual below five times that of most), the poses following. A
-/// start that leaves more than a few pixels (a wide-angle or fisheye lens, whose views are no
-/// homographies) is made again from focal lengths of 0.25 to 3 image widths, and the best is kept.
-/// Of `views` all must be the camera's own. Throws Error (`place`) with fewer than three views, or
-/// for a target that is not flat.
+/// homographies (calib/board_homography.h) with the centre in the middle of the image, and in a
+/// second start is 0.8 image widths; poses follow by PnP; then f and k1, with ax and k2, then all
+/// parameters are improved by Gauss and Newton's method on the typical views (residual below five
+/// times that of most), the poses following. Where the better start leaves more than 0.2 % of the
+/// image (a wide-angle or fisheye lens, whose views are no homographies), starts from 0.25 to 3
+/// image widths are tried. Of `views` all must be the camera's own. Throws Error with fewer than
+/// three views (`place`), or for a target that is not flat.
 InitialCamera initial_camera(const BoardObservations& observations,
                              const std::vector<BoardView>& views,
                              const CameraModel& model,

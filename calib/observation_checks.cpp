@@ -19,7 +19,6 @@ namespace {
 constexpr double same_image_px = 1e-3;    // of one camera: a copy
 constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps compressed again
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
-constexpr double parallel_rad = 0.07;     // 4 degrees
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
 
 /// Largest and root mean square difference of the corners two views share.
@@ -158,25 +157,6 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
   }
 }
 
-void check_all_tilts(const BoardObservations& observations,
-                     const std::vector<BoardHomography>& homographies) {
-  for (int c = 0; c < static_cast<int>(observations.size_px.size()); ++c) {
-    const Eigen::Vector2i size = observations.size_px[c];
-    std::vector<BoardHomography> views;
-    for (std::size_t i = 0; i < homographies.size(); ++i) {
-      if (observations.views[i].camera == c) views.push_back(homographies[i]);
-    }
-    if (views.size() < 3) continue;  // the start complains of their number
-    // without tilts no focal length: parallel boards look parallel whatever it is
-    const double widest = size.maxCoeff();
-    const double f =
-        std::clamp(focal_length_px(views, size).value_or(widest), 0.3 * widest, 3 * widest);
-    std::vector<Eigen::Vector3d> normals;
-    for (const BoardHomography& view : views) normals.push_back(board_normal(view, f, size));
-    check_tilts(normals, fmt::format("camera {}", c));
-  }
-}
-
 void check_sizes(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
   for (int c = 0; c < static_cast<int>(observations.size_px.size()); ++c) {
     Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
@@ -233,48 +213,12 @@ void ObservationDiagnosis::add(const ObservationDiagnosis& more) {
   doubts.insert(doubts.end(), more.doubts.begin(), more.doubts.end());
 }
 
-int distinct_tilts(const std::vector<Eigen::Vector3d>& normals, double apart_rad) {
-  std::vector<Eigen::Vector3d> counted;
-  for (const Eigen::Vector3d& normal : normals) {
-    const bool is_new = std::all_of(counted.begin(), counted.end(), [&](const auto& other) {
-      return std::acos(std::clamp(normal.dot(other), -1.0, 1.0)) >= apart_rad;
-    });
-    if (is_new) counted.push_back(normal);
-  }
-  return static_cast<int>(counted.size());
-}
-
-void check_tilts(const std::vector<Eigen::Vector3d>& normals, const std::string& place) {
-  constexpr double degrees = 180 / 3.14159265358979323846;
-  const std::string cure = "tilt the board by 20 to 45 degrees about both axes in several views";
-  double largest = 0;
-  for (const Eigen::Vector3d& normal : normals) {
-    largest = std::max(largest, std::acos(std::clamp(normal.z(), -1.0, 1.0)));
-  }
-  if (largest < parallel_rad) {
-    throw Error(place,
-                fmt::format("every board is parallel to the image (largest tilt {:.1f} degrees), "
-                            "which leaves the focal length undetermined",
-                            largest * degrees),
-                cure);
-  }
-  const int tilts = distinct_tilts(normals);
-  if (tilts < 3) {
-    throw Error(place,
-                fmt::format("its {} views show the board at only {} distinct tilt{}, and the "
-                            "intrinsics need three",
-                            normals.size(), tilts, tilts == 1 ? "" : "s"),
-                cure);
-  }
-}
-
 std::string place_of(const BoardView& view) {
   return fmt::format("frame {}, camera {}", view.frame, view.camera) +
          (view.image.empty() ? "" : " (" + view.image + ")");
 }
 
-ObservationDiagnosis check_observations(const BoardObservations& observations,
-                                        const ObservationCheckOptions& options) {
+ObservationDiagnosis check_observations(const BoardObservations& observations) {
   ObservationDiagnosis diagnosis;
   if (observations.views.empty()) {
     throw Error("observations", "there is no view of the board", "give some");
@@ -287,7 +231,6 @@ ObservationDiagnosis check_observations(const BoardObservations& observations,
   check_grids(observations, homographies);
   check_mirrored(observations, homographies, diagnosis);
   check_repeats(observations, diagnosis);
-  if (options.tilts) check_all_tilts(observations, homographies);
   check_sizes(observations, diagnosis);
   count_unpaired(observations, diagnosis);
   return diagnosis;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/tilt_check.h"
 #include "calib/view_pair.h"
 
 namespace vernier {
@@ -200,20 +201,6 @@ int best_partner(const BoardObservations& observations, int camera) {
   return static_cast<int>(std::max_element(shared.begin(), shared.end()) - shared.begin());
 }
 
-void check_tilts_of_cameras(const BoardObservations& observations, const BoardState& start) {
-  std::vector<std::vector<Eigen::Vector3d>> normals(start.rig.cameras.size());
-  for (const BoardView& view : observations.views) {
-    const auto f = std::lower_bound(start.frames.begin(), start.frames.end(), view.frame);
-    const Pose T_camera_board =
-        start.rig.T_camera_first[view.camera] * start.T_first_board[f - start.frames.begin()];
-    const Eigen::Vector3d normal = T_camera_board.R.col(2);
-    normals[view.camera].push_back(normal.z() < 0 ? Eigen::Vector3d(-normal) : normal);
-  }
-  for (std::size_t c = 0; c < normals.size(); ++c) {
-    check_tilts(normals[c], fmt::format("camera {}", c));
-  }
-}
-
 /// Of a pair: is the second camera where a right one stands?
 void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   if (start.rig.cameras.size() != 2) return;
@@ -240,12 +227,12 @@ void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
 
 ObservationDiagnosis check_views(const BoardObservations& observations,
                                  const BoardState& start,
-                                 const ObservationCheckOptions& options) {
+                                 const ViewCheckOptions& options) {
   ObservationDiagnosis diagnosis;
   for (int c = 1; c < static_cast<int>(start.rig.cameras.size()); ++c) {
     PairCheck(observations, start.rig, best_partner(observations, c), c).run(diagnosis);
   }
-  if (options.tilts) check_tilts_of_cameras(observations, start);
+  if (options.tilts) diagnosis.add(check_tilts(observations, start));
   check_baseline(start, diagnosis);
   return diagnosis;
 }

@@ -18,6 +18,7 @@ namespace vernier {
 namespace {
 
 constexpr double parallel_rad = 0.07, undetermined = 0.2, doubtful = 0.05;
+constexpr double nearly_parallel_rad = 0.15;  // with too few distinct tilts
 constexpr const char* cure = "tilt the board by 20 to 45 degrees about both axes in several views";
 
 double tilt_of(const Eigen::Vector3d& normal) {
@@ -99,10 +100,12 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
     double largest = 0;
     for (const auto& normal : alone.normals) largest = std::max(largest, tilt_of(normal));
     const int tilts = distinct_tilts(alone.normals);
-    if (largest / exaggeration < parallel_rad && (tilts < 3 || known_to > undetermined)) {
+    largest /= exaggeration;
+    if ((tilts < 3 && largest < nearly_parallel_rad) ||
+        (known_to > undetermined && largest < parallel_rad)) {
       throw Error(place,
-                  "every board is parallel to the image, which leaves the focal length "
-                  "undetermined",
+                  "every board is parallel to the image, or nearly so, which leaves the focal "
+                  "length undetermined",
                   cure);
     }
     if (tilts < 3) {

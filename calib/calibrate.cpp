@@ -131,11 +131,12 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
                 "give one model, or one a camera");
   }
   Solution s;
-  s.said = check_observations(observations);
+  if (options.check_input) s.said = check_observations(observations);
   s.state = initial_state(observations, models);
-  s.said.add(
-      check_views(observations, s.state,
-                  {.tilts = options.held.empty() && options.known.empty() && !options.prior}));
+  if (options.check_input) {
+    const bool free = options.held.empty() && options.known.empty() && !options.prior;
+    s.said.add(check_views(observations, s.state, {.tilts = free}));
+  }
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
@@ -161,6 +162,20 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   return s;
 }
 
+/// Why residuals are larger than any corner noise, as far as that can be found.
+std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
+  std::string words = fmt::format("residuals of {:.2f} px are no corner noise", rms_px);
+  std::vector<ResidualFinding> findings;
+  if (look_for_causes) {
+    findings = diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
+  }
+  if (findings.empty()) words += ": corners are wrong, or the board or the rig moved or bent";
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    words += (i == 0 ? ": " : ". Further, ") + findings[i].text;
+  }
+  return words;
+}
+
 CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& options) {
   CalibrationSummary summary;
   summary.views = static_cast<int>(s.state.frames.size());
@@ -176,14 +191,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   summary.warnings = s.said.warnings;
   summary.doubts = s.said.doubts;
   if (summary.rms_px > largest_corner_noise_px) {
-    std::string words = fmt::format("residuals of {:.2f} px are no corner noise", summary.rms_px);
-    const auto findings =
-        diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
-    if (findings.empty()) words += ": corners are wrong, or the board or the rig moved or bent";
-    for (std::size_t i = 0; i < findings.size(); ++i) {
-      words += (i == 0 ? ": " : ". Further, ") + findings[i].text;
-    }
-    summary.doubts.push_back(words);
+    summary.doubts.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
   }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "calib/board_warp.h"
 #include "calib/error.h"
 #include "calib/model_nesting.h"
 #include "calib/observation_checks.h"
@@ -165,8 +166,10 @@ class Diagnosis {
   }
 
   void look_at_time() {
+    BoardObservations warped = observations_;
+    warped.target_m = warped_target(warped.target_m, state_.warp_m);
     for (int second = 1; second < static_cast<int>(state_.rig.cameras.size()); ++second) {
-      const PairConsensus pair(observations_, state_.rig, 0, second);
+      const PairConsensus pair(warped, state_.rig, 0, second);
       Rig rig{{state_.rig.cameras[0], state_.rig.cameras[second]},
               {Pose{}, state_.rig.T_camera_first[second]}};
       std::vector<std::string> apart;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "calib/board_pose.h"
 #include "calib/error.h"
 #include "calib/tilt_check.h"
 #include "calib/view_pair.h"
@@ -201,6 +203,25 @@ int best_partner(const BoardObservations& observations, int camera) {
   return static_cast<int>(std::max_element(shared.begin(), shared.end()) - shared.begin());
 }
 
+/// Whether one board pose a frame explains all its images to what a rough start may leave: then no
+/// pair of cameras need be looked at.
+bool all_fit(const BoardObservations& observations, const BoardState& start) {
+  int longest = 0;
+  for (const Camera& camera : start.rig.cameras) {
+    longest = std::max(longest, camera.size_px.maxCoeff());
+  }
+  auto begin = observations.views.begin();
+  for (std::size_t f = 0; f < start.frames.size(); ++f) {
+    auto end = begin;
+    while (end != observations.views.end() && end->frame == start.frames[f]) ++end;
+    const BoardPoseFit fit = fit_board_pose(observations.target_m, std::span(begin, end), start.rig,
+                                            start.T_first_board[f], 5);
+    if (!(fit.rms_px <= sound_share * longest)) return false;
+    begin = end;
+  }
+  return true;
+}
+
 /// Of a pair: is the second camera where a right one stands?
 void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   if (start.rig.cameras.size() != 2) return;
@@ -229,7 +250,8 @@ ObservationDiagnosis check_views(const BoardObservations& observations,
                                  const BoardState& start,
                                  const ViewCheckOptions& options) {
   ObservationDiagnosis diagnosis;
-  for (int c = 1; c < static_cast<int>(start.rig.cameras.size()); ++c) {
+  const bool sound = all_fit(observations, start);
+  for (int c = 1; !sound && c < static_cast<int>(start.rig.cameras.size()); ++c) {
     PairCheck(observations, start.rig, best_partner(observations, c), c).run(diagnosis);
   }
   if (options.tilts) diagnosis.add(check_tilts(observations, start));

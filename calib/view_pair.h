@@ -10,6 +10,9 @@
 
 namespace vernier {
 
+/// Residual, as a share of the image's longer side, that a sound frame may leave at a rough start.
+inline constexpr double sound_share = 0.006;
+
 /// How the two images of a frame may have to be read to fit the others.
 enum class PairReading {
   as_is,

@@ -203,6 +203,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
     }
   }
   summary.warnings = parse_texts(node, "warnings");
+  summary.doubts = parse_texts(node, "doubts");
   return summary;
 }
 
@@ -225,6 +226,7 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
                                 {"residual_px", o.residual_px}});  // null where not a number
   }
   json["warnings"] = s.warnings;
+  if (!s.doubts.empty()) json["doubts"] = s.doubts;
   return json;
 }
 

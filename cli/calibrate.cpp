@@ -54,12 +54,7 @@ std::string comparison_table(const ModelComparison& comparison) {
 void judge(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
-  if (summary.rms_px > 1) {
-    session.doubt(fmt::format(
-        "residuals of {:.2f} px are no corner noise: the board is not flat, corners are wrong, or "
-        "the lens needs another model",
-        summary.rms_px));
-  }
+  for (const std::string& doubt : summary.doubts) session.doubt(doubt);
 }
 
 void run(const Options& options, Session& session) {

@@ -5,81 +5,24 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "calib/chessboard_finder.h"
 #include "calib/error.h"
+#include "calib/grey_image.h"
+#include "calib/marker_board.h"
 #include "calib/observations_file.h"
 
 namespace vernier {
 namespace {
-
-/// Mean grey value of the middle of a square given by its corners.
-double square_brightness(const cv::Mat& grey,
-                         const cv::Point2f& a,
-                         const cv::Point2f& b,
-                         const cv::Point2f& c,
-                         const cv::Point2f& d) {
-  double sum = 0;
-  int count = 0;
-  for (double s = 0.3; s < 0.75; s += 0.1) {
-    for (double t = 0.3; t < 0.75; t += 0.1) {
-      const cv::Point2d p = cv::Point2d(a) * (1 - s) * (1 - t) + cv::Point2d(b) * s * (1 - t) +
-                            cv::Point2d(c) * s * t + cv::Point2d(d) * (1 - s) * t;
-      const int x = std::clamp(cvRound(p.x), 0, grey.cols - 1);
-      const int y = std::clamp(cvRound(p.y), 0, grey.rows - 1);
-      sum += grey.at<unsigned char>(y, x);
-      ++count;
-    }
-  }
-  return sum / count;
-}
-
-/// Makes the first square dark by a half turn where that changes its colour.
-void make_order_unique(const cv::Mat& grey,
-                       const Chessboard& board,
-                       std::vector<cv::Point2f>& corners) {
-  if ((board.columns + board.rows) % 2 == 0) return;
-  const int n = board.columns;
-  const double first = square_brightness(grey, corners[0], corners[1], corners[n + 1], corners[n]);
-  const double beside =
-      square_brightness(grey, corners[1], corners[2], corners[n + 2], corners[n + 1]);
-  if (first > beside) std::reverse(corners.begin(), corners.end());
-}
-
-double smallest_spacing(const std::vector<cv::Point2f>& corners, const Chessboard& board) {
-  double least = 1e9;
-  for (int r = 0; r < board.rows; ++r) {
-    for (int c = 0; c < board.columns; ++c) {
-      const int i = r * board.columns + c;
-      if (c + 1 < board.columns) least = std::min(least, cv::norm(corners[i] - corners[i + 1]));
-      if (r + 1 < board.rows) {
-        least = std::min(least, cv::norm(corners[i] - corners[i + board.columns]));
-      }
-    }
-  }
-  return least;
-}
-
-bool find_corners(const cv::Mat& grey, const Chessboard& board, std::vector<cv::Point2f>& corners) {
-  const cv::Size size(board.columns, board.rows);
-  if (cv::findChessboardCorners(grey, size, corners,
-                                cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
-    return true;
-  }
-  return cv::findChessboardCornersSB(grey, size, corners,
-                                     cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
-}
 
 BoardView view_of(const BoardDetection& found) {
   BoardView view;
   view.frame = parse_image_name(found.image).frame;
   view.camera = found.camera;
   view.image = found.image.string();  // with its folder, which may be what tells the cameras apart
+  view.ids = found.ids;
   view.pixels_px = found.corners_px;
-  for (std::size_t i = 0; i < found.corners_px.size(); ++i) view.ids.push_back(static_cast<int>(i));
   return view;
 }
 
@@ -113,37 +56,45 @@ void add_detection(const BoardDetection& found, ImageDetections& result) {
                     std::to_string(size[0]) + "x" + std::to_string(size[1]) + ")",
                 "give images of one size a camera");
   }
-  if (found.corners_px.empty()) {
+  if (found.ids.empty()) {
     result.refused.push_back(found);
     return;
   }
   result.observations.views.push_back(view_of(found));
+  result.used.push_back(found);
+}
+
+void check_found(const ImageDetections& found, const std::string& place, const std::string& name) {
+  const auto& refused = found.refused;
+  const auto bigger = std::count_if(refused.begin(), refused.end(),
+                                    [](const BoardDetection& image) { return image.goes_on; });
+  if (bigger > static_cast<long>(found.used.size())) {
+    throw Error(place,
+                "in " + std::to_string(bigger) + " of " +
+                    std::to_string(refused.size() + found.used.size()) +
+                    " images the board seems to have more inner corners than the " + name,
+                "count them again");
+  }
+  if (found.used.empty()) {
+    throw Error(place, "no " + name + " in any image", "of the first: " + refused.front().reason);
+  }
 }
 
 }  // namespace
 
-BoardDetection detect_board(const std::filesystem::path& image, const Chessboard& board) {
-  if (board.columns < 3 || board.rows < 3) {
-    throw Error("board " + std::to_string(board.columns) + "x" + std::to_string(board.rows),
-                "fewer than 3 inner corners along a side",
-                "count the inner corners, not the squares");
+BoardDetection detect_board(const std::filesystem::path& image, const BoardTarget& target) {
+  check_target(target);
+  const cv::Mat grey = read_grey_image(image);
+  BoardDetection result;
+  result.image = image;
+  result.size_px = {grey.cols, grey.rows};
+  if (const auto* board = std::get_if<Chessboard>(&target)) {
+    detect_chessboard(grey, *board, result);
+  } else if (const auto* charuco = std::get_if<CharucoBoard>(&target)) {
+    detect_marker_board(grey, *charuco, result);
+  } else {
+    detect_marker_board(grey, std::get<AprilTagGrid>(target), result);
   }
-  const cv::Mat grey = cv::imread(image.string(), cv::IMREAD_GRAYSCALE);
-  if (grey.empty()) {
-    throw Error(image.string(), "is not an image that can be read", "check the file");
-  }
-  BoardDetection result{image, {grey.cols, grey.rows}, {}, "", 0};
-  std::vector<cv::Point2f> corners;
-  if (!find_corners(grey, board, corners)) {
-    result.reason =
-        "no " + std::to_string(board.columns) + "x" + std::to_string(board.rows) + " board found";
-    return result;
-  }
-  const int half = std::clamp(static_cast<int>(0.35 * smallest_spacing(corners, board)), 2, 11);
-  cv::cornerSubPix(grey, corners, {half, half}, {-1, -1},
-                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-4});
-  make_order_unique(grey, board, corners);
-  for (const cv::Point2f& corner : corners) result.corners_px.emplace_back(corner.x, corner.y);
   return result;
 }
 
@@ -160,36 +111,31 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
   return files;
 }
 
-ImageDetections detect_images(const std::vector<std::string>& patterns, const Chessboard& board) {
+ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target) {
   std::vector<std::vector<std::filesystem::path>> images;
   for (const std::string& pattern : patterns) images.push_back(matching_files(pattern));
   check_frames_meet(images);
   ImageDetections result;
-  result.observations.target_m = target_points(board);
+  result.observations.target_m = target_points(target);
   result.observations.size_px.assign(images.size(), Eigen::Vector2i::Zero());
   for (std::size_t camera = 0; camera < images.size(); ++camera) {
     for (const auto& image : images[camera]) {
-      BoardDetection found = detect_board(image, board);
+      BoardDetection found = detect_board(image, target);
       found.camera = static_cast<int>(camera);
       add_detection(found, result);
     }
   }
-  if (result.observations.views.empty()) {
-    throw Error(patterns.front(),
-                "no board of " + std::to_string(board.columns) + "x" + std::to_string(board.rows) +
-                    " inner corners in any image",
-                "check --board (inner corners, not squares) and look at the images");
-  }
+  check_found(result, patterns.front(), name_of(target));
   check_and_sort(result.observations);
   return result;
 }
 
 void write_corners(const ImageDetections& found,
-                   const Chessboard& board,
+                   const BoardTarget& target,
                    const std::filesystem::path& file) {
   BoardObservations all = found.observations;
   for (const BoardDetection& image : found.refused) all.views.push_back(view_of(image));
-  write_corners(all, board, file);
+  write_corners(all, target, file);
 }
 
 }  // namespace vernier

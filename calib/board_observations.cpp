@@ -43,16 +43,6 @@ void check_view(const BoardView& view, const BoardObservations& observations) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> target_points(const Chessboard& board) {
-  std::vector<Eigen::Vector3d> points;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
-      points.emplace_back(column * board.square_m, row * board.square_m, 0);
-    }
-  }
-  return points;
-}
-
 std::vector<int> frames_of(const BoardObservations& observations) {
   std::vector<int> frames;
   for (const BoardView& view : observations.views) frames.push_back(view.frame);

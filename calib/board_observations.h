@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/board_target.h"
+
 namespace vernier {
-
-/// A chessboard by its inner corners.
-struct Chessboard {
-  int columns = 9;
-  int rows = 6;
-  double square_m = 0.025;
-};
-
-/// Corner positions on the board, row by row, z = 0, first corner at the origin (metres).
-std::vector<Eigen::Vector3d> target_points(const Chessboard& board);
 
 /// What one camera saw of the target in one frame.
 struct BoardView {

@@ -10,13 +10,17 @@
 #include "calib/error.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/model_nesting.h"
+#include "calib/observation_checks.h"
 #include "calib/refined_minimum.h"
+#include "calib/residual_diagnosis.h"
 #include "calib/small_sample_covariance.h"
+#include "calib/view_checks.h"
 
 namespace vernier {
 namespace {
 
-constexpr double frames_per_parameter = 3;  // enough for the clustered covariance as it is
+constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
+constexpr double frames_per_parameter = 3;     // enough for the clustered covariance as it is
 
 /// The covariance to be sampled.
 Covariance honest_covariance(const ReducedNormalEquations& equations,
@@ -36,6 +40,7 @@ struct Solution {
   BoardState state;
   std::vector<CornerOutlier> outliers;
   ReprojectionProblem problem;
+  ObservationDiagnosis said;         // of the observations, before they were solved
   ReducedNormalEquations equations;  // over the free directions, priors included, σ as in problem
   Eigen::MatrixXd free;              // those directions
   std::vector<std::string> names;    // of what is free
@@ -135,7 +140,12 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
                 "give one model, or one a camera");
   }
   Solution s;
+  if (options.check_input) s.said = check_observations(observations);
   s.state = initial_state(observations, models);
+  if (options.check_input) {
+    const bool free = options.held.empty() && options.known.empty() && !options.prior;
+    s.said.add(check_views(observations, s.state, {.tilts = free}));
+  }
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
@@ -161,6 +171,20 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   return s;
 }
 
+/// Why residuals are larger than any corner noise, as far as that can be found.
+std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
+  std::string words = fmt::format("residuals of {:.2f} px are no corner noise", rms_px);
+  std::vector<ResidualFinding> findings;
+  if (look_for_causes) {
+    findings = diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
+  }
+  if (findings.empty()) words += ": corners are wrong, or the board or the rig moved or bent";
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    words += (i == 0 ? ": " : ". Further, ") + findings[i].text;
+  }
+  return words;
+}
+
 CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& options) {
   CalibrationSummary summary;
   summary.views = static_cast<int>(s.state.frames.size());
@@ -173,6 +197,11 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   }
   summary.dof = static_cast<int>(std::lround(dof));
   summary.outliers = s.outliers;
+  summary.warnings = s.said.warnings;
+  summary.doubts = s.said.doubts;
+  if (summary.rms_px > largest_corner_noise_px) {
+    summary.doubts.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
+  }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {
     summary.prior_chi2 += prior_chi2(prior, s.state.rig);
@@ -222,7 +251,9 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
                                                 : honest_covariance(s.equations, s.bound, s.names);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
   estimate.calibration = summary_of(s, options);
-  estimate.calibration->warnings = warnings_of(*estimate.calibration, honest.matrix, s);
+  const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
+  auto& warnings = estimate.calibration->warnings;
+  warnings.insert(warnings.end(), more.begin(), more.end());
   estimate.evidence = CalibrationEvidence{std::move(s.observations), s.state.frames,
                                           s.state.T_first_board, s.state.warp_m};
   return estimate;

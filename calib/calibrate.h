@@ -21,6 +21,7 @@ struct CalibrationOptions {
   std::optional<RigKnowledge> prior;  ///< what another calibration or a datasheet says
   BoardWarp warp = BoardWarp::known;  ///< free: the board's shape is estimated as well
   bool reject_outliers = true;        ///< see calib/outliers.h
+  bool check_input = true;            ///< off: corners are known to be sound (repeated solves)
   /// The corner noise is known to be white (simulated corners): the covariance is the bound.
   bool white_noise = false;
 };

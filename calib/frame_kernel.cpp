@@ -209,19 +209,26 @@ std::vector<CameraPlace> camera_places(const Rig& rig, bool warp) {
   return places;
 }
 
-Eigen::Matrix<double, 6, 1> frame_step(const Lanes* factor, int lane, const Eigen::VectorXd& step) {
-  Eigen::Matrix<double, 6, 1> x;  // -L⁻ᵀ (y + Z step)
-  const Lanes* Z = factor + 27;
-  for (int k = 0; k < 6; ++k) x[k] = factor[21 + k].of[lane];
-  for (Eigen::Index i = 0; i < step.size(); ++i, Z += 6) {
-    for (int k = 0; k < 6; ++k) x[k] += Z[k].of[lane] * step[i];
+void frame_steps(const Lanes* factor, const Eigen::VectorXd& step, Lanes (&twists)[6]) {
+  const auto add = [](const Lanes& a, const Lanes& b, Lanes& sum) {
+    for (int l = 0; l < kernel_lanes; ++l) sum.of[l] += a.of[l] * b.of[l];
+  };
+  for (int k = 0; k < 6; ++k) {
+    Lanes sum = factor[21 + k];
+    for (Eigen::Index i = 0; i < step.size(); ++i) {
+      const Lanes& z = factor[27 + 6 * i + k];
+      for (int l = 0; l < kernel_lanes; ++l) sum.of[l] += z.of[l] * step[i];
+    }
+    for (int l = 0; l < kernel_lanes; ++l) twists[k].of[l] = -sum.of[l];
   }
-  const auto L = [&](int i, int k) { return factor[i * (i + 1) / 2 + k].of[lane]; };
+  const auto L = [&](int i, int k) -> const Lanes& { return factor[i * (i + 1) / 2 + k]; };
   for (int i = 5; i >= 0; --i) {
-    for (int k = i + 1; k < 6; ++k) x[i] -= L(k, i) * x[k];
-    x[i] *= L(i, i);
+    Lanes sum;
+    for (int k = i + 1; k < 6; ++k) add(L(k, i), twists[k], sum);
+    for (int l = 0; l < kernel_lanes; ++l) {
+      twists[i].of[l] = (twists[i].of[l] - sum.of[l]) * L(i, i).of[l];
+    }
   }
-  return -x;
 }
 
 }  // namespace vernier

@@ -58,7 +58,8 @@ void eliminate_frames(const std::vector<CameraPlace>& places,
                       Lanes* factor,
                       ReducedSums& total);
 
-/// The way back: the twist of one lane's board pose for a step of the rig's parameters.
-Eigen::Matrix<double, 6, 1> frame_step(const Lanes* factor, int lane, const Eigen::VectorXd& step);
+/// The way back: the twists of eight board poses, x = -L⁻ᵀ (y + Z step), for a step of the rig's
+/// parameters.
+void frame_steps(const Lanes* factor, const Eigen::VectorXd& step, Lanes (&twists)[6]);
 
 }  // namespace vernier

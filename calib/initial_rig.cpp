@@ -3,100 +3,82 @@
 #include "calib/initial_rig.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
-#include <opencv2/calib3d.hpp>
 #include <optional>
 
 #include "calib/error.h"
+#include "calib/initial_camera.h"
 
 namespace vernier {
 namespace {
 
-struct ViewPoints {
-  std::vector<cv::Point3f> target;
-  std::vector<cv::Point2f> pixels;
-};
+using PoseOfView = std::map<std::pair<int, int>, Pose>;  // T_camera_board by (camera, frame)
 
-ViewPoints points_of(const BoardObservations& observations, const BoardView& view) {
-  ViewPoints points;
-  for (std::size_t i = 0; i < view.ids.size(); ++i) {
-    const Eigen::Vector3d& X = observations.target_m[view.ids[i]];
-    points.target.emplace_back(float(X.x()), float(X.y()), float(X.z()));
-    points.pixels.emplace_back(float(view.pixels_px[i].x()), float(view.pixels_px[i].y()));
-  }
-  return points;
+double middle(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
 }
 
-/// Focal length and centre without distortion.
-Camera initial_camera(const BoardObservations& observations, int index, const CameraModel& model) {
-  std::vector<std::vector<cv::Point3f>> targets;
-  std::vector<std::vector<cv::Point2f>> pixels;
-  for (const BoardView& view : observations.views) {
-    if (view.camera != index) continue;
-    ViewPoints points = points_of(observations, view);
-    targets.push_back(std::move(points.target));
-    pixels.push_back(std::move(points.pixels));
-  }
-  const std::string place = "camera " + std::to_string(index);
-  if (targets.size() < 3) {
-    throw Error(place, std::to_string(targets.size()) + " views of the board",
-                "at least three, at different tilts, are needed");
-  }
-  const Eigen::Vector2i size = observations.size_px[index];
-  const cv::Mat K = cv::initCameraMatrix2D(targets, pixels, {size[0], size[1]}, 1.0);
-  const double f = K.at<double>(1, 1);
-  const double longest = size.maxCoeff();
-  if (!(f > 0.05 * longest && f < 100 * longest)) {
-    throw Error(place, "no focal length can be found from its views",
-                "tilt the board by 20 to 45 degrees about both axes in several views");
-  }
-  Camera camera;
-  camera.name = index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
-  camera.size_px = size;
-  camera.model = model;
-  camera.parameters = Eigen::VectorXd::Zero(parameter_count(model));
-  camera.parameters.head<4>() << f, 1, 0.5 * (size[0] - 1), 0.5 * (size[1] - 1);
-  return camera;
+/// Angle (radians) and the share of the translation that differs.
+double distance(const Pose& a, const Pose& b) {
+  return vector_from_rotation(a.R * b.R.transpose()).norm() +
+         (a.t - b.t).norm() / (a.t.norm() + 1e-9);
 }
 
-Pose board_pose(const BoardObservations& observations,
-                const BoardView& view,
-                const Camera& camera) {
-  const ViewPoints points = points_of(observations, view);
-  const cv::Matx33d K(camera.f_px(), 0, camera.ox_px(), 0, camera.f_px(), camera.oy_px(), 0, 0, 1);
-  cv::Vec3d r, t;
-  cv::solvePnP(points.target, points.pixels, K, cv::noArray(), r, t, false, cv::SOLVEPNP_ITERATIVE);
-  Pose pose{rotation_from_vector({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
-  if (!pose.t.allFinite() || !pose.R.allFinite()) {
-    throw Error("frame " + std::to_string(view.frame) + ", camera " + std::to_string(view.camera),
-                "no pose fits its corners", "leave the view out");
-  }
-  return pose;
+std::string camera_name(int index) {
+  return index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
 }
 
-/// The candidate that the others agree with best (least median distance): one bad frame among
-/// several does no harm.
-Pose central_pose(const std::vector<Pose>& candidates) {
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::vector<double> distances;
-    for (const Pose& other : candidates) {
-      const Pose d = candidates[i].inverse() * other;
-      distances.push_back(vector_from_rotation(d.R).norm() +
-                          d.t.norm() / (candidates[i].t.norm() + 1e-9));
+/// The rig's cameras one by one; fills in where each saw the board.
+Rig cameras_alone(const BoardObservations& observations,
+                  const std::vector<CameraModel>& models,
+                  PoseOfView& T_camera_board) {
+  Rig rig;
+  for (int c = 0; c < static_cast<int>(observations.size_px.size()); ++c) {
+    std::vector<BoardView> views;
+    std::copy_if(observations.views.begin(), observations.views.end(), std::back_inserter(views),
+                 [&](const BoardView& view) { return view.camera == c; });
+    const InitialCamera start =
+        initial_camera(observations, views, models[c], "camera " + std::to_string(c));
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      T_camera_board[{c, views[i].frame}] = start.T_camera_board[i];
     }
-    std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
-    const double median = distances[distances.size() / 2];
-    if (median < least) {
-      least = median;
-      best = i;
-    }
+    rig.cameras.push_back(start.camera);
+    rig.cameras.back().name = camera_name(c);
   }
-  return candidates[best];
+  return rig;
 }
 
 }  // namespace
+
+Pose consensus_pose(const std::vector<Pose>& candidates) {
+  double least = std::numeric_limits<double>::infinity();
+  Pose centre;
+  for (const Pose& candidate : candidates) {
+    std::vector<double> distances;
+    for (const Pose& other : candidates) distances.push_back(distance(candidate, other));
+    const double median = middle(std::move(distances));
+    if (median < least) {
+      least = median;
+      centre = candidate;
+    }
+  }
+  std::array<std::vector<double>, 6> tangents;
+  for (const Pose& candidate : candidates) {
+    if (distance(centre, candidate) > 3 * least) continue;
+    const Eigen::Vector3d w = vector_from_rotation(candidate.R * centre.R.transpose());
+    for (int i = 0; i < 3; ++i) {
+      tangents[i].push_back(w[i]);
+      tangents[3 + i].push_back(candidate.t[i] - centre.t[i]);
+    }
+  }
+  if (candidates.empty()) return centre;
+  Eigen::Matrix<double, 6, 1> delta;
+  for (int i = 0; i < 6; ++i) delta[i] = middle(std::move(tangents[i]));
+  return retract(centre, delta);
+}
 
 BoardState at_frames(const BoardState& state, const std::vector<int>& frames) {
   BoardState part = state;
@@ -115,14 +97,8 @@ BoardState initial_state(const BoardObservations& observations,
   BoardState state;
   state.frames = frames_of(observations);
   const int cameras = static_cast<int>(observations.size_px.size());
-  for (int c = 0; c < cameras; ++c) {
-    state.rig.cameras.push_back(initial_camera(observations, c, models[c]));
-  }
-  std::map<std::pair<int, int>, Pose> T_camera_board;  // by (camera, frame)
-  for (const BoardView& view : observations.views) {
-    T_camera_board[{view.camera, view.frame}] =
-        board_pose(observations, view, state.rig.cameras[view.camera]);
-  }
+  PoseOfView T_camera_board;
+  state.rig = cameras_alone(observations, models, T_camera_board);
 
   state.T_first_board.resize(state.frames.size());
   std::vector<std::optional<Pose>> placed(state.frames.size());  // T_first_board
@@ -138,7 +114,7 @@ BoardState initial_state(const BoardObservations& observations,
       throw Error("camera " + std::to_string(c), "it shares no frame with the cameras before it",
                   "let both see the board at once, or order the cameras so that neighbours do");
     }
-    state.rig.T_camera_first.push_back(c == 0 ? Pose{} : central_pose(candidates));
+    state.rig.T_camera_first.push_back(consensus_pose(candidates));
     const Pose T_first_camera = state.rig.T_camera_first.back().inverse();
     for (std::size_t f = 0; f < state.frames.size(); ++f) {
       const auto seen = T_camera_board.find({c, state.frames[f]});

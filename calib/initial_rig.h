@@ -20,11 +20,18 @@ struct BoardState {
 /// The state at some of its frames, ascending; frames it does not have are left out.
 BoardState at_frames(const BoardState& state, const std::vector<int>& frames);
 
-/// A start from the corners alone: focal lengths from the homographies' vanishing points with the
-/// centre in the middle of the image and no distortion (Zhang 2000, as OpenCV does it), poses by
-/// PnP, the cameras chained by their common frames. Throws Error where a camera shares no frame
-/// with those before it, or where no focal length can be had (every board parallel to the image).
+/// A start from the corners alone: every camera by itself (calib/initial_camera.h), then the
+/// cameras chained by their common frames. The pose between two cameras is the median of those
+/// frames that agree with the candidate that the others agree with best, so views that are turned,
+/// swapped or not simultaneous do no harm while they are the smaller part; see check_views
+/// (calib/view_checks.h) for finding them. Throws Error where a camera has fewer than three views
+/// or shares no frame with those before it.
 BoardState initial_state(const BoardObservations& observations,
                          const std::vector<CameraModel>& models);
+
+/// The pose that most of `candidates` agree on: about the candidate with the least median distance
+/// to the others, the median of those within three times that distance. Throws nothing; of no
+/// candidates it is the identity.
+Pose consensus_pose(const std::vector<Pose>& candidates);
 
 }  // namespace vernier

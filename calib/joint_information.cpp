@@ -13,7 +13,6 @@ namespace vernier {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Shapes = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
 /// Products of one frame's derivatives: rig (A), pose (B), warp (W).
 struct Products {
@@ -29,18 +28,8 @@ struct Products {
   }
 };
 
-/// Derivatives of the residuals by the warp: a target point moves along the board's z.
-Shapes by_warp(const ViewLinearisation& J,
-               const BoardView& view,
-               const Pose& T_first_board,
-               const Shapes& shapes) {
-  const Eigen::VectorXd by_z = J.by_board_pose.rightCols<3>() * T_first_board.R.col(2);
-  Shapes W(by_z.size(), 2);
-  for (Eigen::Index i = 0; i < by_z.size(); ++i) W.row(i) = by_z[i] * shapes.row(view.ids[i / 2]);
-  return W;
-}
-
-void add_view(const ViewLinearisation& J, const Shapes& W, int intrinsics, int pose, Products& p) {
+void add_view(const ViewLinearisation& J, int intrinsics, int pose, Products& p) {
+  const auto& W = J.by_warp;
   const auto count = J.by_camera.cols();
   p.BA.middleCols(intrinsics, count) += J.by_board_pose.transpose() * J.by_camera;
   p.BB += J.by_board_pose.transpose() * J.by_board_pose;
@@ -64,7 +53,7 @@ BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
                                          const BoardState& state) {
   const auto n = parameter_count(state.rig);
   const std::vector<Eigen::Vector3d> target_m = warped_target(observations.target_m, state.warp_m);
-  const Shapes shapes = warp_shapes(observations.target_m);
+  const auto shapes = warp_shapes(observations.target_m);
   BoardPosesGivenRig result;
   Eigen::Matrix<double, 2, Eigen::Dynamic> S_wa = Eigen::MatrixXd::Zero(2, n);
   Eigen::Matrix2d S_ww = Eigen::Matrix2d::Zero();
@@ -75,9 +64,8 @@ BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
     for (; view != observations.views.end() && view->frame == state.frames[f]; ++view) {
       const int c = view->camera;
       linearise_view(state.rig.cameras[c], state.rig.T_camera_first[c], state.T_first_board[f],
-                     target_m, *view, Linearise::with_jacobian, J);
-      add_view(J, by_warp(J, *view, state.T_first_board[f], shapes), intrinsics_index(state.rig, c),
-               c == 0 ? -1 : pose_index(state.rig, c), p);
+                     target_m, *view, Linearise::with_jacobian, J, &shapes);
+      add_view(J, intrinsics_index(state.rig, c), c == 0 ? -1 : pose_index(state.rig, c), p);
     }
     const Eigen::LLT<Matrix6> C(p.BB);
     if (C.info() != Eigen::Success) {

@@ -77,6 +77,9 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.gradient_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e12;  // Gauss-Newton steps until one fails
   options.jacobi_scaling = true;
+  // Columns are scaled to one: a damping that is never below 1e-12 keeps the Schur complement of a
+  // model that the views hardly determine positive definite.
+  options.max_trust_region_radius = 1e12;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in one order: the same bits every time
   return options;

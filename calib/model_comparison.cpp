@@ -133,10 +133,11 @@ std::string name_of(const std::vector<CameraModel>& models) {
   return same ? std::string(model_name(models.front())) : name;
 }
 
-/// The richer models of a rig: every camera one step up, then two, as far as there are any.
+/// The richer models of a rig: every camera one step up, then two, as far as there are any. More
+/// would cost time for models that few sets of views determine.
 std::vector<std::vector<CameraModel>> candidates(const Rig& rig) {
   std::vector<std::vector<CameraModel>> all;
-  for (std::size_t step = 0;; ++step) {
+  for (std::size_t step = 0; step < 2; ++step) {
     std::vector<CameraModel> models = models_of(rig);
     bool moved = false;
     for (CameraModel& model : models) {
@@ -145,9 +146,10 @@ std::vector<std::vector<CameraModel>> candidates(const Rig& rig) {
       moved = moved || step < richer.size();
       model = richer[std::min(step, richer.size() - 1)];
     }
-    if (!moved) return all;
+    if (!moved) break;
     all.push_back(std::move(models));
   }
+  return all;
 }
 
 std::vector<std::string> warnings_of(const ModelComparison& comparison) {

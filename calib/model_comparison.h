@@ -27,7 +27,7 @@ struct ModelScore {
 /// ones stand for all.
 struct ModelComparison {
   ModelScore in_use;
-  std::vector<ModelScore> richer;     ///< nearest first; those that the views can determine
+  std::vector<ModelScore> richer;     ///< the next two, those that the views can determine
   int frames = 0;                     ///< compared
   std::vector<std::string> warnings;  ///< what a person should do about it
 };

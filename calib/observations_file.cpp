@@ -191,18 +191,24 @@ void check_image_name(const BoardView& view, CameraOrder& cameras) {
 }
 
 void check_counts(const std::map<std::string, int>& corners_of,
-                  const Chessboard& board,
+                  const BoardTarget& target,
                   const std::filesystem::path& file) {
-  const int corners = board.columns * board.rows;
+  const auto corners = corner_grid(target).prod();
   for (const auto& [image, read] : corners_of) {
     // An image without a board has one line of dashes.
     if (read != corners && read != 1) {
-      throw Error(file.string(),
-                  fmt::format("{} has {} corners, the board {}x{} has {}", image, read,
-                              board.columns, board.rows, corners),
-                  "check --board: it counts inner corners");
+      throw Error(
+          file.string(),
+          fmt::format("{} has {} corners, the {} has {}", image, read, name_of(target), corners),
+          "check the board's size (of a chessboard, inner corners)");
     }
   }
+}
+
+/// The fourth column, 0 where there is none; below 0, as "-", it says that there is no corner.
+int level_of(const std::vector<std::string_view>& fields, const std::string& place) {
+  if (fields.size() < 4) return 0;
+  return fields[3] == "-" ? -1 : parse_number<int>(fields[3], place, "level");
 }
 
 }  // namespace
@@ -275,12 +281,12 @@ ImageName parse_image_name(const std::filesystem::path& image) {
 }
 
 BoardObservations read_corners(const std::filesystem::path& file,
-                               const Chessboard& board,
+                               const BoardTarget& target,
                                const std::vector<Eigen::Vector2i>& size_px) {
   BoardObservations observations;
   observations.size_px = size_px;
-  observations.target_m = target_points(board);
-  const int corners = board.columns * board.rows;
+  observations.target_m = target_points(target);
+  const auto corners = corner_grid(target).prod();
   CameraOrder cameras;
   std::map<std::string, int> count;  // corners read of each image, found or not
   Lines lines(file);
@@ -304,15 +310,16 @@ BoardObservations read_corners(const std::filesystem::path& file,
     const int id = counted->second++;
     if (id >= corners) {
       throw Error(lines.place(), fmt::format("{} has more than {} corners", image, corners),
-                  fmt::format("the board is said to be {}x{}", board.columns, board.rows));
+                  fmt::format("the board is said to be a {}", name_of(target)));
     }
     if (fields[1] == "-") continue;
+    if (level_of(fields, lines.place()) < 0) continue;
     BoardView& view = observations.views.back();
     view.ids.push_back(id);
     view.pixels_px.emplace_back(parse_number<double>(fields[1], lines.place(), "x"),
                                 parse_number<double>(fields[2], lines.place(), "y"));
   }
-  check_counts(count, board, file);
+  check_counts(count, target, file);
   std::erase_if(observations.views, [](const BoardView& view) { return view.ids.size() < 4; });
   if (observations.views.empty()) {
     throw Error(file.string(), "no board in it", "give a corners file with data");
@@ -322,8 +329,20 @@ BoardObservations read_corners(const std::filesystem::path& file,
   return observations;
 }
 
+int count_coarse_corners(const std::filesystem::path& file) {
+  Lines lines(file);
+  std::string_view line;
+  int count = 0;
+  while (lines.next(line)) {
+    if (line.empty() || line.front() == '#') continue;
+    const auto fields = split(line, " \t");
+    count += fields.size() > 3 && fields[1] != "-" && level_of(fields, lines.place()) > 0;
+  }
+  return count;
+}
+
 void write_corners(const BoardObservations& observations,
-                   const Chessboard& board,
+                   const BoardTarget& target,
                    const std::filesystem::path& file) {
   std::string text = "# filename x y level\n";
   std::vector<const BoardView*> views;
@@ -339,7 +358,7 @@ void write_corners(const BoardObservations& observations,
       text += fmt::format("{} - - -\n", view.image);
       continue;
     }
-    std::vector<const Eigen::Vector2d*> pixel(board.columns * board.rows, nullptr);
+    std::vector<const Eigen::Vector2d*> pixel(corner_grid(target).prod(), nullptr);
     for (std::size_t i = 0; i < view.ids.size(); ++i) pixel[view.ids[i]] = &view.pixels_px[i];
     for (const Eigen::Vector2d* p : pixel) {
       text += p ? fmt::format("{} {} {} 0\n", view.image, p->x(), p->y())

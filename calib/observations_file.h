@@ -18,20 +18,26 @@ BoardObservations read_observations(const std::filesystem::path& file,
 /// Writes the same columns; numbers are exact (shortest form that reads back equal).
 void write_observations(const BoardObservations& observations, const std::filesystem::path& file);
 
-/// Corners in mrcal's format: a line `# filename x y level`, then per image one line a corner, row
-/// by row, "-" for x, y, level where one was not found. An image's frame is the last number in its
-/// name and its camera the rest of the name, in order of first appearance (left01.jpg and
-/// right01.jpg: frame 1 of cameras 0 and 1). Level k means a precision of 2^k pixels: corners of
-/// level > 0 are kept as they are. Throws Error with file and line.
+/// Corners in mrcal's format: a line `# filename x y level`, then per image one line a corner in
+/// the order of the target's indices (a chessboard's row by row), "-" for x, y, level where one was
+/// not found. An image's frame is the last number in its name and its camera the rest of the name,
+/// in order of first appearance (left01.jpg and right01.jpg: frame 1 of cameras 0 and 1). A level
+/// below 0 means as much as "-". Level k > 0 says that the corner was found in an image reduced 2^k
+/// times; such corners weigh here as much as others, which count_coarse_corners lets you find out.
+/// Throws Error with file and line.
 BoardObservations read_corners(const std::filesystem::path& file,
-                               const Chessboard& board,
+                               const BoardTarget& target,
                                const std::vector<Eigen::Vector2i>& size_px);
+
+/// How many corners of a corners file have a level above 0: coarser by 2^level, mrcal gives them
+/// the weight 1/2^level.
+int count_coarse_corners(const std::filesystem::path& file);
 
 /// Writes camera after camera, so that reading counts them alike; a view without corners is one
 /// line of dashes. Throws Error for an image whose name would not read back: one that is empty,
 /// holds blanks, begins with '#', has no number, or does not go with its camera.
 void write_corners(const BoardObservations& observations,
-                   const Chessboard& board,
+                   const BoardTarget& target,
                    const std::filesystem::path& file);
 
 /// How an image belongs to a rig by its name.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/pose_covariance.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "calib/draw_sources.h"
@@ -14,18 +14,24 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// tr(bound⁻¹ C) / p over the parameters that the bound knows with an error at all.
+/// tr(bound⁻¹ C) / p over the directions in which the bound has any variance: held parameters have
+/// none.
 double mean_inflation(const Eigen::MatrixXd& C, const Eigen::MatrixXd& bound) {
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < bound.rows(); ++i) {
-    if (bound(i, i) > 0) free.push_back(i);
+  const Eigen::VectorXd inverse_sd = bound.diagonal().unaryExpr(
+      [](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse_sd.asDiagonal() * bound *
+                                                             inverse_sd.asDiagonal());
+  const Eigen::MatrixXd scaled = inverse_sd.asDiagonal() * C * inverse_sd.asDiagonal();
+  const double least = 1e-11 * eigen.eigenvalues().maxCoeff();
+  double trace = 0;
+  int directions = 0;
+  for (Eigen::Index k = 0; k < bound.rows(); ++k) {
+    if (!(eigen.eigenvalues()[k] > least)) continue;
+    const auto v = eigen.eigenvectors().col(k);
+    trace += v.dot(scaled * v) / eigen.eigenvalues()[k];
+    ++directions;
   }
-  if (free.empty()) return 1;
-  const Eigen::MatrixXd reduced = bound(free, free);
-  const Eigen::VectorXd scale = reduced.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd R = scale.asDiagonal() * reduced * scale.asDiagonal();
-  const Eigen::MatrixXd C_scaled = scale.asDiagonal() * C(free, free) * scale.asDiagonal();
-  return R.ldlt().solve(C_scaled).trace() / static_cast<double>(free.size());
+  return directions > 0 ? trace / directions : 1;
 }
 
 /// M with M δ_f = (ω_f, τ_f + t_f × ω_f) / frames.

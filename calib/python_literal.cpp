@@ -108,6 +108,7 @@ class Parser {
       const char quote = text_[at_++];
       const std::size_t begin = at_;
       while (at_ < text_.size() && text_[at_] != quote) {
+        if (text_[at_] == '\n') fail("has a quote that is not closed");
         if (text_[at_] == '\\') ++at_;
         if (at_ < text_.size()) advance();
       }

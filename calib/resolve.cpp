@@ -213,14 +213,15 @@ BoardState Solution::moved(const BoardState& state, const Eigen::VectorXd& step)
   if (views_.warp()) next.warp_m += step.tail<2>();
   const Eigen::VectorXd kernel_step = kernel_by_step(state.rig) * step;
   for (std::size_t g = 0; g < views_.groups().size(); ++g) {
+    Lanes twists[6];
+    frame_steps(&factors_[g * frame_factor_size(parameters_)], kernel_step, twists);
     for (int l = 0; l < kernel_lanes; ++l) {
       const int frame = views_.groups()[g].frames[l];
       if (frame < 0) continue;
-      const Eigen::Matrix<double, 6, 1> twist =
-          frame_step(&factors_[g * frame_factor_size(parameters_)], l, kernel_step);
-      const Eigen::Matrix3d turn = rotation_from_vector(twist.head<3>());
+      const auto at = [&](int k) { return twists[k].of[l]; };
+      const Eigen::Matrix3d turn = rotation_from_vector({at(0), at(1), at(2)});
       Pose& T = next.T_first_board[frame];
-      T = {turn * T.R, turn * T.t + twist.tail<3>()};
+      T = {turn * T.R, turn * T.t + Eigen::Vector3d(at(3), at(4), at(5))};
     }
   }
   return next;
@@ -374,6 +375,26 @@ ResolveResult Resolver::resolve(const Eigen::Matrix2Xd& pixels_px, const BoardSt
   result.chi2 = system.chi2;
   result.status = ResolveStatus::iteration_limit;
   return result;
+}
+
+Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
+  const int n = problem_->parameters;
+  Solution solution(problem_->views, problem_->cost, problem_->views.pack(problem_->pixels_px), n,
+                    problem_->options.threads);
+  const System system = solution.linearise(state, 0);
+  Eigen::MatrixXd E = directions(state.rig, problem_->cost.held, n);
+  if (E.size() == 0) E = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd S = E.transpose() * system.information * E;
+  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * S * scale.asDiagonal());
+  if (factor.info() != Eigen::Success || !(factor.rcond() > least_rcond)) {
+    throw Error("calibration", "the views leave a direction free",
+                "add views at other tilts and distances, or use a model with fewer parameters");
+  }
+  const Eigen::MatrixXd half =
+      factor.matrixL().solve(Eigen::MatrixXd(scale.asDiagonal() * E.transpose()));
+  return (half.transpose() * half)
+      .topLeftCorner(problem_->rig_parameters, problem_->rig_parameters);
 }
 
 }  // namespace vernier

@@ -56,6 +56,11 @@ class Resolver {
   ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px) const;
   ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px, const BoardState& start) const;
 
+  /// The minimum variance bound at `state`, parameters x parameters, zero where held: the inverse
+  /// of the reduced information, priors included, a free warp eliminated. Throws Error where it is
+  /// singular.
+  Eigen::MatrixXd covariance(const BoardState& state) const;
+
  private:
   struct Problem;
   std::shared_ptr<const Problem> problem_;

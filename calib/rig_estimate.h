@@ -24,6 +24,7 @@ struct CalibrationSummary {
   std::vector<std::string> held;        ///< parameters that were not estimated
   std::vector<CornerOutlier> outliers;  ///< corners left out
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts;  ///< why the result may be wrong, and what to do
 };
 
 /// All that is needed to solve again, to propagate with the board poses, to compare and combine.

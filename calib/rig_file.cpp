@@ -203,6 +203,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
     }
   }
   summary.warnings = parse_texts(node, "warnings");
+  summary.doubts = parse_texts(node, "doubts");
   return summary;
 }
 
@@ -225,6 +226,7 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
                                 {"residual_px", o.residual_px}});  // null where not a number
   }
   json["warnings"] = s.warnings;
+  if (!s.doubts.empty()) json["doubts"] = s.doubts;
   return json;
 }
 
@@ -259,6 +261,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   std::iota(listed.begin(), listed.end(), 0);
   if (covariance || root.has("parameter_names")) listed = parse_names(root, estimate.rig);
   for (const Eigen::Index i : listed) file.listed.push_back(parameter_names(estimate.rig)[i]);
+  file.listed_places = listed;
   if (covariance || root.has("parameters")) check_parameters(root, estimate.rig, listed);
   if (covariance) {
     estimate.covariance = parse_covariance(root.at("covariance"), estimate.rig, listed);
@@ -286,13 +289,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
 RigKnowledge rig_knowledge(const RigFile& file, const std::string& place) {
   const Covariance& whole = required_covariance(file.estimate, place);
   RigKnowledge known{file.estimate.rig, {whole.kind, file.listed, {}}};
-  std::vector<Eigen::Index> listed;
-  for (std::size_t i = 0, k = 0; i < whole.names.size() && k < file.listed.size(); ++i) {
-    if (whole.names[i] != file.listed[k]) continue;
-    listed.push_back(static_cast<Eigen::Index>(i));
-    ++k;
-  }
-  known.covariance.matrix = whole.matrix(listed, listed);
+  known.covariance.matrix = whole.matrix(file.listed_places, file.listed_places);
   return known;
 }
 

@@ -16,6 +16,7 @@ struct RigFile {
   RigEstimate estimate;
   std::vector<std::string> warnings;
   std::vector<std::string> listed;  ///< its parameter_names; the rest of the rig has no variance
+  std::vector<Eigen::Index> listed_places;  ///< where they stand among the rig's parameters
 };
 
 /// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it

@@ -5,12 +5,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "calib/error.h"
 
 namespace vernier {
+namespace {
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+/// A scalar as a complaint may quote it: short, on one line.
+std::string quoted(std::string scalar) {
+  for (char& c : scalar) c = is_control(c) ? '?' : c;
+  return '"' + (scalar.size() > 40 ? scalar.substr(0, 40) + "..." : scalar) + '"';
+}
+
+}  // namespace
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
   std::string body = text;
@@ -60,7 +72,11 @@ std::vector<std::string> YamlNode::keys() const {
 
 std::string YamlNode::text() const {
   if (!node_.IsScalar()) throw Error(place(), "is not a text", "");
-  return node_.Scalar();
+  const std::string& scalar = node_.Scalar();
+  if (std::any_of(scalar.begin(), scalar.end(), is_control)) {
+    throw Error(place(), quoted(scalar) + " is not one line of text", "correct it");
+  }
+  return scalar;
 }
 
 double YamlNode::number() const {
@@ -71,7 +87,7 @@ double YamlNode::number() const {
   const auto parsed =
       std::from_chars(scalar.data() + (!scalar.empty() && scalar[0] == '+'), end, value);
   if (parsed.ec == std::errc() && parsed.ptr == end && std::isfinite(value)) return value;
-  throw Error(place(), fmt::format("\"{}\" is not a finite number", scalar), "correct it");
+  throw Error(place(), quoted(scalar) + " is not a finite number", "correct it");
 }
 
 int YamlNode::count() const {
@@ -153,11 +169,10 @@ std::string yaml_list(const Eigen::MatrixXd& row_by_row) {
 std::string yaml_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
       out += {'\\', c};
-    } else if (byte < 0x20) {
-      out += fmt::format("\\x{:02x}", byte);
+    } else if (is_control(c)) {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     } else {
       out += c;
     }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/board_input.h"
 
-#include "calib/board_detection.h"
 #include "calib/error.h"
+#include "calib/kalibr_target.h"
 #include "calib/observations_file.h"
 
 namespace vernier::cli {
@@ -21,6 +21,19 @@ std::vector<Eigen::Vector2i> size_of(const BoardInput& input) {
   return {{width, height}};
 }
 
+double length(const BoardInput& input, double metres, const std::string& option) {
+  if (!(metres > 0)) {
+    throw Error(input.verb, option + " is missing or not above 0", "give the length in metres");
+  }
+  return metres;
+}
+
+void add_tag_options(const BoardInput& input, AprilTagGrid& grid) {
+  grid.border_bits = input.border_bits;
+  grid.family = input.family;
+  grid.top_row_first = input.top_row_first;
+}
+
 }  // namespace
 
 void add_image_options(CLI::App* verb, BoardInput& input) {
@@ -30,7 +43,23 @@ void add_image_options(CLI::App* verb, BoardInput& input) {
   verb->add_option("--camera", input.cameras,
                    "images of one camera, instead of --left and --right; once for each camera")
       ->allow_extra_args(false);
-  verb->add_option("--board", input.board, "inner corners, such as 9x6");
+  verb->add_option("--board", input.board,
+                   "9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 (tags)");
+  verb->add_option("--target", input.target, "instead: target file of Kalibr (YAML)");
+  verb->add_option("--square-m", input.square_m, "side of a square, metres");
+  verb->add_option("--marker-m", input.marker_m, "side of a marker on a charuco board, metres");
+  verb->add_option("--dictionary", input.dictionary, "OpenCV's dictionary of a charuco board")
+      ->capture_default_str();
+  verb->add_flag("--legacy", input.legacy, "charuco board as OpenCV before 4.6 drew it");
+  verb->add_option("--tag-m", input.tag_m, "side of an AprilTag over its black border, metres");
+  verb->add_option("--tag-spacing", input.tag_spacing, "gap between AprilTags over their side")
+      ->capture_default_str();
+  verb->add_option("--family", input.family, "AprilTag family: 16h5, 25h9, 36h10 or 36h11")
+      ->capture_default_str();
+  verb->add_option("--border-bits", input.border_bits,
+                   "black border of an AprilTag, 1 or 2 bits (else whichever is found)");
+  verb->add_flag("--top-row-first", input.top_row_first,
+                 "AprilTags count from the upper row (Kalibr's from the lowest)");
 }
 
 void add_board_options(CLI::App* verb, BoardInput& input) {
@@ -38,7 +67,6 @@ void add_board_options(CLI::App* verb, BoardInput& input) {
   verb->add_option("--corners", input.corners, "corners file of vernier detect or mrcal");
   verb->add_option("--observations", input.observations,
                    "CSV frame,camera,row,col,X,Y,Z,qx,qy (metres, pixels)");
-  verb->add_option("--square-m", input.square_m, "side of a square, metres");
   verb->add_option("--size", input.size, "image size, such as 640x480 (for corners, observations)");
 }
 
@@ -58,14 +86,37 @@ std::vector<std::string> image_patterns(const BoardInput& input) {
   return {input.left, input.right};
 }
 
-Chessboard board_of(const BoardInput& input) {
-  if (input.board.empty() || !(input.square_m > 0)) {
-    throw Error(input.verb, "the board is not given",
-                "give --board (inner corners, such as 9x6) and --square-m (side of a square in "
-                "metres, above 0)");
+BoardTarget target_of(const BoardInput& input) {
+  if (!input.target.empty()) {
+    if (!input.board.empty()) throw Error(input.verb, "--target stands beside --board", "give one");
+    BoardTarget target = read_kalibr_target(input.target);
+    if (auto* grid = std::get_if<AprilTagGrid>(&target)) add_tag_options(input, *grid);
+    return target;
   }
-  const auto [columns, rows] = parse_size(input.board, "--board");
-  return {columns, rows, input.square_m};
+  if (input.board.empty()) {
+    throw Error(input.verb, "the board is not given",
+                "give --board, such as 9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 "
+                "(tags), or --target with Kalibr's file");
+  }
+  const auto colon = input.board.find(':');
+  const std::string kind = colon == std::string::npos ? "" : input.board.substr(0, colon);
+  const auto [columns, rows] = parse_size(input.board.substr(colon + 1), "--board");
+  if (kind.empty()) return Chessboard{columns, rows, length(input, input.square_m, "--square-m")};
+  if (kind == "charuco") {
+    return CharucoBoard{columns,
+                        rows,
+                        length(input, input.square_m, "--square-m"),
+                        length(input, input.marker_m, "--marker-m"),
+                        input.dictionary,
+                        input.legacy};
+  }
+  if (kind == "apriltag") {
+    AprilTagGrid grid{columns, rows, length(input, input.tag_m, "--tag-m"), input.tag_spacing};
+    add_tag_options(input, grid);
+    return grid;
+  }
+  throw Error("--board", "\"" + kind + "\" is no kind of board",
+              "write 9x6, charuco:8x6 or apriltag:6x6");
 }
 
 BoardObservations load(const BoardInput& input, Session& session) {
@@ -76,10 +127,23 @@ BoardObservations load(const BoardInput& input, Session& session) {
                 "images (--left, --right, --camera), or --corners, or --observations");
   }
   if (!input.observations.empty()) return read_observations(input.observations, size_of(input));
-  if (!input.corners.empty()) return read_corners(input.corners, board_of(input), size_of(input));
-  ImageDetections found = detect_images(image_patterns(input), board_of(input));
+  if (!input.corners.empty()) {
+    BoardObservations observations = read_corners(input.corners, target_of(input), size_of(input));
+    if (const int coarse = count_coarse_corners(input.corners)) {
+      session.warn(
+          fmt::format("{}: {} corners of level above 0 (found in a reduced image) weigh as "
+                      "much as the others",
+                      input.corners, coarse));
+    }
+    return observations;
+  }
+  ImageDetections found = detect_images(image_patterns(input), target_of(input));
   for (const BoardDetection& image : found.refused) {
     session.warn(image.image.string() + ": " + image.reason);
+  }
+  for (const BoardDetection& image : found.used) {
+    if (image.refused_corners.empty()) continue;
+    session.warn(image.image.string() + ": not used: " + refused_corners_text(image));
   }
   return std::move(found.observations);
 }

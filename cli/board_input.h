@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/board_observations.h"
+#include "calib/board_detection.h"
 #include "cli/session.h"
 
 namespace vernier::cli {
@@ -17,8 +17,12 @@ struct BoardInput {
   std::string left, right;           ///< patterns of images; left alone is one camera
   std::vector<std::string> cameras;  ///< instead, a pattern a camera
   std::string corners, observations, size;
-  std::string board;
-  double square_m = 0;
+
+  std::string board, target;  ///< --board in words, or Kalibr's file
+  double square_m = 0, marker_m = 0, tag_m = 0, tag_spacing = 0.3;
+  std::string dictionary = "4x4_50", family = "36h11";
+  int border_bits = 0;
+  bool legacy = false, top_row_first = false;
 };
 
 /// Adds the options of the images and the board alone (detect).
@@ -32,7 +36,7 @@ void add_board_options(CLI::App* verb, BoardInput& input);
 std::vector<std::string> image_patterns(const BoardInput& input);
 
 /// The board. Throws Error where it is not given in full.
-Chessboard board_of(const BoardInput& input);
+BoardTarget target_of(const BoardInput& input);
 
 /// Reads or detects the corners; images without a board are warned of.
 BoardObservations load(const BoardInput& input, Session& session);

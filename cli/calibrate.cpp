@@ -54,12 +54,7 @@ std::string comparison_table(const ModelComparison& comparison) {
 void judge(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
-  if (summary.rms_px > 1) {
-    session.doubt(fmt::format(
-        "residuals of {:.2f} px are no corner noise: the board is not flat, corners are wrong, or "
-        "the lens needs another model",
-        summary.rms_px));
-  }
+  for (const std::string& doubt : summary.doubts) session.doubt(doubt);
 }
 
 void run(const Options& options, Session& session) {
@@ -88,7 +83,7 @@ void run(const Options& options, Session& session) {
 void add_calibrate(CLI::App& app, Session& session) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      add_verb(app, session, "calibrate", "calibrate a rig from images or corners of a chessboard",
+      add_verb(app, session, "calibrate", "calibrate a rig from images or corners of a board",
                "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
                "--square-m 0.025 -o rig.json");
   add_board_options(verb, o->board);

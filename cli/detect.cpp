@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/board_detection.h"
-#include "calib/error.h"
 #include "cli/board_input.h"
 
 namespace vernier::cli {
@@ -12,21 +10,46 @@ struct Options {
   std::string output;
 };
 
-void run(const Options& options, Session& session) {
-  const auto [columns, rows] = parse_size(options.input.board, "--board");
-  const Chessboard board{columns, rows, 1.0};
-  const ImageDetections found = detect_images(image_patterns(options.input), board);
-  write_corners(found, board, options.output);
+Json corners_json(const BoardDetection& image) {
   Json refused = Json::array();
-  std::string text =
-      fmt::format("{} boards found in {} frames, written to {}\n", found.observations.views.size(),
-                  frames_of(found.observations).size(), options.output);
+  for (const RefusedCorner& corner : image.refused_corners) {
+    refused.push_back({{"corner", corner.id}, {"reason", text_of(corner.why)}});
+  }
+  return {{"image", image.image.string()},
+          {"camera", image.camera},
+          {"corners", image.ids.size()},
+          {"refused_corners", refused}};
+}
+
+/// The board; lengths that do not matter to detection need not be given.
+BoardTarget shape_of(BoardInput input) {
+  const bool charuco = input.board.rfind("charuco:", 0) == 0;  // needs marker against square
+  if (!(input.square_m > 0) && !charuco) input.square_m = 1;
+  if (!(input.tag_m > 0)) input.tag_m = 1;
+  return target_of(input);
+}
+
+void run(const Options& options, Session& session) {
+  const BoardTarget target = shape_of(options.input);
+  const ImageDetections found = detect_images(image_patterns(options.input), target);
+  write_corners(found, target, options.output);
+  Json used = Json::array(), refused = Json::array();
+  std::string text = fmt::format("{} boards found in {} frames, written to {}\n", found.used.size(),
+                                 frames_of(found.observations).size(), options.output);
+  for (const BoardDetection& image : found.used) {
+    used.push_back(corners_json(image));
+    if (image.refused_corners.empty()) continue;
+    text += fmt::format("  {}: {} corners used; not used: {}\n", image.image.string(),
+                        image.ids.size(), refused_corners_text(image));
+  }
   for (const BoardDetection& image : found.refused) {
     refused.push_back({{"image", image.image.string()}, {"reason", image.reason}});
     text += fmt::format("  not used: {}: {}\n", image.image.string(), image.reason);
   }
-  session.result({{"boards", found.observations.views.size()},
+  session.result({{"boards", found.used.size()},
                   {"frames", frames_of(found.observations).size()},
+                  {"corners_per_board", found.observations.target_m.size()},
+                  {"used", used},
                   {"refused", refused},
                   {"output", options.output}},
                  text);
@@ -36,9 +59,14 @@ void run(const Options& options, Session& session) {
 
 void add_detect(CLI::App& app, Session& session) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = add_verb(app, session, "detect", "find chessboard corners in image pairs",
-                            "vernier detect --left 'left*.png' --right 'right*.png' --board 9x6 "
-                            "-o corners.vnl");
+  CLI::App* verb =
+      add_verb(app, session, "detect", "find the corners of a board in images",
+               "vernier detect --left 'left*.png' --right 'right*.png' --board 9x6 "
+               "-o corners.vnl\n"
+               "  vernier detect --left 'left*.png' --board charuco:8x6 --square-m 0.03 "
+               "--marker-m 0.022 --dictionary 4x4_50 -o corners.vnl\n"
+               "  vernier detect --camera 'a*.png' --camera 'b*.png' --camera 'c*.png' "
+               "--target aprilgrid.yaml -o corners.vnl");
   add_image_options(verb, options->input);
   verb->add_option("-o,--output", options->output, "corners file, in mrcal's format")->required();
   verb->callback(

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   cli::add_detect(app, session);
   cli::add_calibrate(app, session);
   cli::add_check(app, session);
+  cli::add_uncertainty(app, session);
   cli::add_sample(app, session);
   cli::add_convert(app, session);
   cli::add_diff(app, session);

@@ -42,13 +42,11 @@ void run(const Options& options, Session& session) {
   const RigSampler sampler(rig.estimate, file.string());
 
   std::string csv;
-  for (const std::string& name : parameter_names(rig.estimate.rig)) {
-    csv += (csv.empty() ? "" : ",") + name;
-  }
+  for (const std::string& name : rig.listed) csv += (csv.empty() ? "" : ",") + name;
   csv += '\n';
   for (int i = 0; i < options.count; ++i) {
-    const Eigen::VectorXd a =
-        parameters(sampler.sample(options.psi_c, options.seed, static_cast<std::uint32_t>(i)));
+    const Eigen::VectorXd a = parameters(sampler.sample(
+        options.psi_c, options.seed, static_cast<std::uint32_t>(i)))(rig.listed_places);
     for (Eigen::Index k = 0; k < a.size(); ++k) csv += fmt::format("{}{}", k ? "," : "", a[k]);
     csv += '\n';
   }

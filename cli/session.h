@@ -80,6 +80,7 @@ void add_doctor(CLI::App& app, Session& session);
 void add_detect(CLI::App& app, Session& session);
 void add_calibrate(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
+void add_uncertainty(CLI::App& app, Session& session);
 void add_sample(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 void add_diff(CLI::App& app, Session& session);

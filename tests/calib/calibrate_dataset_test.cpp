@@ -8,6 +8,7 @@
 
 #include "calib/board_detection.h"
 #include "calib/calibrate.h"
+#include "calib/error.h"
 #include "calib/observations_file.h"
 #include "tests/support/data_folder.h"
 
@@ -81,12 +82,36 @@ TEST(RealPairs, BothModelsFitWithinTheirBounds) {
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
   const ImageDetections found =
-      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025});
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, Chessboard{9, 6, 0.025});
   EXPECT_EQ(found.observations.views.size(), 26u);
   const RigEstimate radial = calibrate(found.observations);
   EXPECT_LE(radial.calibration->rms_px, 0.20);
   EXPECT_EQ(radial.calibration->views, 13);
   EXPECT_LE(calibrate(found.observations, {.model = OpenCv5{}}).calibration->rms_px, 0.16);
+}
+
+TEST(RealPairs, BoardOfAnotherSizeIsNotTaken) {
+  const auto data = test::data_folder();
+  if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
+  const auto folder = (*data / "calib_opencv_case1").string();
+  try {
+    detect_images({folder + "/left*.png", folder + "/right*.png"}, Chessboard{8, 6, 0.025});
+    FAIL() << "no Error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("seems to have more inner corners than the 8x6 board"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(RealPairs, PoorWideAngleImagesAreAllFound) {
+  const auto data = test::data_folder();
+  if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
+  const auto folder = (*data / "calib_aliyasin_outliers").string();
+  const ImageDetections found =
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, Chessboard{9, 6, 0.025});
+  EXPECT_EQ(found.observations.views.size(), 32u);
+  EXPECT_LE(calibrate(found.observations, {.model = OpenCv5{}}).calibration->rms_px, 0.2);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(ConvertBadFiles, Mrcal) {
        {"'imagersize'", "'intrinsics'", "has the key 'intrinsics' twice"},
        {"[ 640, 480 ],\n}", "[ 640, 480 ],\n", "ends too early: it was cut off"},
        {"[ 640, 480 ],\n}", "[ 640, 480 ],\n} f", "has something after its end"},
-       {"'imagersize'", "'imagersize", "ends too early: a quote is not closed"}},
+       {"'imagersize'", "'imagersize", "has a quote that is not closed"}},
       read);
   expect_cuts_are_refused("left.cameramodel", good, read);
 }
@@ -185,6 +185,7 @@ TEST(ConvertBadFiles, Kalibr) {
        {"intrinsics: [526.05, ", "intrinsics: [nan, ", "cam0.intrinsics[0]: \"nan\" is not a"},
        {"resolution: [640, 480]", "resolution: [640, 0]", "is not [width, height]"},
        {"resolution", "size", "cam0: has no \"resolution\""},
+       {"radtan", "\"rad\\ntan\"", "cam0.distortion_model: \"rad?tan\" is not one line of text"},
        {"T_cn_cnm1", "T_cam_imu", "cam1: has no \"T_cn_cnm1\""},
        {"[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.1, 1.0]", "its last row is not 0 0 0 1"},
        {"  - [0.0, 0.0, 0.0, 1.0]\n", "", "cam1.T_cn_cnm1: is 3x4, not 4x4"},

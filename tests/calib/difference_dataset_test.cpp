@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/board_detection.h"
 #include "calib/calibrate.h"
 #include "calib/covariance_choice.h"
+#include "calib/next_view.h"
+#include "calib/normal_equations.h"
 #include "calib/projection_difference.h"
 #include "calib/rig_difference.h"
 #include "tests/support/data_folder.h"
@@ -18,8 +22,8 @@ TEST(RealPairs, TwoModelsDifferBeyondTheirBounds) {
   const auto data = test::data_folder();
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
-  const PairDetections found =
-      detect_pairs(folder + "/left*.png", folder + "/right*.png", {9, 6, 0.025});
+  const ImageDetections found =
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025});
   const RigEstimate a = calibrate(found.observations);
   const RigEstimate b = calibrate(found.observations, {.model = OpenCv4{}});
   const RigDifference d = rig_difference(a.rig, *chosen_covariance(a, CovarianceChoice::mvb), b.rig,
@@ -38,6 +42,50 @@ TEST(RealPairs, TwoModelsDifferBeyondTheirBounds) {
   const ProjectionDifference projection = projection_difference(a.rig, b.rig);
   EXPECT_LT(projection.in_focus.rms_px, 0.5);
   EXPECT_GT(projection.after.max_px, 20);  // in the corners of the images, where none was
+}
+
+BoardObservations first_frames(const BoardObservations& all, int count, int extra) {
+  BoardObservations chosen = all;
+  const std::vector<int> frames = frames_of(all);
+  std::erase_if(chosen.views, [&](const BoardView& view) {
+    return view.frame >= frames[count] && view.frame != frames[extra];
+  });
+  return chosen;
+}
+
+// What each of five real views would tell a calibration from eight others, against what it told.
+// The prediction is made at an estimate that the new view moves, so it is near and not exact; it
+// also says rightly which of the five is best.
+TEST(RealPairs, PredictedGainOfAViewIsWhatItBrings) {
+  const auto data = test::data_folder();
+  if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
+  const auto folder = (*data / "calib_opencv_case1").string();
+  const BoardObservations all =
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025}).observations;
+  const CalibrationOptions options{
+      .pixel_sigma_px = 0.18, .reject_outliers = false, .white_noise = true};
+  const int base = 8;
+  const RigEstimate now = calibrate(first_frames(all, base, 0), options);
+  const Eigen::MatrixXd F = ScaledDecomposition(*now.covariance).factor();
+  const RigEstimate everything = calibrate(all, options);
+  std::vector<double> predicted, found;
+  for (int f = base; f < 13; ++f) {
+    const RigEstimate then = calibrate(first_frames(all, base, f), options);
+    BoardObservations one = all;
+    std::erase_if(one.views,
+                  [&](const BoardView& view) { return view.frame != frames_of(all)[f]; });
+    const BoardState state{
+        now.rig, {frames_of(all)[f]}, {everything.evidence->T_first_board[f]}, {0, 0}};
+    const Eigen::MatrixXd S = reduced_normal_equations(one, state, 0.18).information;
+    predicted.push_back(sd_of(wanted_error(now.rig, "depth", 5), updated_factor(F, S)));
+    found.push_back(
+        sd_of(wanted_error(then.rig, "depth", 5), ScaledDecomposition(*then.covariance).factor()));
+    RecordProperty("sd_m_view_" + std::to_string(f),
+                   std::to_string(predicted.back()) + " " + std::to_string(found.back()));
+    EXPECT_NEAR(predicted.back() / found.back(), 1, 0.02) << f;
+  }
+  const auto best = std::min_element(predicted.begin(), predicted.end()) - predicted.begin();
+  EXPECT_EQ(found[best], *std::min_element(found.begin(), found.end()));
 }
 
 }  // namespace

@@ -43,7 +43,10 @@ class DepthTrials {
                      .feature = static_cast<std::uint32_t>(64 * view.frame + view.camera)});
         for (auto& q : view.pixels_px) q += sigma_px * Eigen::Vector2d(draws.normals(2));
       }
-      const Rig rig = calibrate(noisy, {.pixel_sigma_px = sigma_px, .white_noise = true}).rig;
+      const Rig rig =
+          calibrate(noisy,
+                    {.pixel_sigma_px = sigma_px, .reject_outliers = false, .white_noise = true})
+              .rig;
       squares += std::pow(triangulated_depth_m(rig, left, right) - 5, 2);
     }
     return std::sqrt(squares / trials);
@@ -79,23 +82,23 @@ std::vector<Pose> advised(const DepthTrials& trials, int views) {
   return poses;
 }
 
-/// The rms with the advised views, and those with 11 random sets of as many (seeds 500 to 510).
-/// All share the noise of the first views, so their ratios scatter less than the 6 % of each.
+/// The rms with the advised views, and those with 7 random sets of as many (seeds 500 to 506). Each
+/// has a standard deviation of 9 %, and less in ratios, since all share the first views' noise.
 void expect_better_than_most(int views) {
   const DepthTrials trials;
-  const int count = 150;
+  const int count = 60;
   const double by_advice = trials.rms(advised(trials, views), count);
   std::vector<double> by_chance;
-  for (std::uint64_t seed = 500; seed < 511; ++seed) {
+  for (std::uint64_t seed = 500; seed < 507; ++seed) {
     const auto random = simulate_board(trials.truth(), {}, seed, 0, {.frames = views});
     by_chance.push_back(trials.rms(random.truth.T_first_board, count));
   }
   std::sort(by_chance.begin(), by_chance.end());
   testing::Test::RecordProperty("rms_advised_m", std::to_string(by_advice));
-  testing::Test::RecordProperty("rms_random_median_m", std::to_string(by_chance[5]));
+  testing::Test::RecordProperty("rms_random_median_m", std::to_string(by_chance[3]));
   testing::Test::RecordProperty("rms_random_best_m", std::to_string(by_chance[0]));
   testing::Test::RecordProperty("rms_without_m", std::to_string(trials.rms({}, count)));
-  EXPECT_LT(by_advice, 0.95 * by_chance[5]);
+  EXPECT_LT(by_advice, 0.75 * by_chance[3]);
 }
 
 TEST(NextView, OneAdvisedViewBeatsTheMedianRandomView) { expect_better_than_most(1); }

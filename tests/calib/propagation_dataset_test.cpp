@@ -54,9 +54,10 @@ class Propagated
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no solved problems beside VERNIER_DATA";
     std::ifstream in(folder / ("solution_" + std::string(model) + ".json"));
     solution_ = nlohmann::json::parse(in);
-    estimate_ = calibrate(
-        read_observations(folder / "observations.csv", {size}),
-        {.model = camera_model(model), .pixel_sigma_px = solution_["sigma"].get<double>()});
+    estimate_ = calibrate(read_observations(folder / "observations.csv", {size}),
+                          {.model = camera_model(model),
+                           .pixel_sigma_px = solution_["sigma"].get<double>(),
+                           .reject_outliers = false});
   }
 
   nlohmann::json solution_;

@@ -9,6 +9,8 @@
 #include "calib/calibrate.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/error.h"
+#include "calib/held_parameters.h"
+#include "calib/minimise_reprojection.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_pair.h"
 #include "calib/sampled_propagation.h"
@@ -63,6 +65,10 @@ class BruteForce : public testing::Test {
         simulate_board(test::stereo_rig(), {4, 3, 0.1}, 5, 0, {.frames = 6, .pixel_sigma_px = 0});
     observations_ = board.observations;
     truth_ = board.truth;
+  }
+
+  /// The bound at the truth with everything free.
+  void estimate_all() {
     estimate_.rig = truth_.rig;
     const auto equations = reduced_normal_equations(observations_, truth_, 1.0);
     const auto names = parameter_names(truth_.rig);
@@ -80,9 +86,9 @@ class BruteForce : public testing::Test {
         for (int axis = 0; axis < 2; ++axis) {
           const double kept = pixel[axis];
           pixel[axis] = kept + h_px;
-          const BoardState plus = minimise_reprojection(observations_, truth_);
+          const BoardState plus = minimise_reprojection(observations_, truth_, problem_);
           pixel[axis] = kept - h_px;
-          const BoardState minus = minimise_reprojection(observations_, truth_);
+          const BoardState minus = minimise_reprojection(observations_, truth_, problem_);
           pixel[axis] = kept;
           on_response(plus, minus);
         }
@@ -101,11 +107,15 @@ class BruteForce : public testing::Test {
   }
 
   BoardObservations observations_;
+  /// Compares the propagated covariances with the sums of squared responses.
+  void compare();
+
   BoardState truth_;
   RigEstimate estimate_;
+  ReprojectionProblem problem_;
 };
 
-TEST_F(BruteForce, ProjectionAndTriangulationRespondAsPropagated) {
+void BruteForce::compare() {
   const Eigen::Vector3d x(0.2, -0.1, 1.7);
   const auto project_in = [&](const BoardState& s, int c, bool at_infinity) -> Eigen::Vector2d {
     const Pose& T = s.rig.T_camera_first[c];
@@ -142,6 +152,31 @@ TEST_F(BruteForce, ProjectionAndTriangulationRespondAsPropagated) {
   };
   EXPECT_LT(relative_difference(told(TriangulationFrame::rig), in_rig), 1e-5);
   EXPECT_LT(relative_difference(told(TriangulationFrame::stabilised), stabilised), 1e-5);
+}
+
+TEST_F(BruteForce, ProjectionAndTriangulationRespondAsPropagated) {
+  estimate_all();
+  compare();
+}
+
+TEST_F(BruteForce, AlsoWithParametersHeldAndABoardThatIsNotFlat) {
+  truth_.warp_m = {6e-4, -4e-4};
+  const auto target = warped_target(observations_.target_m, truth_.warp_m);
+  for (BoardView& view : observations_.views) {
+    const Pose T = truth_.rig.T_camera_first[view.camera] * truth_.T_first_board[view.frame];
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      view.pixels_px[i] = project(truth_.rig.cameras[view.camera], T * target[view.ids[i]]);
+    }
+  }
+  const std::vector<HeldParameter> held{{"left.ax", 1.002}, {"right.wy_rad", {}}};
+  estimate_ = calibrate(observations_, {.pixel_sigma_px = 1,
+                                        .held = {{"left.ax", 1.002}, {"right.wy_rad", -0.02}},
+                                        .warp = BoardWarp::free,
+                                        .reject_outliers = false,
+                                        .white_noise = true});
+  EXPECT_LT(difference(estimate_.rig, truth_.rig).cwiseAbs().maxCoeff(), 1e-3);
+  problem_ = {.held = held_mask(truth_.rig, held), .warp = BoardWarp::free};
+  compare();
 }
 
 /// Covariance at unit noise of (rig, board poses) from a dense numeric Jacobian of all residuals by

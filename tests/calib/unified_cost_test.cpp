@@ -199,7 +199,7 @@ TEST(BoardWarpTest, IsFoundAndWithoutItTheRigIsWrong) {
       calibrate(observations, {.pixel_sigma_px = 0.2, .warp = BoardWarp::free});
   EXPECT_LT((free.evidence->warp_m - warp_m).norm(), 1e-4);
   EXPECT_LT(worst_sigmas(free.rig, test::stereo_rig(), *free.covariance_mvb), 4.5);
-  EXPECT_GT(worst_sigmas(flat.rig, test::stereo_rig(), *flat.covariance_mvb), 10);
+  EXPECT_GT(worst_sigmas(flat.rig, test::stereo_rig(), *flat.covariance_mvb), 5);
   // What is not known of the board is not known of the rig.
   const RigEstimate known = calibrate(board.observations, {.pixel_sigma_px = 0.2});
   EXPECT_GT((free.covariance_mvb->diagonal().array() / known.covariance_mvb->diagonal().array())

@@ -6,8 +6,10 @@
     cli_test.py PROGRAM [unittest's options]
 """
 import json
+import math
 import os
 import pathlib
+import random
 import re
 import subprocess
 import sys
@@ -136,11 +138,160 @@ class RealPairs(Case):
     def test_wrong_board_size(self):
         self.complains('calibrate', '--left', IMAGES / 'left0[12].jpg', '--right',
                        IMAGES / 'right0[12].jpg', '--board', '11x8', '--square-m', '0.025', '-o',
-                       self.folder / 'rig.json', of='no board of 11x8',
+                       self.folder / 'rig.json', of='no 11x8 board in any image',
                        leaves=[self.folder / 'rig.json'])
 
 
+    def test_smaller_board_than_there_is(self):
+        for size in ('8x6', '9x5'):
+            self.complains('detect', '--left', IMAGES / 'left0[1-4].jpg', '--board', size, '-o',
+                           self.folder / 'c.vnl', of='more inner corners than the ' + size,
+                           leaves=[self.folder / 'c.vnl'])
+
+    def test_one_camera_and_cameras_by_name(self):
+        done = self.works('detect', '--left', IMAGES / 'left0[1-4].jpg', '--board', '9x6', '-o',
+                          self.folder / 'c.vnl', '--json')
+        found = json.loads(done.stdout)
+        self.assertEqual((found['boards'], found['frames'], found['refused']), (4, 4, []))
+        self.assertEqual([(u['camera'], u['corners']) for u in found['used']], [(0, 54)] * 4)
+        pair = self.works('detect', '--left', IMAGES / 'left0[1-4].jpg', '--right',
+                          IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'a.vnl')
+        self.assertIn('8 boards found in 4 frames', pair.stdout)
+        self.works('detect', '--camera', IMAGES / 'left0[1-4].jpg', '--camera',
+                   IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'b.vnl')
+        self.assertEqual((self.folder / 'a.vnl').read_text(), (self.folder / 'b.vnl').read_text())
+        done = self.works('calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--board', '9x6',
+                          '--square-m', '0.025', '-o', self.folder / 'one.json', '--json')
+        self.assertEqual(len(json.loads(done.stdout)['parameters']), 5)
+
+    def test_a_truncated_image(self):
+        for name in ('left01.jpg', 'left02.jpg'):
+            data = (IMAGES / name).read_bytes()
+            (self.folder / name).write_bytes(data if name == 'left01.jpg' else data[:9000])
+        self.complains('detect', '--left', self.folder / 'left*.jpg', '--board', '9x6', '-o',
+                       self.folder / 'c.vnl', of='left02.jpg: is cut off',
+                       leaves=[self.folder / 'c.vnl'])
+
+    def test_kalibrs_checkerboard_file(self):
+        target = self.folder / 'target.yaml'
+        target.write_text("target_type: 'checkerboard'\ntargetCols: 9   # inner corners\n"
+                          'targetRows: 6\nrowSpacingMeters: 0.025\ncolSpacingMeters: 0.025\n')
+        self.works('detect', '--left', IMAGES / 'left0[12].jpg', '--target', target, '-o',
+                   self.folder / 'c.vnl')
+        target.write_text('target_type: circlegrid\n')
+        self.complains('detect', '--left', IMAGES / 'left0[12].jpg', '--target', target, '-o',
+                       self.folder / 'd.vnl', of='target.yaml:1: a circlegrid is not detected')
+
+    def test_levels_of_a_corners_file(self):
+        self.works('detect', '--left', IMAGES / 'left[0-9]*.jpg', '--board', '9x6', '-o',
+                   self.folder / 'c.vnl')
+        lines = (self.folder / 'c.vnl').read_text().splitlines()
+        lines[1] = lines[1][:-1] + '1'
+        lines[2] = lines[2][:-1] + '-'
+        (self.folder / 'c.vnl').write_text('\n'.join(lines))
+        done = self.works('calibrate', '--corners', self.folder / 'c.vnl', '--board', '9x6',
+                          '--square-m', '0.025', '--size', '640x480', '-o', self.folder / 'r.json')
+        self.assertIn('1 corners of level above 0', done.stderr)
+        view = json.loads((self.folder / 'r.json').read_text())['evidence']['observations'][0]
+        self.assertEqual(view['ids'], [0] + list(range(2, 54)))
+
+
+def board_lines(frames=12, tilts=True):
+    """observations.csv of a pinhole pair and a 9x6 board, with noise of 0.2 px, as lines."""
+    chance = random.Random(5)
+    lines = ['frame,camera,row,col,X,Y,Z,qx,qy']
+    for frame in range(frames):
+        a, b = (0.5 * math.sin(2.1 * frame), 0.5 * math.cos(1.7 * frame)) if tilts else (0, 0)
+        at = 0.12 * math.sin(frame), 0.08 * math.cos(3 * frame), 0.6 + 0.02 * frame
+        for camera in range(2):
+            for row in range(6):
+                for col in range(9):
+                    X, Y = 0.025 * col, 0.025 * row
+                    x, y = X - 0.1, Y - 0.0625
+                    y, z = y * math.cos(a), y * math.sin(a)
+                    x, z = x * math.cos(b) + z * math.sin(b), z * math.cos(b) - x * math.sin(b)
+                    x, y, z = x + at[0] + 0.03 - 0.06 * camera, y + at[1], z + at[2]
+                    u = 320 + 500 * x / z + chance.gauss(0, 0.2)
+                    v = 240 + 500 * y / z + chance.gauss(0, 0.2)
+                    lines.append(f'{frame},{camera},{row},{col},{X},{Y},0,{u},{v}')
+    return lines
+
+
+class BadBoards(Case):
+    """What calibrate says of corners that cannot be right, and how it ends."""
+
+    def changed(self, change, **more):
+        """The arguments of calibrate for lines changed field by field: None leaves a line out."""
+        header, *lines = board_lines(**more)
+        fields = [change(*[int(f) for f in line.split(',')[:4]], line.split(',')[4:])
+                  for line in lines]
+        text = '\n'.join([header] + [','.join(map(str, f)) for f in fields if f])
+        (self.folder / 'o.csv').write_text(text)
+        return ('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480', '-o',
+                self.folder / 'rig.json')
+
+    def refuses(self, change, of, **more):
+        self.complains(*self.changed(change, **more), of=of, leaves=[self.folder / 'rig.json'])
+
+    def test_good_corners_are_taken(self):
+        done = self.works(*self.changed(lambda f, c, r, k, rest: [f, c, r, k, *rest]))
+        self.assertNotIn('doubtful', done.stderr)
+
+    def test_a_bad_line_37_is_named(self):
+        def decimal_comma(f, c, r, k, rest):
+            bad = (f, c, r, k) == (0, 0, 3, 8)
+            return [f, c, r, k, *(['X' + rest[0], *rest[1:]] if bad else rest)]
+        self.refuses(decimal_comma, of='o.csv:37: X, Y, Z is "X0.2", not a number')
+
+    def test_turned_view(self):
+        at = {}
+        for line in board_lines()[1:]:
+            f, c, r, k, *rest = line.split(',')
+            at[tuple(map(int, (f, c, r, k)))] = rest
+        self.refuses(lambda f, c, r, k, rest:
+                     [f, c, r, k, *rest[:3], *at[(f, c, 5 - r, 8 - k)][3:]]
+                     if (f, c) == (4, 1) else [f, c, r, k, *rest],
+                     of='frame 4, camera 1: its corners are numbered half a turn (180 degrees)')
+
+    def test_mirrored_view(self):
+        self.refuses(lambda f, c, r, k, rest: [f, c, r, k, *rest[:3], *(
+            [639 - float(rest[3]), rest[4]] if (f, c) == (2, 0) else rest[3:])],
+            of='frame 2, camera 0: the board is mirrored against the other 23 views')
+
+    def test_swapped_view(self):
+        self.refuses(lambda f, c, r, k, rest: [f, 1 - c if f == 7 else c, r, k, *rest],
+                     of='left and right are swapped against the other frames')
+
+    def test_parallel_boards(self):
+        self.refuses(lambda f, c, r, k, rest: [f, c, r, k, *rest], tilts=False,
+                     of='every board is parallel to the image')
+
+    def test_exchanged_cameras_end_in_doubt(self):
+        done = vernier(*self.changed(lambda f, c, r, k, rest: [f, 1 - c, r, k, *rest]))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('m to the left of camera 0', done.stderr)
+        self.assertTrue((self.folder / 'rig.json').exists())
+
+    def test_unpaired_frames_are_counted(self):
+        done = self.works(*self.changed(
+            lambda f, c, r, k, rest: None if c == 1 and f < 2 else [f, c, r, k, *rest]))
+        self.assertIn('warning: 2 of 12 frames show the board in camera 0 alone (0 and 1)',
+                      done.stderr)
+
+
 class BadInput(Case):
+    def test_boards_that_are_not_given(self):
+        for board, of in (('', 'the board is not given'), ('hexagons:3x3', 'no kind of board'),
+                          ('charuco:8x6', '--square-m is missing'), ('9by6', 'two whole numbers')):
+            self.complains('detect', '--left', 'left*.png', '--board', board, '-o', 'c.vnl', of=of)
+        self.complains('detect', '--left', 'left*.png', '--board', 'charuco:8x6', '--square-m',
+                       '0.03', '--marker-m', '0.02', '--dictionary', '4x5', '-o', 'c.vnl',
+                       of='no file matches')
+        self.complains('detect', '--right', 'right*.png', '--board', '9x6', '-o', 'c.vnl',
+                       of='--left is missing')
+        self.complains('detect', '--left', 'a*.png', '--camera', 'b*.png', '--board', '9x6', '-o',
+                       'c.vnl', of='--camera stands beside')
+
     def test_missing_images(self):
         self.complains('calibrate', '--left', self.folder / 'l*.png', '--right',
                        self.folder / 'r*.png', '--board', '9x6', '--square-m', '0.025', '-o',

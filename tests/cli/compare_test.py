@@ -113,7 +113,7 @@ class Diff(Rigs):
                        of='it has 1 camera and the first rig 2')
         self.complains('diff', 'nominal', of='b is required')
         self.complains('diff', 'nominal', self.folder / 'none.json', of='none.json')
-        for text in ('', '1,,2', '1,', '0', '-3', 'nan', '1;2', 'far'):
+        for text in ('1,,2', '1,', '0', '-3', 'nan', '1;2', 'far'):
             self.complains('diff', 'nominal', 'nominal', '--distances-m=' + text,
                            of='is not a list of distances above 0')
         self.complains('diff', 'nominal', 'nominal', '--grid', '20', of='--grid')

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "calib/board_observations.h"
+#include "calib/rig.h"
+
+namespace vernier {
+
+/// Where a board stood by one view and a camera taken as known, T_camera_board: the plane's
+/// homography on the undistorted corners, refined in normalised coordinates (OpenCV's solvePnP).
+/// Throws Error where no pose fits.
+Pose board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                const BoardView& view,
+                const Camera& camera);
+
+/// The pose of a board in a frame by all the views given, the rig taken as known.
+struct BoardPoseFit {
+  Pose T_first_board;
+  double rms_px = 0;  ///< per coordinate; infinite where the board is nowhere in front
+};
+
+/// Minimises Σ |project(T_camera_first T_first_board X) − q|² over T_first_board from a start, by
+/// Levenberg and Marquardt's method in the left tangent.
+BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
+                            std::span<const BoardView> views,
+                            const Rig& rig,
+                            const Pose& start,
+                            int max_iterations = 10);
+
+}  // namespace vernier

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "calib/board_detection.h"
+
+namespace vernier {
+
+/// Finds a chessboard in an image; see detect_board.
+void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetection& result);
+
+}  // namespace vernier

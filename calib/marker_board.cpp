@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/marker_board.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "calib/corner_refinement.h"
+#include "calib/image_fault.h"
+#include "calib/marker_dictionary.h"
+#include "calib/marker_layout.h"
+#include "calib/plane_homography.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::size_t least_corners = 6;
+
+/// The largest window that holds nothing but the corner: `free_m` is the distance to the next edge
+/// of the pattern.
+int window_at(const Eigen::Matrix3d& H, const Eigen::Vector2d& corner_m, double free_m) {
+  const Eigen::Vector2d stretch =
+      Eigen::JacobiSVD<Eigen::Matrix2d>(map_derivative(H, corner_m)).singularValues();
+  return std::clamp(static_cast<int>(std::floor(0.9 * free_m * stretch[1] - 0.5)), 2, 11);
+}
+
+/// Whether the corners span the plane: no line within a tenth of their extent holds them all.
+bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>& target_m) {
+  Eigen::MatrixX2d x(ids.size(), 2);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    x.row(static_cast<Eigen::Index>(i)) = target_m[ids[i]].head<2>().transpose();
+  }
+  x.rowwise() -= x.colwise().mean().eval();
+  const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::MatrixXd>(x).singularValues();
+  return s[1] > 0.1 * s[0];
+}
+
+/// Takes all corners back where they are too few to use.
+void judge(const std::vector<Eigen::Vector3d>& target_m,
+           const std::string& name,
+           BoardDetection& result) {
+  const std::size_t corners = result.ids.size();
+  if (corners < least_corners) {
+    result.reason = "only " + std::to_string(corners) + " good corners of the " + name +
+                    ", at least " + std::to_string(least_corners) + " are needed";
+    if (!result.refused_corners.empty())
+      result.reason += "; not used: " + refused_corners_text(result);
+  } else if (!span_plane(result.ids, target_m)) {
+    result.reason = "all good corners of the " + name + " lie on one line";
+  } else {
+    return;
+  }
+  result.ids.clear();
+  result.corners_px.clear();
+}
+
+/// Why there are no markers to work with, by what was seen instead.
+std::string marker_fault(const cv::Mat& grey,
+                         const SeenMarkers& seen,
+                         const MarkerLayout& layout,
+                         const std::string& name) {
+  std::string reason = "no " + name + " found";
+  if (seen.repeated > 0) {
+    reason += "; " + std::to_string(seen.repeated) + " markers are there more than once";
+  }
+  if (seen.foreign > 0) {
+    reason += "; " + std::to_string(seen.foreign) + " markers have numbers that it has not";
+  }
+  if (seen.markers.size() == 1) {
+    reason += "; only marker " + std::to_string(seen.markers[0].id) + " of " +
+              std::to_string(layout.corners_m.size()) + " is seen";
+  } else if (seen.markers.empty() && seen.undecoded > 0) {
+    reason += "; " + std::to_string(seen.undecoded) +
+              " outlines of four sides, none with a pattern of " + layout.dictionary;
+  }
+  const std::string fault = image_fault(grey);
+  return fault.empty() ? reason : reason + "; " + fault;
+}
+
+/// A board that people mistake for another, and what to say then.
+struct Mistake {
+  std::vector<MarkerLayout> layouts;
+  std::string remedy;
+};
+
+/// The layout that most markers agree with, and those that do.
+std::pair<std::size_t, std::vector<SeenMarker>> best_layout(
+    const std::vector<SeenMarker>& markers, const std::vector<MarkerLayout>& layouts) {
+  std::pair<std::size_t, std::vector<SeenMarker>> best;
+  for (std::size_t i = 0; i < layouts.size(); ++i) {
+    auto good = consistent_markers(markers, layouts[i]);
+    if (good.size() > best.second.size()) best = {i, std::move(good)};
+  }
+  return best;
+}
+
+struct FoundLayout {
+  MarkerLayout layout;
+  SeenMarkers seen;
+};
+
+/// The markers that lie as one of the layouts has them; nothing, and the reason in `result`, where
+/// there are no two such.
+std::optional<FoundLayout> find_layout(const cv::Mat& grey,
+                                       const std::vector<MarkerLayout>& layouts,
+                                       const std::vector<Mistake>& mistakes,
+                                       const std::string& name,
+                                       BoardDetection& result) {
+  SeenMarkers seen = find_markers(grey, layouts[0]);
+  if (seen.markers.size() < 2) {
+    result.reason = marker_fault(grey, seen, layouts[0], name);
+    return std::nullopt;
+  }
+  auto [index, good] = best_layout(seen.markers, layouts);
+  std::size_t most = good.size();
+  std::string remedy = most < 2 ? "check its size" : "";
+  for (const Mistake& mistake : mistakes) {
+    const std::size_t count = best_layout(seen.markers, mistake.layouts).second.size();
+    if (count <= most) continue;
+    most = count;
+    remedy = mistake.remedy;
+  }
+  if (!remedy.empty()) {
+    result.reason = std::to_string(seen.markers.size()) +
+                    " markers are seen, but they do not lie as on the " + name + "; " + remedy;
+    return std::nullopt;
+  }
+  seen.markers = std::move(good);
+  return FoundLayout{layouts[index], std::move(seen)};
+}
+
+/// A tag may stand on the sheet at any quarter turn: its neighbours tell which.
+std::vector<MarkerLayout> turned_layouts(const AprilTagGrid& grid) {
+  std::vector<MarkerLayout> layouts;
+  for (int turns = 0; turns < 4; ++turns) layouts.push_back(layout_of(grid, turns));
+  return layouts;
+}
+
+template <class Board>
+Board swapped(Board board) {
+  std::swap(board.columns, board.rows);
+  return board;
+}
+
+template <class Board>
+std::string swap_remedy(const Board& board) {
+  return "they lie as on one of " + std::to_string(board.rows) + "x" +
+         std::to_string(board.columns) + ": swap the columns and rows";
+}
+
+std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
+  std::vector<Mistake> mistakes;
+  if (board.rows % 2 == 0) {
+    CharucoBoard other = board;
+    other.legacy = !board.legacy;
+    mistakes.push_back({{layout_of(other)},
+                        board.legacy ? "they lie as OpenCV 4.6 and later draws it: leave out "
+                                       "--legacy"
+                                     : "they lie as OpenCV before 4.6 drew it: give --legacy"});
+  }
+  mistakes.push_back({{layout_of(swapped(board))}, swap_remedy(board)});
+  return mistakes;
+}
+
+std::vector<Mistake> mistakes_for(const AprilTagGrid& grid) {
+  AprilTagGrid other = grid;
+  other.top_row_first = !grid.top_row_first;
+  return {{turned_layouts(other), grid.top_row_first
+                                      ? "they count from the lowest row: leave out --top-row-first"
+                                      : "they count from the upper row: give --top-row-first"},
+          {turned_layouts(swapped(grid)), swap_remedy(grid)}};
+}
+
+/// The four corners of a tag as points of the grid.
+std::array<int, 4> corners_of(const AprilTagGrid& grid, int tag) {
+  const int counted = tag / grid.columns;
+  const int row = grid.top_row_first ? grid.rows - 1 - counted : counted;
+  const int first = 4 * grid.columns * row + 2 * (tag % grid.columns);
+  return {first, first + 1, first + 2 * grid.columns, first + 2 * grid.columns + 1};
+}
+
+std::vector<Eigen::Vector2d> plane_points(const std::vector<Eigen::Vector3d>& target_m) {
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& X : target_m) points.push_back(X.head<2>());
+  return points;
+}
+
+}  // namespace
+
+void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDetection& result) {
+  const std::string name = name_of(board);
+  const auto found = find_layout(grey, {layout_of(board)}, mistakes_for(board), name, result);
+  if (!found) return;
+  const std::vector<SeenMarker>& markers = found->seen.markers;
+  const double free_m = std::min(0.5 * (board.square_m - board.marker_m), 0.35 * board.square_m);
+  const auto target_m = target_points(board);
+  const auto points = plane_points(target_m);
+  std::vector<CornerGuess> guesses;
+  for (int id = 0; id < static_cast<int>(points.size()); ++id) {
+    const auto near = [&](std::size_t count, double squares) {
+      return homography_near(markers, found->layout, points[id], count, squares * board.square_m);
+    };
+    if (!near(1, 0.8)) continue;  // neither marker beside it is seen
+    const auto H = near(4, 1.7);
+    if (!H) continue;
+    guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
+  }
+  refine_corners(grey, std::move(guesses), target_m, CornerKind::crossing, result);
+  judge(target_m, name, result);
+}
+
+void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDetection& result) {
+  const std::string name = name_of(grid);
+  auto found = find_layout(grey, turned_layouts(grid), mistakes_for(grid), name, result);
+  if (!found) return;
+  add_missed_markers(grey, found->layout, found->seen);
+  const int border = found->seen.border_bits;
+  const int cells = marker_dictionary(found->layout.dictionary)->markerSize + 2 * border;
+  const double free_m =
+      grid.tag_m * std::min(double(border) / cells, grid.spacing / std::numbers::sqrt2);
+  const auto target_m = target_points(grid);
+  const auto points = plane_points(target_m);
+  std::vector<CornerGuess> guesses;
+  for (const SeenMarker& marker : found->seen.markers) {
+    for (const int id : corners_of(grid, marker.id)) {
+      const auto H = homography_near(found->seen.markers, found->layout, points[id], 9,
+                                     2.3 * found->layout.pitch_m);
+      if (!H) continue;
+      guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
+    }
+  }
+  refine_corners(grey, std::move(guesses), target_m, CornerKind::as_most, result);
+  judge(target_m, name, result);
+}
+
+}  // namespace vernier

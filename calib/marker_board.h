@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "calib/board_detection.h"
+
+namespace vernier {
+
+/// Finds a board of markers in an image; see detect_board.
+void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDetection& result);
+void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDetection& result);
+
+}  // namespace vernier

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/observation_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "calib/board_homography.h"
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr double same_image_px = 1e-3;    // of one camera: a copy
+constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps compressed again
+constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
+constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
+
+/// Largest and root mean square difference of the corners two views share.
+struct CornerDifference {
+  double largest_px = std::numeric_limits<double>::infinity();
+  double rms_px = std::numeric_limits<double>::infinity();
+};
+
+CornerDifference corner_difference(const BoardView& a, const BoardView& b) {
+  std::map<int, Eigen::Vector2d> pixels;
+  const bool same_corners = a.ids == b.ids;
+  if (!same_corners) {
+    for (std::size_t i = 0; i < a.ids.size(); ++i) pixels[a.ids[i]] = a.pixels_px[i];
+  }
+  const double enough = 2 * repeated_view_px * repeated_view_px * static_cast<double>(b.ids.size());
+  double largest = 0, sum = 0;
+  int shared = 0;
+  for (std::size_t i = 0; i < b.ids.size() && sum <= enough; ++i) {
+    const auto other = same_corners ? pixels.end() : pixels.find(b.ids[i]);
+    if (!same_corners && other == pixels.end()) continue;
+    const Eigen::Vector2d d = b.pixels_px[i] - (same_corners ? a.pixels_px[i] : other->second);
+    largest = std::max(largest, d.cwiseAbs().maxCoeff());
+    sum += d.squaredNorm();
+    ++shared;
+  }
+  if (shared < 4 || sum > enough) return {};
+  return {largest, std::sqrt(sum / (2 * shared))};
+}
+
+/// Median distance of neighbours along the target's rows, in the image: by corners as they follow.
+double corner_spacing_px(const BoardHomography& view,
+                         const std::vector<Eigen::Vector3d>& target_m) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < target_m.size(); ++i) {
+    const double d = (target_m[i] - target_m[0]).head<2>().norm();
+    if (d > 0) least = std::min(least, d);
+  }
+  return least * std::sqrt(std::abs(view.H.topLeftCorner<2, 2>().determinant()));
+}
+
+/// "3, 5 and 9"; the first few of many.
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
+}
+
+void check_grids(const BoardObservations& observations,
+                 const std::vector<BoardHomography>& homographies) {
+  for (std::size_t i = 0; i < homographies.size(); ++i) {
+    const double spacing = corner_spacing_px(homographies[i], observations.target_m);
+    if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing))
+      continue;
+    throw Error(
+        place_of(observations.views[i]),
+        fmt::format("its corners do not lie like those of a flat board (they miss by {:.0f} px, at "
+                    "{:.0f} px from corner to corner)",
+                    homographies[i].rms_px, spacing),
+        "check that rows and columns of the board are not exchanged and how corners are numbered");
+  }
+}
+
+/// Throws for views mirrored against the others; a doubt where all are.
+void check_mirrored(const BoardObservations& observations,
+                    const std::vector<BoardHomography>& homographies,
+                    ObservationDiagnosis& diagnosis) {
+  std::vector<std::string> mirrored, others;
+  std::map<int, std::pair<int, int>> of_camera;  // mirrored, all
+  for (std::size_t i = 0; i < homographies.size(); ++i) {
+    auto& [wrong, all] = of_camera[observations.views[i].camera];
+    const bool front = homographies[i].seen_from_front;
+    (front ? others : mirrored).push_back(place_of(observations.views[i]));
+    ++all;
+    wrong += !front;
+  }
+  if (mirrored.empty()) return;
+  const std::string cure =
+      "corners run row by row, x right and y down as seen: turn the mirrored images or their "
+      "numbering round";
+  if (others.empty()) {
+    diagnosis.doubts.push_back(
+        "every view shows the board mirrored (its corners run right to left or bottom to top): if "
+        "the images are mirrored, so is the rig; " +
+        cure);
+    return;
+  }
+  for (const auto& [camera, count] : of_camera) {
+    if (count.first != count.second) continue;
+    throw Error(fmt::format("camera {}", camera),
+                fmt::format("the board is mirrored in all its {} views, but not in those of every "
+                            "camera",
+                            count.second),
+                cure);
+  }
+  if (mirrored.size() > others.size()) std::swap(mirrored, others);
+  throw Error(list_of(mirrored),
+              fmt::format("the board is mirrored against the other {} views", others.size()), cure);
+}
+
+void check_repeats(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
+  const auto& views = observations.views;
+  std::vector<std::string> repeated;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t j = i + 1; j < views.size(); ++j) {
+      const bool one_camera = views[i].camera == views[j].camera;
+      if (!one_camera && views[i].frame != views[j].frame) continue;
+      const CornerDifference d = corner_difference(views[i], views[j]);
+      if (!one_camera && d.rms_px < same_cameras_px) {
+        throw Error(place_of(views[i]) + " and camera " + std::to_string(views[j].camera),
+                    fmt::format("the images are the same (their corners differ by {:.2g} px)",
+                                d.largest_px),
+                    "give the other camera's own image");
+      }
+      if (one_camera && d.largest_px < same_image_px) {
+        throw Error(place_of(views[j]),
+                    fmt::format("it is the same view as frame {} (their corners differ by {:.2g} "
+                                "px), and counting it twice would make the rig look better known "
+                                "than it is",
+                                views[i].frame, d.largest_px),
+                    "remove one of the two");
+      }
+      if (one_camera && d.rms_px < repeated_view_px) {
+        repeated.push_back(
+            fmt::format("{} and {} (camera {})", views[i].frame, views[j].frame, views[i].camera));
+      }
+    }
+  }
+  if (!repeated.empty()) {
+    diagnosis.warnings.push_back("the board had not moved between frames " + list_of(repeated) +
+                                 ": they count as independent views but say hardly more than one");
+  }
+}
+
+void check_sizes(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
+  for (int c = 0; c < static_cast<int>(observations.size_px.size()); ++c) {
+    Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
+    for (const BoardView& view : observations.views) {
+      if (view.camera != c) continue;
+      for (const auto& pixel : view.pixels_px) farthest = farthest.cwiseMax(pixel);
+    }
+    const Eigen::Vector2d size = observations.size_px[c].cast<double>();
+    if ((farthest.array() < 0.52 * size.array()).all()) {
+      diagnosis.doubts.push_back(
+          fmt::format("camera {}: no corner lies beyond ({:.0f}, {:.0f}) of an image of {:.0f}x"
+                      "{:.0f}: check the image size, or show the board in all of the image",
+                      c, farthest.x(), farthest.y(), size.x(), size.y()));
+    }
+  }
+  Eigen::Vector3d low = observations.target_m.front(), high = low;
+  for (const Eigen::Vector3d& X : observations.target_m) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  const double extent = (high - low).maxCoeff();
+  if (extent > 20 || extent < 0.005) {
+    diagnosis.warnings.push_back(
+        fmt::format("the board measures {:.3g} m: are its corners given in metres? Views of one "
+                    "board cannot show a wrong scale",
+                    extent));
+  }
+}
+
+/// Frames that some cameras did not see: counted and said.
+void count_unpaired(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
+  const auto cameras = static_cast<int>(observations.size_px.size());
+  if (cameras < 2) return;
+  std::map<int, std::vector<int>> cameras_of_frame;
+  for (const BoardView& view : observations.views) {
+    cameras_of_frame[view.frame].push_back(view.camera);
+  }
+  std::map<int, std::vector<std::string>> alone;
+  for (const auto& [frame, seen] : cameras_of_frame) {
+    if (seen.size() == 1) alone[seen.front()].push_back(std::to_string(frame));
+  }
+  for (const auto& [camera, frames] : alone) {
+    diagnosis.warnings.push_back(fmt::format(
+        "{} of {} frames show the board in camera {} alone ({}): they tell its intrinsics only, "
+        "nothing of the cameras' poses",
+        frames.size(), cameras_of_frame.size(), camera, list_of(frames)));
+  }
+}
+
+}  // namespace
+
+void ObservationDiagnosis::add(const ObservationDiagnosis& more) {
+  warnings.insert(warnings.end(), more.warnings.begin(), more.warnings.end());
+  doubts.insert(doubts.end(), more.doubts.begin(), more.doubts.end());
+}
+
+std::string place_of(const BoardView& view) {
+  return fmt::format("frame {}, camera {}", view.frame, view.camera) +
+         (view.image.empty() ? "" : " (" + view.image + ")");
+}
+
+ObservationDiagnosis check_observations(const BoardObservations& observations) {
+  ObservationDiagnosis diagnosis;
+  if (observations.views.empty()) {
+    throw Error("observations", "there is no view of the board", "give some");
+  }
+  check_flat(observations.target_m);
+  std::vector<BoardHomography> homographies;
+  for (const BoardView& view : observations.views) {
+    homographies.push_back(board_homography(observations.target_m, view));
+  }
+  check_grids(observations, homographies);
+  check_mirrored(observations, homographies, diagnosis);
+  check_repeats(observations, diagnosis);
+  check_sizes(observations, diagnosis);
+  count_unpaired(observations, diagnosis);
+  return diagnosis;
+}
+
+}  // namespace vernier

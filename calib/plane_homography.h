@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace vernier {
+
+/// The homography that takes points of a plane to pixels, by the normalised direct linear transform
+/// (Hartley 1997). Nothing where there are fewer than four points or they determine none.
+std::optional<Eigen::Matrix3d> fit_homography(const std::vector<Eigen::Vector2d>& from,
+                                              const std::vector<Eigen::Vector2d>& to);
+
+inline Eigen::Vector2d map_point(const Eigen::Matrix3d& H, const Eigen::Vector2d& x) {
+  return (H * x.homogeneous()).hnormalized();
+}
+
+/// The derivative of map_point by the point.
+Eigen::Matrix2d map_derivative(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
+
+}  // namespace vernier

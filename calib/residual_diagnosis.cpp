@@ -1,0 +1,322 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/residual_diagnosis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "calib/board_warp.h"
+#include "calib/error.h"
+#include "calib/model_nesting.h"
+#include "calib/observation_checks.h"
+#include "calib/view_pair.h"
+
+namespace vernier {
+namespace {
+
+/// A solution and the squares it leaves.
+struct Trial {
+  BoardState state;
+  double sum_px2 = 0;
+};
+
+double sum_of_squares(const CornerResiduals& residuals) {
+  double sum = 0;
+  for (const auto& view : residuals) {
+    for (const Eigen::Vector2d& r : view) sum += r.squaredNorm();
+  }
+  return sum;
+}
+
+double rms_of(double sum_px2, std::size_t corners) {
+  return std::sqrt(sum_px2 / (2.0 * static_cast<double>(std::max<std::size_t>(1, corners))));
+}
+
+class Diagnosis {
+ public:
+  Diagnosis(const BoardObservations& observations,
+            const BoardState& state,
+            const ReprojectionProblem& problem,
+            const ResidualDiagnosisOptions& options)
+      : observations_(observations),
+        state_(state),
+        problem_(problem),
+        options_(options),
+        residuals_(corner_residuals(observations, state)),
+        sum_px2_(sum_of_squares(residuals_)) {
+    for (const BoardView& view : observations.views) corners_ += view.ids.size();
+  }
+
+  std::vector<ResidualFinding> run() {
+    if (!(sum_px2_ > 0)) return {};
+    look_at_lens();
+    look_at_board();
+    look_at_time();
+    look_at_images();
+    look_at_cameras();
+    std::erase_if(findings_, [&](const auto& f) { return f.share < options_.least_share; });
+    std::stable_sort(findings_.begin(), findings_.end(),
+                     [](const auto& a, const auto& b) { return a.share > b.share; });
+    look_at_pixels();
+    look_at_what_is_missing();
+    return findings_;
+  }
+
+ private:
+  double share_gone(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
+  double rms() const { return rms_of(sum_px2_, corners_); }
+
+  /// The same views solved otherwise; nothing where that fails. Priors and held values belong to
+  /// the model they were given for, so only free problems are tried again.
+  std::optional<Trial> solved(BoardState start, BoardWarp warp) const {
+    ReprojectionProblem trial = problem_;
+    trial.warp = warp;
+    trial.max_iterations = 60;
+    try {
+      Trial result{minimise_reprojection(observations_, std::move(start), trial), 0};
+      result.sum_px2 = sum_of_squares(corner_residuals(observations_, result.state));
+      if (std::isfinite(result.sum_px2)) return result;
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Trial> with_model(const CameraModel& model) const {
+    const std::vector<CameraModel> models(state_.rig.cameras.size(), model);
+    try {
+      BoardState start = initial_state(observations_, models);
+      start.warp_m = state_.warp_m;
+      return solved(std::move(start), problem_.warp);
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  }
+
+  /// Mean residual along the radius (pixels, prediction beyond the corner positive) over the outer
+  /// third of the radii that corners reach.
+  double outward_at_edge_px() const {
+    std::vector<std::pair<double, double>> radial;  // radius, residual along it
+    for (std::size_t v = 0; v < residuals_.size(); ++v) {
+      const BoardView& view = observations_.views[v];
+      const Camera& camera = state_.rig.cameras[view.camera];
+      for (std::size_t i = 0; i < view.ids.size(); ++i) {
+        const Eigen::Vector2d from_centre =
+            view.pixels_px[i] - Eigen::Vector2d(camera.ox_px(), camera.oy_px());
+        const double radius = from_centre.norm();
+        if (radius > 1) radial.emplace_back(radius, residuals_[v][i].dot(from_centre) / radius);
+      }
+    }
+    if (radial.empty()) return 0;
+    const double farthest = std::max_element(radial.begin(), radial.end())->first;
+    double sum = 0;
+    int count = 0;
+    for (const auto& [radius, along] : radial) {
+      if (radius < 2.0 / 3 * farthest) continue;
+      sum += along;
+      ++count;
+    }
+    return sum / std::max(1, count);
+  }
+
+  void look_at_lens() {
+    const bool free =
+        problem_.priors.empty() &&
+        std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
+    if (!free) return;
+    std::set<std::string_view> tried;
+    for (const CameraModel& model : models_of(state_.rig)) tried.insert(model_name(model));
+    std::optional<Trial> best;
+    std::string_view best_name;
+    for (const CameraModel& model :
+         {CameraModel{OpenCv5{}}, CameraModel{OpenCv8{}}, CameraModel{Fisheye4{}}}) {
+      if (tried.contains(model_name(model))) continue;
+      const std::optional<Trial> trial = with_model(model);
+      // a richer model must be worth its coefficients
+      if (!trial || (best && trial->sum_px2 > 0.9 * best->sum_px2)) continue;
+      best = trial;
+      best_name = model_name(model);
+    }
+    if (!best) return;
+    findings_.push_back(
+        {share_gone(best->sum_px2),
+         fmt::format("the lens needs another model: with {} the same corners leave {:.2f} px "
+                     "instead of {:.2f} px (now predictions lie {:.2f} px too far {} on the mean "
+                     "near the image's edge); calibrate with --model {}",
+                     best_name, rms_of(best->sum_px2, corners_), rms(),
+                     std::abs(outward_at_edge_px()), outward_at_edge_px() > 0 ? "out" : "in",
+                     best_name)});
+  }
+
+  void look_at_board() {
+    if (problem_.warp == BoardWarp::free) return;
+    const std::optional<Trial> bent = solved(state_, BoardWarp::free);
+    if (!bent) return;
+    const Eigen::Vector2d warp_mm = 1e3 * bent->state.warp_m;
+    findings_.push_back(
+        {share_gone(bent->sum_px2),
+         fmt::format("the board is not flat: bent by {:.2g} mm across and {:.2g} mm along, it "
+                     "leaves {:.2f} px instead of {:.2f} px; let the shape be estimated or use a "
+                     "stiff board",
+                     warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
+  }
+
+  void look_at_time() {
+    BoardObservations warped = observations_;
+    warped.target_m = warped_target(warped.target_m, state_.warp_m);
+    for (int second = 1; second < static_cast<int>(state_.rig.cameras.size()); ++second) {
+      const PairConsensus pair(warped, state_.rig, 0, second);
+      Rig rig{{state_.rig.cameras[0], state_.rig.cameras[second]},
+              {Pose{}, state_.rig.T_camera_first[second]}};
+      std::vector<std::string> apart;
+      double alone_sum = 0, together_sum = 0;
+      for (std::size_t i = 0; i < pair.pairs().size(); ++i) {
+        const ViewPair& views = pair.pairs()[i];
+        const double together = pair.together_px(i, PairReading::as_is, rig);
+        if (!(together > 2 * views.alone_px)) continue;
+        const double corners =
+            2.0 * static_cast<double>(views.first.ids.size() + views.second.ids.size());
+        apart.push_back(fmt::format("{} ({:.1f} px against {:.1f})", views.first.frame, together,
+                                    views.alone_px));
+        alone_sum += corners * views.alone_px * views.alone_px;
+        together_sum += corners * together * together;
+      }
+      if (apart.empty()) continue;
+      findings_.push_back(
+          {std::min(1.0, (together_sum - alone_sum) / sum_px2_),
+           fmt::format("cameras 0 and {} did not see the board at one place in {} of {} frames, "
+                       "each image fitting alone but not both together: {}; hold the board still, "
+                       "trigger both at once, or leave these frames out",
+                       second, apart.size(), pair.pairs().size(), some_of(apart))});
+    }
+  }
+
+  void look_at_images() {
+    std::vector<double> rms_px;
+    std::vector<double> sums;
+    for (const auto& view : residuals_) {
+      double sum = 0;
+      for (const Eigen::Vector2d& r : view) sum += r.squaredNorm();
+      sums.push_back(sum);
+      rms_px.push_back(rms_of(sum, view.size()));
+    }
+    std::vector<double> sorted = rms_px;
+    std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+    const double usual = sorted[sorted.size() / 2];
+    std::vector<std::pair<double, std::size_t>> poor;
+    double poor_sum = 0;
+    std::size_t poor_corners = 0;
+    for (std::size_t v = 0; v < rms_px.size(); ++v) {
+      if (!(rms_px[v] > 2.5 * usual)) continue;
+      poor.emplace_back(rms_px[v], v);
+      poor_sum += sums[v];
+      poor_corners += residuals_[v].size();
+    }
+    if (poor.empty()) return;
+    std::sort(poor.rbegin(), poor.rend());
+    std::vector<std::string> names;
+    for (const auto& [px, v] : poor) {
+      names.push_back(fmt::format("{} ({:.1f} px)", place_of(observations_.views[v]), px));
+    }
+    findings_.push_back(
+        {poor_sum / sum_px2_,
+         fmt::format("{} of {} images hold {:.0f} % of the misfit: {}; the others leave {:.2f} px: "
+                     "look at these images, or leave them out",
+                     poor.size(), residuals_.size(), 100 * poor_sum / sum_px2_, some_of(names),
+                     rms_of(sum_px2_ - poor_sum, corners_ - poor_corners))});
+  }
+
+  void look_at_cameras() {
+    if (state_.rig.cameras.size() < 2) return;
+    std::map<int, std::pair<double, std::size_t>> of_camera;
+    for (std::size_t v = 0; v < residuals_.size(); ++v) {
+      auto& [sum, corners] = of_camera[observations_.views[v].camera];
+      for (const Eigen::Vector2d& r : residuals_[v]) sum += r.squaredNorm();
+      corners += residuals_[v].size();
+    }
+    for (const auto& [camera, own] : of_camera) {
+      const double px = rms_of(own.first, own.second);
+      const double others = rms_of(sum_px2_ - own.first, corners_ - own.second);
+      if (!(px > 2.5 * others)) continue;
+      findings_.push_back(
+          {own.first / sum_px2_,
+           fmt::format("camera {} (\"{}\") leaves {:.2f} px, the others {:.2f} px: look at its "
+                       "focus, its images and its lens model",
+                       camera, state_.rig.cameras[camera].name, px, others)});
+    }
+  }
+
+  void look_at_pixels() {
+    for (const Camera& camera : state_.rig.cameras) {
+      if (std::abs(camera.ax() - 1) < 0.05) continue;
+      findings_.push_back(
+          {0, fmt::format("camera \"{}\" seems to have pixels {:.0f} % {} than high: where that is "
+                          "not so, the board's squares are not square or its sides are not as said",
+                          camera.name, 100 * std::abs(1 / camera.ax() - 1),
+                          camera.ax() < 1 ? "wider" : "narrower")});
+    }
+  }
+
+  void look_at_what_is_missing() {
+    std::map<std::pair<int, int>, std::pair<std::string, int>> out;  // by frame, camera
+    for (const CornerOutlier& corner : options_.outliers) {
+      auto& [image, count] = out[{corner.frame, corner.camera}];
+      image = place_of({corner.frame, corner.camera, corner.image, {}, {}});
+      ++count;
+    }
+    std::vector<std::string> whole;
+    for (const auto& [place, left_out] : out) {
+      const auto& views = observations_.views;
+      const bool kept = std::any_of(views.begin(), views.end(), [&](const BoardView& view) {
+        return std::pair(view.frame, view.camera) == place;
+      });
+      if (!kept) whole.push_back(left_out.first);
+    }
+    if (!whole.empty()) {
+      findings_.push_back({0, fmt::format("{} image{} left out as a whole, because no pose of the "
+                                          "board fits the rest: {}; look at {}",
+                                          whole.size(), whole.size() == 1 ? " was" : "s were",
+                                          some_of(whole), whole.size() == 1 ? "it" : "them")});
+    }
+    const auto found = static_cast<int>(observations_.views.size());
+    if (options_.images_without_board > found / 2) {
+      findings_.push_back(
+          {0, fmt::format("the board was found in only {} of {} images: give sharp, evenly lit "
+                          "images with the whole board in view",
+                          found, found + options_.images_without_board)});
+    }
+  }
+
+  static std::string some_of(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 5;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+      text += (i == 0 ? "" : ", ") + names[i];
+    }
+    return names.size() > most ? text + fmt::format(" and {} more", names.size() - most) : text;
+  }
+
+  const BoardObservations& observations_;
+  const BoardState& state_;
+  const ReprojectionProblem& problem_;
+  const ResidualDiagnosisOptions& options_;
+  CornerResiduals residuals_;
+  double sum_px2_ = 0;
+  std::size_t corners_ = 0;
+  std::vector<ResidualFinding> findings_;
+};
+
+}  // namespace
+
+std::vector<ResidualFinding> diagnose_residuals(const BoardObservations& observations,
+                                                const BoardState& state,
+                                                const ReprojectionProblem& problem,
+                                                const ResidualDiagnosisOptions& options) {
+  return Diagnosis(observations, state, problem, options).run();
+}
+
+}  // namespace vernier

@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/view_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "calib/board_pose.h"
+#include "calib/error.h"
+#include "calib/tilt_check.h"
+#include "calib/view_pair.h"
+
+namespace vernier {
+namespace {
+
+/// Which frames of two cameras fit one pose between them.
+struct Agreement {
+  Rig rig;                          ///< the two cameras and the pose they agree on
+  std::vector<double> together_px;  ///< one a pair
+  std::vector<bool> fits;           ///< one a pair
+  std::size_t count = 0;            ///< of those that fit
+  std::size_t gross = 0;            ///< of those that no rough start excuses
+};
+
+Agreement agreement(const PairConsensus& consensus, PairReading reading) {
+  Agreement result{consensus.agreed_rig(reading), {}, {}, 0, 0};
+  for (std::size_t i = 0; i < consensus.pairs().size(); ++i) {
+    const double together = consensus.together_px(i, reading, result.rig);
+    result.together_px.push_back(together);
+    result.fits.push_back(consensus.fits(i, together));
+    result.gross += consensus.misfits_grossly(together);
+    result.count += result.fits.back();
+  }
+  return result;
+}
+
+/// Direction of the board's diagonal in the image.
+Eigen::Vector2d diagonal(const BoardView& view) {
+  const auto [low, high] = std::minmax_element(view.ids.begin(), view.ids.end());
+  return (view.pixels_px[high - view.ids.begin()] - view.pixels_px[low - view.ids.begin()])
+      .normalized();
+}
+
+/// The camera (0 or 1 of the pair) whose board lies less like in its other frames.
+int odd_one(const PairConsensus& consensus, std::size_t index, const std::vector<bool>& fits) {
+  Eigen::Vector2d usual[2] = {{0, 0}, {0, 0}};
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i]) continue;
+    usual[0] += diagonal(consensus.pairs()[i].first);
+    usual[1] += diagonal(consensus.pairs()[i].second);
+  }
+  const ViewPair& pair = consensus.pairs()[index];
+  return usual[0].dot(diagonal(pair.first)) < usual[1].dot(diagonal(pair.second)) ? 0 : 1;
+}
+
+std::string image_place(const BoardView& view, int camera) {
+  BoardView named = view;
+  named.camera = camera;
+  return place_of(named);
+}
+
+std::string and_more(std::size_t more) {
+  return more == 0 ? "" : fmt::format(" (and {} more frame{} like it)", more, more == 1 ? "" : "s");
+}
+
+/// A frame that fits when it is read otherwise.
+struct Repair {
+  std::size_t pair;
+  double as_is_px, repaired_px;
+};
+
+/// Two cameras of the rig and what is said of them.
+class PairCheck {
+ public:
+  PairCheck(const BoardObservations& observations, const Rig& rig, int first, int second)
+      : observations_(observations),
+        rig_(rig),
+        first_(first),
+        second_(second),
+        consensus_(observations, rig, first, second) {}
+
+  void run(ObservationDiagnosis& diagnosis) const {
+    const std::size_t n = consensus_.pairs().size();
+    if (n < 2) return;
+    const Agreement as_is = agreement(consensus_, PairReading::as_is);
+    if (as_is.count == n) return;
+    if (consensus_.can_turn()) complain_if_turned_throughout(as_is.count);
+    if (2 * as_is.gross > n) {
+      complain_of_pairing(n - as_is.gross, diagnosis);
+    } else if (2 * as_is.count >= n) {
+      complain_of_frames(as_is, diagnosis);
+    }
+  }
+
+ private:
+  std::string cameras() const { return fmt::format("cameras {} and {}", first_, second_); }
+
+  void complain_if_turned_throughout(std::size_t as_is) const {
+    const std::size_t n = consensus_.pairs().size();
+    const Agreement turned = agreement(consensus_, PairReading::turned);
+    if (turned.count <= as_is || 2 * turned.count < n) return;
+    throw Error(fmt::format("camera {}", second_),
+                fmt::format("its corners are numbered half a turn (180 degrees) away from those "
+                            "of camera {} in {} of {} frames",
+                            first_, turned.count, n),
+                "reverse the order of the corners in one of the two cameras");
+  }
+
+  void complain_of_pairing(std::size_t agreeing, ObservationDiagnosis& diagnosis) const {
+    const std::size_t n = consensus_.pairs().size();
+    for (const int shift : {1, -1, 2, -2}) {
+      const PairConsensus shifted(observations_, rig_, first_, second_, shift);
+      const std::size_t pairs = shifted.pairs().size();
+      if (pairs < 3) continue;
+      const std::size_t count = agreement(shifted, PairReading::as_is).count;
+      if (2 * count < pairs || count <= agreeing) continue;
+      throw Error(
+          cameras(),
+          fmt::format("their images are paired wrongly: {} of {} frames agree on no pose between "
+                      "the cameras, but {} of {} do when camera {}'s images are taken {} frame{} "
+                      "{}",
+                      n - agreeing, n, count, pairs, second_, std::abs(shift),
+                      std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
+          "number the images so that those taken at once have one number");
+    }
+    const std::string fault = fmt::format(
+        "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
+        "or not of one frame, or the cameras moved against each other",
+        agreeing, n);
+    const std::string cure = "check the pairing; hold the board still or trigger both at once";
+    if (n >= 4) throw Error(cameras(), fault, cure);
+    diagnosis.doubts.push_back(cameras() + ": " + fault + "; " + cure);
+  }
+
+  void complain_of_frames(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
+    std::vector<Repair> turned, exchanged;
+    for (std::size_t i = 0; i < as_is.fits.size(); ++i) {
+      if (as_is.fits[i]) continue;
+      const double together = consensus_.together_px(i, PairReading::as_is, as_is.rig);
+      const auto repaired = [&](PairReading reading, std::vector<Repair>& list) {
+        const double px = consensus_.together_px(i, reading, as_is.rig);
+        const bool helps = consensus_.fits(i, px) && 2 * px < together;
+        if (helps) list.push_back({i, together, px});
+        return helps;
+      };
+      if (consensus_.can_turn() && repaired(PairReading::turned, turned)) continue;
+      if (repaired(PairReading::exchanged, exchanged)) continue;
+      if (!consensus_.misfits_grossly(together)) continue;  // the solution will show
+      const ViewPair& pair = consensus_.pairs()[i];
+      diagnosis.doubts.push_back(fmt::format(
+          "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
+          "not simultaneous or the corners of one are numbered from another place; leave the frame "
+          "out",
+          image_place(pair.second, second_), pair.alone_px, together));
+    }
+    if (!turned.empty()) throw_turned(turned, as_is.fits);
+    if (!exchanged.empty()) throw_exchanged(exchanged);
+  }
+
+  [[noreturn]] void throw_turned(const std::vector<Repair>& repairs,
+                                 const std::vector<bool>& fits) const {
+    const Repair& worst = repairs.front();
+    const ViewPair& pair = consensus_.pairs()[worst.pair];
+    const int side = odd_one(consensus_, worst.pair, fits);
+    throw Error(image_place(side == 0 ? pair.first : pair.second, side == 0 ? first_ : second_),
+                fmt::format("its corners are numbered half a turn (180 degrees) away from those of "
+                            "camera {} (together they fit to {:.0f} px as they are, to {:.1f} px "
+                            "turned){}",
+                            side == 0 ? second_ : first_, worst.as_is_px, worst.repaired_px,
+                            and_more(repairs.size() - 1)),
+                "reverse the order of its corners or leave the frame out");
+  }
+
+  [[noreturn]] void throw_exchanged(const std::vector<Repair>& repairs) const {
+    const Repair& worst = repairs.front();
+    const ViewPair& pair = consensus_.pairs()[worst.pair];
+    throw Error(fmt::format("{} and {}", image_place(pair.first, first_),
+                            image_place(pair.second, second_)),
+                fmt::format("left and right are swapped against the other frames (they fit to "
+                            "{:.0f} px as they are, to {:.1f} px exchanged){}",
+                            worst.as_is_px, worst.repaired_px, and_more(repairs.size() - 1)),
+                "exchange the two images or leave the frame out");
+  }
+
+  const BoardObservations& observations_;
+  const Rig& rig_;
+  int first_, second_;
+  PairConsensus consensus_;
+};
+
+/// The earlier camera that shares most frames with `camera`.
+int best_partner(const BoardObservations& observations, int camera) {
+  std::vector<int> shared(camera, 0);
+  for (const BoardView& a : observations.views) {
+    if (a.camera != camera) continue;
+    for (const BoardView& b : observations.views) {
+      if (b.frame == a.frame && b.camera < camera) ++shared[b.camera];
+    }
+  }
+  return static_cast<int>(std::max_element(shared.begin(), shared.end()) - shared.begin());
+}
+
+/// Whether one board pose a frame explains all its images to what a rough start may leave: then no
+/// pair of cameras need be looked at.
+bool all_fit(const BoardObservations& observations, const BoardState& start) {
+  int longest = 0;
+  for (const Camera& camera : start.rig.cameras) {
+    longest = std::max(longest, camera.size_px.maxCoeff());
+  }
+  auto begin = observations.views.begin();
+  for (std::size_t f = 0; f < start.frames.size(); ++f) {
+    auto end = begin;
+    while (end != observations.views.end() && end->frame == start.frames[f]) ++end;
+    const BoardPoseFit fit = fit_board_pose(observations.target_m, std::span(begin, end), start.rig,
+                                            start.T_first_board[f], 5);
+    if (!(fit.rms_px <= sound_share * longest)) return false;
+    begin = end;
+  }
+  return true;
+}
+
+/// Of a pair: is the second camera where a right one stands?
+void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
+  if (start.rig.cameras.size() != 2) return;
+  const Eigen::Vector3d centre = start.rig.T_camera_first[1].inverse().t;
+  double distance = 0;
+  for (const Pose& T : start.T_first_board) {
+    distance += T.t.norm() / static_cast<double>(start.T_first_board.size());
+  }
+  if (centre.norm() < 1e-3 * distance) {
+    diagnosis.doubts.push_back(
+        fmt::format("both cameras stand at one place ({:.2g} m apart, the board at {:.2g} m): the "
+                    "images may be of one camera",
+                    centre.norm(), distance));
+  } else if (centre.x() < 0 && -centre.x() > centre.tail<2>().cwiseAbs().maxCoeff()) {
+    diagnosis.doubts.push_back(
+        fmt::format("camera 1 (\"{}\") stands {:.3g} m to the left of camera 0 (\"{}\"): the "
+                    "cameras seem to be exchanged, and disparities of such a pair are negative; "
+                    "give left and right the other way round",
+                    start.rig.cameras[1].name, -centre.x(), start.rig.cameras[0].name));
+  }
+}
+
+}  // namespace
+
+ObservationDiagnosis check_views(const BoardObservations& observations,
+                                 const BoardState& start,
+                                 const ViewCheckOptions& options) {
+  ObservationDiagnosis diagnosis;
+  const bool sound = all_fit(observations, start);
+  for (int c = 1; !sound && c < static_cast<int>(start.rig.cameras.size()); ++c) {
+    PairCheck(observations, start.rig, best_partner(observations, c), c).run(diagnosis);
+  }
+  if (options.tilts) diagnosis.add(check_tilts(observations, start));
+  check_baseline(start, diagnosis);
+  return diagnosis;
+}
+
+}  // namespace vernier

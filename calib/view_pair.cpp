@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/view_pair.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "calib/board_pose.h"
+#include "calib/error.h"
+#include "calib/normal_equations.h"
+
+namespace vernier {
+namespace {
+
+constexpr double sound_times_alone = 4;
+constexpr double gross_share = 0.03;  // of the image's longer side
+
+/// The half turn of the target about its middle, as poses and as corners; none where the corners
+/// do not fall on each other.
+std::vector<int> half_turn_of(const std::vector<Eigen::Vector3d>& target_m, Pose& turn) {
+  Eigen::Vector3d low = target_m.front(), high = low;
+  for (const Eigen::Vector3d& X : target_m) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  turn.R = Eigen::Vector3d(-1, -1, 1).asDiagonal();
+  turn.t = {low.x() + high.x(), low.y() + high.y(), 0};
+  const double near = 1e-3 * (high - low).head<2>().norm();
+  std::vector<int> taken;
+  for (const Eigen::Vector3d& X : target_m) {
+    const Eigen::Vector3d turned = turn * X;
+    const auto at = std::find_if(target_m.begin(), target_m.end(), [&](const auto& other) {
+      return (other - turned).template head<2>().norm() < near;
+    });
+    if (at == target_m.end()) return {};
+    taken.push_back(static_cast<int>(at - target_m.begin()));
+  }
+  return taken;
+}
+
+std::vector<BoardView> views_of(const BoardObservations& observations, int camera) {
+  std::vector<BoardView> views;
+  for (const BoardView& view : observations.views) {
+    if (view.camera == camera) views.push_back(view);
+  }
+  return views;
+}
+
+}  // namespace
+
+PairConsensus::PairConsensus(
+    const BoardObservations& observations, const Rig& rig, int first, int second, int shift)
+    : observations_(observations), cameras_{rig.cameras[first], rig.cameras[second]} {
+  half_turn_ = half_turn_of(observations.target_m, T_board_turned_);
+  const std::vector<int> frames = frames_of(observations);
+  std::map<int, int> position;
+  for (const int frame : frames) position.emplace(frame, static_cast<int>(position.size()));
+  const std::vector<BoardView> seconds = views_of(observations, second);
+  for (const BoardView& view : views_of(observations, first)) {
+    const auto partner = std::find_if(seconds.begin(), seconds.end(), [&](const BoardView& other) {
+      return position[other.frame] == position[view.frame] + shift;
+    });
+    if (partner == seconds.end()) continue;
+    ViewPair pair{view, *partner, {}, {}, 0};
+    pair.first.camera = 0;
+    pair.second.camera = 1;
+    for (BoardView* side : {&pair.first, &pair.second}) {
+      BoardView alone = *side;
+      alone.camera = 0;
+      const Rig one{{cameras_[side->camera]}, {Pose{}}};
+      const BoardPoseFit fit =
+          fit_board_pose(observations.target_m, std::span(&alone, 1), one,
+                         board_pose(observations.target_m, alone, one.cameras[0]), 6);
+      (side->camera == 0 ? pair.T_first_board : pair.T_second_board) = fit.T_first_board;
+      pair.alone_px = std::max(pair.alone_px, fit.rms_px);
+    }
+    pairs_.push_back(std::move(pair));
+  }
+}
+
+ViewPair PairConsensus::read(const ViewPair& pair, PairReading reading) const {
+  ViewPair result = pair;
+  if (reading == PairReading::turned) {
+    for (int& id : result.second.ids) id = half_turn_[id];
+    result.T_second_board = pair.T_second_board * T_board_turned_;
+  } else if (reading == PairReading::exchanged) {
+    std::swap(result.first, result.second);
+    std::swap(result.T_first_board, result.T_second_board);
+    result.first.camera = 0;
+    result.second.camera = 1;
+  }
+  return result;
+}
+
+BoardPoseFit PairConsensus::together(std::size_t index, PairReading reading, const Rig& rig) const {
+  const ViewPair pair = read(pairs_[index], reading);
+  const std::array views{pair.first, pair.second};
+  const Pose by_second = rig.T_camera_first[1].inverse() * pair.T_second_board;
+  const BoardPoseFit a = fit_board_pose(observations_.target_m, views, rig, pair.T_first_board, 15);
+  const BoardPoseFit b = fit_board_pose(observations_.target_m, views, rig, by_second, 15);
+  return b.rms_px < a.rms_px ? b : a;
+}
+
+double PairConsensus::together_px(std::size_t pair, PairReading reading, const Rig& rig) const {
+  return together(pair, reading, rig).rms_px;
+}
+
+double PairConsensus::longest_px() const {
+  return std::max(cameras_[0].size_px.maxCoeff(), cameras_[1].size_px.maxCoeff());
+}
+
+bool PairConsensus::fits(std::size_t pair, double together_px) const {
+  return together_px <=
+         std::max(sound_share * longest_px(), sound_times_alone * pairs_[pair].alone_px);
+}
+
+bool PairConsensus::misfits_grossly(double together_px) const {
+  return together_px > gross_share * longest_px();
+}
+
+PairConsensus::Half PairConsensus::better_half(PairReading reading, const Rig& rig) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  std::vector<BoardPoseFit> fits;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    fits.push_back(together(i, reading, rig));
+    order.emplace_back(fits.back().rms_px, i);
+  }
+  std::sort(order.begin(), order.end());
+  order.resize((order.size() + 1) / 2);
+  Half half{{{cameras_[0].size_px, cameras_[1].size_px}, observations_.target_m, {}},
+            {rig, {}, {}, {0, 0}},
+            0};
+  for (const auto& [rms_px, i] : order) {
+    const ViewPair pair = read(pairs_[i], reading);
+    half.state.frames.push_back(static_cast<int>(half.state.frames.size()));
+    half.state.T_first_board.push_back(fits[i].T_first_board);
+    half.sum_px2 += rms_px * rms_px;
+    for (BoardView view : {pair.first, pair.second}) {
+      view.frame = half.state.frames.back();
+      half.observations.views.push_back(std::move(view));
+    }
+  }
+  return half;
+}
+
+std::optional<Rig> PairConsensus::improved(const Half& half, const std::vector<int>& free) {
+  try {
+    const ReducedNormalEquations equations =
+        reduced_normal_equations(half.observations, half.state, 1);
+    const Eigen::MatrixXd S = equations.information(free, free);
+    const Eigen::VectorXd score = equations.scores.rowwise().sum();
+    Eigen::VectorXd delta = Eigen::VectorXd::Zero(score.size());
+    delta(free) = -S.ldlt().solve(Eigen::VectorXd(score(free)));
+    if (delta.allFinite()) return retract(half.state.rig, delta);
+  } catch (const Error&) {  // a wrong reading may leave no pose of a board that is determined
+  }
+  return std::nullopt;
+}
+
+Rig PairConsensus::agreed_rig(PairReading reading) const {
+  std::vector<Pose> candidates;
+  for (const ViewPair& pair : pairs_) {
+    const ViewPair seen = read(pair, reading);
+    candidates.push_back(seen.T_second_board * seen.T_first_board.inverse());
+  }
+  Rig rig{cameras_, {Pose{}, consensus_pose(candidates)}};
+  // Gauss and Newton on the better half of the frames, their board poses following: both focal
+  // lengths (images of one camera alone may tell them badly) and the pose between the two.
+  Half half = better_half(reading, rig);
+  std::vector<int> free{0, intrinsics_index(rig, 1)};
+  for (int i = 0; i < 6; ++i) free.push_back(pose_index(rig, 1) + i);
+  for (int step = 0; step < 4 && std::isfinite(half.sum_px2); ++step) {
+    const std::optional<Rig> moved = improved(half, free);
+    if (!moved) break;
+    Half next = better_half(reading, *moved);
+    if (!(next.sum_px2 < half.sum_px2)) break;
+    rig = *moved;
+    half = std::move(next);
+  }
+  return rig;
+}
+
+}  // namespace vernier

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "calib/error.h"
+#include "calib/rig_file.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/uncertainty_tables.h"
+
+namespace vernier::cli {
+namespace {
+
+struct Options {
+  std::string rig, output;
+  std::string distances = "1,5,inf", grid = "60x45", covariance = "honest";
+  double pair_sigma_px = -1;  // that of the calibration
+  double psi_c = 1;
+  int samples = 2000;
+  std::uint64_t seed = 1;
+};
+
+/// "1,5,inf": distances above 0.
+std::vector<double> parse_distances(const std::string& text) {
+  const Error error("--distances-m", "\"" + text + "\" is not a list of distances above 0",
+                    "write it like 1,5,inf");
+  std::vector<double> distances;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const std::string word = text.substr(at, comma - at);
+    at = comma + 1;
+    double value = std::numeric_limits<double>::infinity();
+    if (word != "inf") {
+      const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
+      const bool whole = parsed.ec == std::errc() && parsed.ptr == word.data() + word.size();
+      if (!whole || !std::isfinite(value) || !(value > 0)) throw error;
+    }
+    if (std::find(distances.begin(), distances.end(), value) != distances.end()) continue;
+    distances.push_back(value);
+  }
+  return distances;
+}
+
+/// The estimate with the wanted covariance as the one that is sampled.
+RigEstimate with_choice(RigEstimate estimate, const Options& options, const std::string& place) {
+  if (options.covariance == "honest") return estimate;
+  estimate.covariance = Covariance{CovarianceKind::mvb, parameter_names(estimate.rig),
+                                   chosen_covariance(estimate, CovarianceChoice::bound, place)};
+  return estimate;
+}
+
+UncertaintyRequest request_of(const Options& options, const RigEstimate& estimate) {
+  UncertaintyRequest request;
+  request.distances_m = parse_distances(options.distances);
+  std::tie(request.columns, request.rows) = parse_size(options.grid, "--grid");
+  if (request.columns < 2 || request.rows < 2) {
+    throw Error("--grid", "\"" + options.grid + "\" is smaller than 2x2", "write it like 60x45");
+  }
+  request.pair_sigma_px = options.pair_sigma_px;
+  if (options.pair_sigma_px < 0) {
+    request.pair_sigma_px = estimate.calibration ? estimate.calibration->pixel_sigma_px : 0;
+  }
+  request.sampling = {options.psi_c, options.samples, options.seed};
+  return request;
+}
+
+void run(const Options& options, Session& session) {
+  const std::filesystem::path file = find_rig(options.rig);
+  const RigFile rig = read_rig(file);
+  for (const std::string& warning : rig.warnings) session.warn(warning);
+  const RigEstimate estimate = with_choice(rig.estimate, options, file.string());
+  UncertaintyReport report =
+      uncertainty_report(estimate, request_of(options, estimate), file.string());
+  if (options.pair_sigma_px < 0 && !estimate.calibration) {
+    report.notes.push_back(
+        "the rig file tells no pixel noise, so triangulation is told without that of the pixels: "
+        "give --pair-sigma-px");
+  }
+  std::string written;
+  Json json = Json::object();
+  if (!options.output.empty()) {
+    const auto names = write_uncertainty(report, options.output);
+    written = fmt::format("{} files written to {}\n", names.size(), options.output);
+    json["output"] = options.output;
+    json["files"] = names;
+  }
+  Json all = session.json ? uncertainty_json(report, GridDetail::covariances) : Json::object();
+  all.update(json);
+  session.result(all, uncertainty_text(report) + written);
+}
+
+/// CLI::NonNegativeNumber lets "nan" pass.
+std::string finite_and_not_negative(const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return "";
+  return "\"" + text + "\" is not a finite number of 0 or more";
+}
+
+/// Without it -1 would wrap round to the largest seed.
+std::string not_negative(const std::string& text) {
+  return text.find('-') == std::string::npos
+             ? ""
+             : "\"" + text + "\" is not a whole number of 0 or more";
+}
+
+}  // namespace
+
+void add_uncertainty(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      add_verb(app, session, "uncertainty",
+               "projection, triangulation, rectification and depth uncertainty, linear and sampled",
+               "vernier uncertainty rig.json --distances-m 1,5,inf --grid 60x45 -o uncertainty");
+  verb->add_option("rig", o->rig, "rig file, or a shipped name (nominal)")->required();
+  verb->add_option("--distances-m", o->distances, "along the ray, metres; inf for infinity")
+      ->capture_default_str();
+  verb->add_option("--grid", o->grid, "columns x rows over each image")->capture_default_str();
+  verb->add_option("--covariance", o->covariance,
+                   "honest (what is sampled) or mvb (the minimum variance bound, as mrcal)")
+      ->check(CLI::IsMember({"honest", "mvb"}))
+      ->capture_default_str();
+  verb->add_option("--pair-sigma-px", o->pair_sigma_px,
+                   "noise of a matched pixel coordinate (default: the calibration's)")
+      ->check(finite_and_not_negative);
+  verb->add_option("--psi-c", o->psi_c, "factor on all standard deviations of the calibration")
+      ->check(finite_and_not_negative)
+      ->capture_default_str();
+  verb->add_option("--samples", o->samples, "rigs drawn")
+      ->check(CLI::Range(2, 10'000'000))
+      ->capture_default_str();
+  verb->add_option("--seed", o->seed, "of the draws")->check(not_negative)->capture_default_str();
+  verb->add_option("-o,--output", o->output, "folder for tables (CSV), maps (SVG) and JSON");
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/depth_uncertainty.h"
+#include "stereo/vertical_disparity.h"
+
+namespace vernier::cli {
+
+struct UncertaintyRequest {
+  std::vector<double> distances_m{1, 5};  ///< along the ray; may hold infinity
+  int columns = 60, rows = 45;            ///< of the grids
+  double pair_sigma_px = 0;               ///< noise of a matched pixel coordinate
+  SamplingOptions sampling;
+};
+
+/// Where in an image figures are told beside the whole grid: its centre and, a tenth of its size
+/// inside, its corners.
+struct Place {
+  std::string name;
+  Eigen::Vector2d pixel_px;
+};
+
+struct ProjectionFigure {
+  Place place;
+  std::optional<Eigen::Matrix2d> linear;  ///< px²; nothing where the pixel has no ray
+  SampledPixel sampled;
+};
+
+struct ProjectionReport {
+  std::string camera;
+  PointFixedTo fixed_to = PointFixedTo::boards;
+  double distance_m = 0;  ///< infinity for points fixed to the camera, where it plays no part
+  ProjectionGrid grid;
+  double mean_sd_px = 0, worst_sd_px = 0;  ///< of the grid, each point in its worst direction
+  Eigen::Vector2d worst_at_px{0, 0};
+  std::vector<ProjectionFigure> figures;
+};
+
+struct TriangulationReport {
+  std::string camera;  ///< that pairs with the first
+  TriangulationFrame frame = TriangulationFrame::rig;
+  double distance_m = 0;
+  Place place;
+  PixelPair pair;
+  TriangulatedPoint linear;
+  SampledPoint sampled;        ///< of the calibration's error alone
+  SampledPoint sampled_total;  ///< with the pair's own noise
+};
+
+struct DisparityFigure {
+  Place place;
+  double linear_sd_px = 0;
+  SampledDisparity sampled;
+};
+
+struct DisparityReport {
+  std::string camera;
+  double distance_m = 0;
+  VerticalDisparityMap map;
+  double worst_sd_px = 0;
+  std::vector<DisparityFigure> figures;  ///< where both cameras see the point
+};
+
+struct DepthReport {
+  std::string camera;
+  std::vector<DepthUncertainty> ranges;
+};
+
+/// Everything `vernier uncertainty` tells of a rig.
+struct UncertaintyReport {
+  CovarianceKind kind = CovarianceKind::mvb;
+  UncertaintyRequest request;
+  double board_sigma_px = 0;  ///< 0 where the boards are unknown
+  std::vector<ProjectionReport> projection;
+  std::vector<TriangulationReport> triangulation;
+  std::vector<DisparityReport> vertical_disparity;
+  std::vector<DepthReport> depth;
+  std::vector<std::string> notes;  ///< what could not be told, and why
+};
+
+/// From the covariance that the estimate samples (for the bound, put it there).
+UncertaintyReport uncertainty_report(const RigEstimate& estimate,
+                                     const UncertaintyRequest& request,
+                                     const std::string& place);
+
+}  // namespace vernier::cli

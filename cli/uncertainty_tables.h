@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "cli/session.h"
+#include "cli/uncertainty_report.h"
+
+namespace vernier::cli {
+
+/// How much of the grids goes into the JSON: every covariance, or standard deviations to five
+/// digits (for a page).
+enum class GridDetail { covariances, deviations };
+
+Json uncertainty_json(const UncertaintyReport& report, GridDetail detail);
+
+/// For a person: linear / sampled side by side.
+std::string uncertainty_text(const UncertaintyReport& report);
+
+/// Writes uncertainty.json (grids as deviations), projection.csv, triangulation.csv,
+/// vertical_disparity.csv, depth.csv, and for every map a CSV of its grid and an SVG picture.
+/// Returns the names of the files.
+std::vector<std::string> write_uncertainty(const UncertaintyReport& report,
+                                           const std::filesystem::path& folder);
+
+/// "1m", "inf" as file names and tables have distances.
+std::string distance_label(double distance_m);
+std::string_view fixed_to_label(PointFixedTo fixed_to);
+std::string_view frame_label(TriangulationFrame frame);
+
+}  // namespace vernier::cli

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/observation_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "calib/error.h"
+#include "calib/random.h"
+#include "tests/support/board_defects.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+std::string complaint_of(BoardObservations observations) {
+  try {
+    check_and_sort(observations);
+    check_observations(observations);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+ObservationDiagnosis diagnosis_of(BoardObservations observations) {
+  check_and_sort(observations);
+  return check_observations(observations);
+}
+
+bool holds(const std::vector<std::string>& list, const std::string& text) {
+  return std::any_of(list.begin(), list.end(), [&](const std::string& entry) {
+    return entry.find(text) != std::string::npos;
+  });
+}
+
+class ObservationChecks : public testing::Test {
+ protected:
+  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, 1).observations;
+};
+
+TEST_F(ObservationChecks, GoodOnesPassInSilence) {
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  EXPECT_TRUE(diagnosis.doubts.empty());
+  EXPECT_TRUE(diagnosis.warnings.empty());
+}
+
+TEST_F(ObservationChecks, OneMirroredViewIsNamed) {
+  test::mirror(good_.views[5], 9);
+  good_.views[5].image = "right02.png";
+  EXPECT_EQ(complaint_of(good_),
+            "frame 2, camera 1 (right02.png): the board is mirrored against the other 39 views; "
+            "corners run row by row, x right and y down as seen: turn the mirrored images or their "
+            "numbering round");
+}
+
+TEST_F(ObservationChecks, AMirroredCameraIsNamed) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 1) test::mirror(view, 9);
+  }
+  EXPECT_NE(complaint_of(good_).find("camera 1: the board is mirrored in all its 20 views"),
+            std::string::npos)
+      << complaint_of(good_);
+}
+
+TEST_F(ObservationChecks, ABoardMirroredEverywhereIsDoubted) {
+  for (BoardView& view : good_.views) test::mirror(view, 9);
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  ASSERT_EQ(diagnosis.doubts.size(), 1u);
+  EXPECT_EQ(diagnosis.doubts[0].find("every view shows the board mirrored"), 0u);
+}
+
+TEST_F(ObservationChecks, AMirroredImageIsNamedAsMirroredNumbering) {
+  for (auto& pixel : good_.views[0].pixels_px) pixel.x() = 639 - pixel.x();
+  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0: the board is mirrored"),
+            std::string::npos);
+}
+
+TEST_F(ObservationChecks, AViewCountedTwiceIsNamed) {
+  test::append_frame(good_, 4, 20);
+  EXPECT_EQ(
+      complaint_of(good_),
+      "frame 20, camera 0: it is the same view as frame 4 (their corners differ by 0 px), and "
+      "counting it twice would make the rig look better known than it is; remove one of the "
+      "two");
+}
+
+TEST_F(ObservationChecks, ARepeatedViewWithItsOwnNoiseIsAWarning) {
+  test::append_frame(good_, 4, 20);
+  Draws draws({.seed = 3, .source = 200});
+  for (BoardView& view : good_.views) {
+    if (view.frame != 20) continue;
+    for (auto& pixel : view.pixels_px) pixel += 0.05 * draws.normals(2);
+  }
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  EXPECT_TRUE(holds(diagnosis.warnings, "the board had not moved between frames 4 and 20"));
+  EXPECT_TRUE(diagnosis.doubts.empty());
+}
+
+TEST_F(ObservationChecks, LeftAndRightFromOneImageAreNamed) {
+  good_.views[7].pixels_px = good_.views[6].pixels_px;
+  EXPECT_EQ(complaint_of(good_),
+            "frame 3, camera 0 and camera 1: the images are the same (their corners differ by 0 "
+            "px); give the other camera's own image");
+}
+
+TEST_F(ObservationChecks, RowsAndColumnsExchangedAreNamed) {
+  good_.target_m = target_points({6, 9, 0.025});
+  EXPECT_NE(complaint_of(good_).find(
+                "frame 0, camera 0: its corners do not lie like those of a flat board"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(good_).find("rows and columns of the board are not exchanged"),
+            std::string::npos);
+}
+
+TEST_F(ObservationChecks, ATargetThatIsNotFlatIsRefused) {
+  for (std::size_t i = 0; i < good_.target_m.size(); ++i) good_.target_m[i].z() = 0.02 * (i % 4);
+  EXPECT_EQ(complaint_of(good_).find("target: its corners lie in no plane z = 0"), 0u);
+}
+
+TEST_F(ObservationChecks, UnpairedFramesAreCountedAndSaid) {
+  std::erase_if(good_.views, [](const BoardView& view) {
+    return (view.camera == 1 && view.frame < 3) || (view.camera == 0 && view.frame == 9);
+  });
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  ASSERT_EQ(diagnosis.warnings.size(), 2u);
+  EXPECT_EQ(
+      diagnosis.warnings[0].find("3 of 20 frames show the board in camera 0 alone (0, 1 and 2)"),
+      0u);
+  EXPECT_EQ(diagnosis.warnings[1].find("1 of 20 frames show the board in camera 1 alone (9)"), 0u);
+}
+
+TEST_F(ObservationChecks, AnImageSizeTwiceTooLargeIsDoubted) {
+  for (auto& size : good_.size_px) size *= 2;
+  EXPECT_TRUE(holds(diagnosis_of(good_).doubts, "check the image size"));
+}
+
+TEST_F(ObservationChecks, MillimetresAreSuspected) {
+  for (auto& X : good_.target_m) X *= 1000;
+  EXPECT_TRUE(holds(diagnosis_of(good_).warnings,
+                    "the board measures 200 m: are its corners given "
+                    "in metres?"));
+}
+
+}  // namespace
+}  // namespace vernier

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/residual_diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/board_warp.h"
+#include "calib/calibrate.h"
+#include "tests/support/board_defects.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+/// What is found first, and the solution as it stands, without outliers left out.
+struct Found {
+  std::vector<ResidualFinding> findings;
+  double sigma_px = 0;
+
+  std::string first() const { return findings.empty() ? "" : findings[0].text; }
+};
+
+Found found_in(const BoardObservations& observations, const CameraModel& model = Radial1{}) {
+  const BoardState state = minimise_reprojection(
+      observations,
+      initial_state(observations, std::vector<CameraModel>(observations.size_px.size(), model)));
+  return {diagnose_residuals(observations, state, {}),
+          robust_pixel_sigma(corner_residuals(observations, state))};
+}
+
+class ResidualDiagnosis : public testing::Test {
+ protected:
+  const Rig rig_ = test::stereo_rig();
+  BoardObservations good_ = simulate_board(rig_, {}, 7, 0, {.frames = 15}).observations;
+};
+
+TEST_F(ResidualDiagnosis, WhiteNoiseHasNoCause) { EXPECT_EQ(found_in(good_).first(), ""); }
+
+TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
+  Rig wide = test::stereo_rig(Fisheye4{});
+  for (Camera& camera : wide.cameras) {
+    camera.parameters.head<8>() << 305, 1, 320, 240, -0.02, 0.005, -0.002, 0.0003;
+  }
+  wide.T_camera_first[1].t.x() = -0.06;
+  const auto seen =
+      simulate_board(wide, {}, 7, 0, {.frames = 15, .distance_m = 0.25, .tilt_rad = 0.35})
+          .observations;
+  const Found found = found_in(seen);
+  EXPECT_EQ(found.first().find("the lens needs another model: with "), 0u) << found.first();
+  // follow the advice
+  const std::string name = found.first().substr(found.first().rfind(' ') + 1);
+  const RigEstimate better = calibrate(seen, {.model = camera_model(name)});
+  EXPECT_LT(better.calibration->rms_px, 0.25) << name;
+  EXPECT_TRUE(better.calibration->doubts.empty());
+}
+
+TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
+  const Eigen::Vector2d warp_m(0.004, -0.002);
+  const SimulatedBoard drawn = simulate_board(rig_, {}, 7, 0, {.frames = 15, .distance_m = 0.6});
+  BoardObservations seen = drawn.observations;
+  const auto bent = warped_target(seen.target_m, warp_m);
+  for (BoardView& view : seen.views) {
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      const Pose T = rig_.T_camera_first[view.camera] * drawn.truth.T_first_board[view.frame];
+      const auto pixel = [&](const Eigen::Vector3d& X) {
+        return project(rig_.cameras[view.camera], T * X);
+      };
+      view.pixels_px[i] += pixel(bent[view.ids[i]]) - pixel(seen.target_m[view.ids[i]]);
+    }
+  }
+  const Found found = found_in(seen);
+  EXPECT_EQ(found.first().find("the board is not flat: bent by 4 mm across and -2 mm along"), 0u)
+      << found.first();
+}
+
+TEST_F(ResidualDiagnosis, FramesTakenAtTwoTimesAreNamedAndLeavingThemOutHelps) {
+  for (const int frame : {3, 9}) {
+    for (auto& pixel : test::view_of(good_, frame, 1).pixels_px) pixel.y() += 12;
+  }
+  const Found found = found_in(good_);
+  EXPECT_EQ(found.first().find("cameras 0 and 1 did not see the board at one place in 2 of 15 "
+                               "frames, each image fitting alone but not both together: 3 ("),
+            0u)
+      << found.first();
+  std::erase_if(good_.views, [](const BoardView& v) { return v.frame == 3 || v.frame == 9; });
+  EXPECT_EQ(found_in(good_).first(), "");
+}
+
+TEST_F(ResidualDiagnosis, ImagesThatCarryTheMisfitAreNamed) {
+  BoardView& view = test::view_of(good_, 4, 0);
+  view.image = "left04.png";
+  for (std::size_t i = 0; i < view.pixels_px.size(); ++i) {
+    view.pixels_px[i].x() += i % 3 == 0 ? 6 : i % 3 == 1 ? -6 : 0;
+  }
+  const Found found = found_in(good_);
+  EXPECT_EQ(found.first().find("1 of 30 images hold 9"), 0u) << found.first();
+  EXPECT_NE(found.first().find("frame 4, camera 0 (left04.png) ("), std::string::npos);
+  EXPECT_NE(found.first().find("the others leave 0.2"), std::string::npos) << found.first();
+}
+
+TEST_F(ResidualDiagnosis, ACameraOutOfFocusIsNamed) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 0) continue;
+    for (std::size_t i = 0; i < view.pixels_px.size(); ++i) {
+      view.pixels_px[i].x() += i * 7 % 3 == 0 ? 2 : i * 7 % 3 == 1 ? -2 : 0;
+      view.pixels_px[i].y() += i * 5 % 4 < 2 ? 1.5 : -1.5;
+    }
+  }
+  bool named = false;
+  for (const ResidualFinding& finding : found_in(good_).findings) {
+    named |= finding.text.find("camera 1 (\"right\") leaves ") == 0;
+  }
+  EXPECT_TRUE(named);
+}
+
+TEST_F(ResidualDiagnosis, SquaresThatAreNotSquareAreSuspected) {
+  for (auto& X : good_.target_m) X.y() *= 1.2;
+  bool suspected = false;
+  for (const ResidualFinding& finding : found_in(good_).findings) {
+    suspected |= finding.text.find("the board's squares are not square") != std::string::npos;
+  }
+  EXPECT_TRUE(suspected);
+}
+
+TEST_F(ResidualDiagnosis, CalibrateSaysItAsADoubt) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 1 && view.frame % 2 == 0) {
+      for (auto& pixel : view.pixels_px) pixel.y() += 12;
+    }
+  }
+  const RigEstimate estimate = calibrate(good_, {.reject_outliers = false});
+  ASSERT_EQ(estimate.calibration->doubts.size(), 1u);
+  EXPECT_NE(estimate.calibration->doubts[0].find("px are no corner noise: cameras 0 and 1 did not "
+                                                 "see the board at one place"),
+            std::string::npos)
+      << estimate.calibration->doubts[0];
+}
+
+}  // namespace
+}  // namespace vernier

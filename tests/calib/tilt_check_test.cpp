@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/tilt_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calib/error.h"
+#include "tests/support/board_defects.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+std::string complaint_of(BoardObservations observations) {
+  check_and_sort(observations);
+  const std::vector<CameraModel> models(observations.size_px.size(), Radial1{});
+  const BoardState start = initial_state(observations, models);
+  try {
+    const ObservationDiagnosis diagnosis = check_tilts(observations, start);
+    return diagnosis.doubts.empty() ? "" : "doubt: " + diagnosis.doubts[0];
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+class BoardTilts : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(BoardTilts, BoardsAllParallelToTheImageAreNamed) {
+  const auto flat =
+      simulate_board(test::stereo_rig(), {}, GetParam(), 0, {.frames = 12, .tilt_rad = 0.0});
+  // simulate_board turns the board about the axis too, which is no tilt
+  const std::string complaint = complaint_of(flat.observations);
+  EXPECT_NE(complaint.find(
+                ": every board is parallel to the image, or nearly so, which leaves the "
+                "focal length undetermined; tilt the board by 20 to 45 degrees about both axes"),
+            std::string::npos)
+      << complaint;
+}
+
+TEST_P(BoardTilts, TwoTiltsAreTooFew) {
+  const auto two =
+      test::board_at_tilts(test::stereo_rig(), {}, GetParam(), {{0.4, 0.1, 0}, {-0.1, -0.5, 0.2}});
+  EXPECT_EQ(
+      complaint_of(two).find("camera 0: its 12 views show the board at only 2 distinct tilts"), 0u)
+      << complaint_of(two);
+}
+
+TEST_P(BoardTilts, ThreeTiltsAreEnough) {
+  const auto three = test::board_at_tilts(test::stereo_rig(), {}, GetParam(),
+                                          {{0.4, 0.1, 0}, {-0.1, -0.5, 0.2}, {-0.3, 0.3, 0}});
+  EXPECT_EQ(complaint_of(three), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, BoardTilts, testing::Range<std::uint64_t>(300, 320));
+
+TEST(DistinctTilts, CountNormalsThatStandApart) {
+  const auto normal = [](double angle) {
+    return Eigen::Vector3d(std::sin(angle), 0, std::cos(angle));
+  };
+  EXPECT_EQ(distinct_tilts({normal(0), normal(0.01), normal(0.3), normal(0.31)}), 2);
+  EXPECT_EQ(distinct_tilts({normal(0), normal(0.2), normal(0.4)}), 3);
+  EXPECT_EQ(distinct_tilts({}), 0);
+}
+
+}  // namespace
+}  // namespace vernier

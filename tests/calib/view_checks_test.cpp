@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/view_checks.h"
+
+#include <gtest/gtest.h>
+
+#include "calib/error.h"
+#include "tests/support/board_defects.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+ObservationDiagnosis diagnosis_of(BoardObservations observations) {
+  check_and_sort(observations);
+  const std::vector<CameraModel> models(observations.size_px.size(), Radial1{});
+  return check_views(observations, initial_state(observations, models));
+}
+
+std::string complaint_of(const BoardObservations& observations) {
+  try {
+    diagnosis_of(observations);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Every defect on sets of two sizes of noise and several seeds.
+class ViewChecks : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  BoardObservations good_ =
+      simulate_board(test::stereo_rig(),
+                     {},
+                     GetParam(),
+                     0,
+                     {.frames = 13, .pixel_sigma_px = GetParam() % 2 ? 0.2 : 0.5})
+          .observations;
+};
+
+TEST_P(ViewChecks, GoodOnesPassInSilence) {
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  EXPECT_TRUE(diagnosis.doubts.empty());
+  EXPECT_TRUE(diagnosis.warnings.empty());
+}
+
+TEST_P(ViewChecks, OneTurnedViewIsNamed) {
+  BoardView& view = test::view_of(good_, 7, 1);
+  test::half_turn(view);
+  view.image = "right07.png";
+  const std::string complaint = complaint_of(good_);
+  EXPECT_EQ(complaint.find("frame 7, camera 1 (right07.png): its corners are numbered half a turn "
+                           "(180 degrees) away from those of camera 0"),
+            0u)
+      << complaint;
+  EXPECT_NE(complaint.find("; reverse the order of its corners or leave the frame out"),
+            std::string::npos);
+}
+
+TEST_P(ViewChecks, SeveralTurnedViewsOfTheFirstCameraAreCounted) {
+  for (const int frame : {2, 5, 11}) test::half_turn(test::view_of(good_, frame, 0));
+  const std::string complaint = complaint_of(good_);
+  EXPECT_EQ(complaint.find("frame 2, camera 0: its corners are numbered half a turn"), 0u)
+      << complaint;
+  EXPECT_NE(complaint.find("(and 2 more frames like it)"), std::string::npos) << complaint;
+}
+
+TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 1) test::half_turn(view);
+  }
+  EXPECT_EQ(
+      complaint_of(good_),
+      "camera 1: its corners are numbered half a turn (180 degrees) away from those of camera "
+      "0 in 13 of 13 frames; reverse the order of the corners in one of the two cameras");
+}
+
+TEST_P(ViewChecks, BothCamerasTurnedInAFrameIsNoFault) {
+  for (const int camera : {0, 1}) test::half_turn(test::view_of(good_, 7, camera));
+  EXPECT_TRUE(diagnosis_of(good_).doubts.empty());
+}
+
+TEST_P(ViewChecks, SwappedViewsAreNamed) {
+  test::view_of(good_, 3, 0).image = "left03.png";
+  for (const int frame : {3, 8}) test::exchange(good_, frame);
+  const std::string complaint = complaint_of(good_);
+  EXPECT_EQ(complaint.find("frame 3, camera 0 (left03.png) and frame 3, camera 1: left and right "
+                           "are swapped against the other frames"),
+            0u)
+      << complaint;
+  EXPECT_NE(complaint.find("(and 1 more frame like it); exchange the two images"),
+            std::string::npos)
+      << complaint;
+}
+
+TEST_P(ViewChecks, CamerasExchangedThroughoutAreDoubted) {
+  for (int frame = 0; frame < 13; ++frame) test::exchange(good_, frame);
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  ASSERT_EQ(diagnosis.doubts.size(), 1u);
+  EXPECT_EQ(diagnosis.doubts[0].find("camera 1 (\"right\") stands 0."), 0u) << diagnosis.doubts[0];
+  EXPECT_NE(diagnosis.doubts[0].find("m to the left of camera 0 (\"left\"): the cameras seem to be "
+                                     "exchanged"),
+            std::string::npos);
+}
+
+TEST_P(ViewChecks, ImagesPairedOneFrameLateAreNamed) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 1) ++view.frame;
+  }
+  const std::string complaint = complaint_of(good_);
+  EXPECT_EQ(complaint.find("cameras 0 and 1: their images are paired wrongly"), 0u) << complaint;
+  EXPECT_NE(complaint.find("13 of 13 do when camera 1's images are taken 1 frame later"),
+            std::string::npos)
+      << complaint;
+}
+
+TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
+  for (BoardView& view : good_.views) {
+    if (view.camera == 1) view.frame = view.frame * 5 % 13;
+  }
+  const std::string complaint = complaint_of(good_);
+  EXPECT_EQ(complaint.find("cameras 0 and 1: only "), 0u) << complaint;
+  EXPECT_NE(complaint.find("of 13 frames agree on the pose between the two: their images are not "
+                           "simultaneous"),
+            std::string::npos)
+      << complaint;
+}
+
+TEST_P(ViewChecks, OneFrameTakenAtOtherTimesIsDoubted) {
+  test::view_of(good_, 6, 1).pixels_px = test::view_of(good_, 5, 1).pixels_px;
+  const ObservationDiagnosis diagnosis = diagnosis_of(good_);
+  ASSERT_EQ(diagnosis.doubts.size(), 1u);
+  EXPECT_EQ(diagnosis.doubts[0].find("frame 6, camera 1: each image fits the board to "), 0u)
+      << diagnosis.doubts[0];
+  EXPECT_NE(diagnosis.doubts[0].find("leave the frame out"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ViewChecks, testing::Range<std::uint64_t>(400, 410));
+
+}  // namespace
+}  // namespace vernier

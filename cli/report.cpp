@@ -3,6 +3,7 @@
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/report_calibration.h"
 #include "cli/report_data.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
@@ -14,9 +15,74 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string folder, title, output;
-  std::vector<std::string> calibrations;
+  std::vector<std::string> inputs, calibrations;
+  std::string title, output;
+  bool no_proof = false;
 };
+
+/// What the page is of: at most one study, and rig files.
+struct Inputs {
+  std::string study;
+  std::vector<std::string> rigs;
+};
+
+Inputs inputs_of(const Options& options) {
+  Inputs inputs;
+  for (const std::string& name : options.inputs) {
+    if (!fs::is_directory(name)) {
+      inputs.rigs.push_back(name);
+    } else if (inputs.study.empty()) {
+      inputs.study = name;
+    } else {
+      throw Error(name, "is a second folder of a study", "give one study a page");
+    }
+  }
+  inputs.rigs.insert(inputs.rigs.end(), options.calibrations.begin(), options.calibrations.end());
+  return inputs;
+}
+
+void add_study(const std::string& folder, Session& session, Proof proof, Json& data) {
+  const Study study = open_folder(folder, session);
+  const StudyResults results = study_results(study, folder);
+  if (results.blocks_done == 0) {
+    throw Error(folder, "holds no finished block", "run the study first");
+  }
+  if (results.blocks_done < results.blocks_total) {
+    session.doubt(fmt::format("the study is not finished: {} of {} blocks", results.blocks_done,
+                              results.blocks_total));
+  }
+  data["study"] = report_study(study, results);
+  data["world"] = report_world(study.world);
+  data["view"] = report_view(study);
+  data["rigs"].push_back(report_rig(study.rig, study.file.rig, proof, session));
+}
+
+void add_rig(const std::string& name, Session& session, Proof proof, Json& data) {
+  const fs::path path = find_rig(name);
+  const RigFile file = read_rig(path);
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  data["rigs"].push_back(report_rig(file.estimate, path.filename().string(), proof, session));
+  if (const Json& calibration = data["rigs"].back()["calibration"]; calibration.is_object()) {
+    for (const Json& doubt : calibration["doubts"]) {
+      session.warn(path.filename().string() + ": " + doubt.get<std::string>());
+    }
+  }
+}
+
+std::string title_of(const Options& options, const Inputs& inputs) {
+  if (!options.title.empty()) return options.title;
+  if (!inputs.study.empty()) return "Localisation under calibration error";
+  return inputs.rigs.size() > 1 ? "Calibrations and how well they are known"
+                                : "A calibration and how well it is known";
+}
+
+std::string command_of(const Inputs& inputs) {
+  const auto file = [](const std::string& name) { return fs::path(name).filename().string(); };
+  if (!inputs.study.empty()) return "vernier study study.toml -o " + file(inputs.study);
+  std::string command = "vernier report";
+  for (const std::string& rig : inputs.rigs) command += " " + file(rig);
+  return command + " -o report.html";
+}
 
 void run(const Options& options, Session& session) {
   const fs::path page_folder = share_folder() / "page";
@@ -24,41 +90,18 @@ void run(const Options& options, Session& session) {
     throw Error("report", "the page's files are not installed beside the program",
                 "set VERNIER_SHARE to the folder share/vernier of an installation");
   }
-  const Study study = open_folder(options.folder, session);
-  const StudyResults results = study_results(study, options.folder);
-  if (results.blocks_done == 0) {
-    throw Error(options.folder, "holds no finished block", "run the study first");
-  }
-  if (results.blocks_done < results.blocks_total) {
-    session.doubt(fmt::format("the study is not finished: {} of {} blocks", results.blocks_done,
-                              results.blocks_total));
-  }
-  Json data{
-      {"title", options.title.empty() ? "Localisation under calibration error" : options.title}};
-  data["program"] = {
-      {"version", VERNIER_VERSION},
-      {"instruction_set", target_name()},
-      {"command", "vernier study study.toml -o " + fs::path(options.folder).filename().string()}};
-  data["study"] = report_study(study, results);
-  data["world"] = report_world(study.world);
-  data["rig"] = report_rig(study.rig, study.file.rig);
-  data["view"] = report_view(study);
-  data["calibrations"] = Json::array();
-  for (const std::string& name : options.calibrations) {
-    const RigEstimate rig = read_rig(find_rig(name)).estimate;
-    Json entry = report_rig(rig, fs::path(name).filename().string());
-    entry["name"] =
-        fs::path(name).stem().string() + ", " + std::string(model_name(rig.rig.cameras[0].model));
-    if (rig.calibration) {
-      entry["rms_px"] = rig.calibration->rms_px;
-      entry["pixel_sigma_px"] = rig.calibration->pixel_sigma_px;
-      entry["views"] = rig.calibration->views;
-    }
-    data["calibrations"].push_back(std::move(entry));
-  }
+  const Inputs inputs = inputs_of(options);
+  const Proof proof = options.no_proof ? Proof::skip : Proof::make;
+  Json data{{"title", title_of(options, inputs)}};
+  data["program"] = {{"version", VERNIER_VERSION},
+                     {"instruction_set", target_name()},
+                     {"command", command_of(inputs)}};
+  data["rigs"] = Json::array();
+  if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
+  for (const std::string& rig : inputs.rigs) add_rig(rig, session, proof, data);
   const std::string page = assemble_page(page_folder, data);
   write_atomically(options.output, page);
-  session.result({{"output", options.output}, {"bytes", page.size()}},
+  session.result({{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}},
                  fmt::format("{} ({:.1f} MB, opens without network)\n", options.output,
                              static_cast<double>(page.size()) / 1e6));
 }
@@ -67,11 +110,15 @@ void run(const Options& options, Session& session) {
 
 void add_report(CLI::App& app, Session& session) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = add_verb(app, session, "report", "one self-contained HTML page of a study",
-                            "vernier report DIR -o report.html");
-  verb->add_option("folder", o->folder, "folder of a study")->required();
+  CLI::App* verb =
+      add_verb(app, session, "report", "one self-contained HTML page of a study or of calibrations",
+               "vernier report rig.json -o report.html");
+  verb->add_option("input", o->inputs, "folder of a study, rig files, or both")->required();
   verb->add_option("--calibration", o->calibrations,
                    "a rig file whose calibration is shown too (may be repeated)");
+  verb->add_flag(
+      "--no-proof", o->no_proof,
+      "neither compare lens models nor leave boards out, which takes some seconds a rig");
   verb->add_option("--title", o->title, "heading of the page");
   verb->add_option("-o,--output", o->output, "HTML file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

@@ -6,10 +6,6 @@
 #include <numbers>
 
 #include "calib/atomic_file.h"
-#include "calib/depth_uncertainty.h"
-#include "calib/error.h"
-#include "calib/view_linearisation.h"
-#include "cli/rig_table.h"
 #include "cli/sighting_json.h"
 #include "localise/bhattacharyya.h"
 
@@ -27,40 +23,6 @@ Json trial_json(const TrialResult& t) {
   }
   row.push_back(t.success() ? 1 : 0);
   return row;
-}
-
-/// Residuals of every corner, a list a camera.
-Json residuals_json(const RigEstimate& estimate) {
-  const CalibrationEvidence& evidence = *estimate.evidence;
-  Json cameras = Json::array();
-  for (const Camera& camera : estimate.rig.cameras) {
-    cameras.push_back({{"camera", camera.name}, {"points", Json::array()}});
-  }
-  std::size_t frame = 0;
-  ViewLinearisation J;
-  for (const BoardView& view : evidence.observations.views) {
-    while (evidence.frames[frame] != view.frame) ++frame;
-    linearise_view(estimate.rig.cameras[view.camera], estimate.rig.T_camera_first[view.camera],
-                   evidence.T_first_board[frame], evidence.observations.target_m, view,
-                   Linearise::residual_only, J);
-    for (std::size_t i = 0; i < view.pixels_px.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(2 * i);
-      cameras[view.camera]["points"].push_back(
-          {view.pixels_px[i].x(), view.pixels_px[i].y(), J.residual_px[k], J.residual_px[k + 1]});
-    }
-  }
-  return cameras;
-}
-
-Json depth_json(const RigEstimate& estimate) {
-  Json rows = Json::array();
-  for (const DepthUncertainty& u : depth_uncertainty(estimate, {0.5, 1, 2, 3, 5, 7, 10, 15, 20})) {
-    rows.push_back({{"range_m", u.range_m},
-                    {"sigma_linear_m", u.sigma_linear_m},
-                    {"sigma_sampled_m", u.sigma_sampled_m},
-                    {"non_physical_share", u.non_physical_share}});
-  }
-  return rows;
 }
 
 /// Fills the template's marks in one pass, so that what is put in is never searched again.
@@ -159,50 +121,6 @@ Json report_world(const World& world) {
                     {"surfaces", world.surfaces.size()},
                     {"objects", world.objects.size()},
                     {"repeated_share", repeated_share(world)}};
-  return json;
-}
-
-Json report_rig(const RigEstimate& estimate, const std::string& file) {
-  const auto list = [](const Eigen::VectorXd& v) {
-    return std::vector<double>(v.begin(), v.end());
-  };
-  const Json table = rig_json(estimate);
-  Json json{{"file", file}, {"cameras", Json::array()}};
-  for (const Camera& camera : estimate.rig.cameras) {
-    json["cameras"].push_back({{"name", camera.name},
-                               {"model", model_name(camera.model)},
-                               {"size_px", {camera.size_px[0], camera.size_px[1]}}});
-  }
-  json["names"] = parameter_names(estimate.rig);
-  json["values"] = list(parameters(estimate.rig));
-  json["sigma_mvb"] = table.value("sigma_mvb", Json(nullptr));
-  json["calibration"] = nullptr;
-  if (estimate.calibration) {
-    const CalibrationSummary& s = *estimate.calibration;
-    json["calibration"] = {{"rms_px", s.rms_px}, {"pixel_sigma_px", s.pixel_sigma_px},
-                           {"chi2", s.chi2},     {"dof", s.dof},
-                           {"views", s.views},   {"warnings", s.warnings}};
-  }
-  if (estimate.covariance) {
-    const ScaledDecomposition decomposition(*estimate.covariance);
-    json["sigma"] = table["sigma"];
-    json["kind"] = name(estimate.covariance->kind);
-    json["raw_condition"] = decomposition.raw_condition();
-    json["scaled_condition"] = decomposition.scaled_condition();
-    json["directions"] = table["directions"];
-    const Eigen::VectorXd sd = estimate.covariance->matrix.diagonal().cwiseSqrt();
-    json["correlation"] = Json::array();
-    for (Eigen::Index i = 0; i < sd.size(); ++i) {
-      std::vector<double> row;
-      for (Eigen::Index j = 0; j < sd.size(); ++j) {
-        const double scale = sd[i] * sd[j];
-        row.push_back(scale > 0 ? estimate.covariance->matrix(i, j) / scale : 0);
-      }
-      json["correlation"].push_back(row);
-    }
-    if (estimate.rig.cameras.size() == 2) json["depth"] = depth_json(estimate);
-  }
-  if (estimate.evidence) json["residuals"] = residuals_json(estimate);
   return json;
 }
 

@@ -11,10 +11,9 @@
 
 namespace vernier::cli {
 
-/// The parts of the report page's data (cli/page/README.md has the whole form).
+/// The parts of the report page's data (cli/report_calibration.h has those of a rig).
 Json report_study(const Study& study, const StudyResults& results);
 Json report_world(const World& world);
-Json report_rig(const RigEstimate& estimate, const std::string& file);
 /// The view of the first trial of a study's middle cell.
 Json report_view(const Study& study);
 

@@ -40,8 +40,10 @@ function sample_pages(folder) {
     "sample": [sample, true],
     "sample-without-plotly": [sample, false],
     "title-only": [JSON.stringify({ title: "Only a </script><b>title</b>" }), true],
-    "rig-only": [JSON.stringify({ title: "A rig", rig: bare_rig(full.rig) }), true],
-    "one-cell": [JSON.stringify({ ...full, view: undefined, rig: undefined, study: { ...study,
+    "bare-rig": [JSON.stringify({ title: "A rig", rigs: [bare_rig(full.rigs[0])] }), true],
+    "one-rig": [JSON.stringify({ title: "A calibration", rigs: [full.rigs[0]] }), true],
+    "odd-rigs": [JSON.stringify({ title: "Odd", rigs: odd_rigs(full.rigs[0]) }), true],
+    "one-cell": [JSON.stringify({ ...full, view: undefined, rigs: [], study: { ...study,
       sweep: null, world_ceiling: null, comparisons: [],
       cells: [bare_cell(study.cells[2])] } }), true],
     "no-sweep": [JSON.stringify({ title: "Methods", study: { ...study, sweep: null } }), true],
@@ -54,8 +56,27 @@ function sample_pages(folder) {
   });
 }
 
-const bare_rig = (rig) => ({ ...rig, sigma_mvb: null, kind: "mvb", calibration: null,
-  residuals: null, values: rig.values.map(() => null) });
+/** As of a rig file without evidence. */
+const bare_rig = ({ corners, projection, view_influence, proof, ...rig }) => ({ ...rig,
+  sigma_mvb: null, kind: "mvb", calibration: null, values: rig.values.map(() => null),
+  missing: "no evidence" });
+
+/** Rigs with what seldom happens: nothing proved, holes in a map, a view that decides alone. */
+function odd_rigs(rig) {
+  const holes = { ...rig.projection, cameras: rig.projection.cameras.map((one) => ({ ...one,
+    maps: one.maps.map((map) => ({ ...map, sd_px: map.sd_px.map((row, y) =>
+      y < 2 ? row.map(() => null) : row) })) })) };
+  const alone = rig.view_influence.map((view, i) => i ? view
+    : { ...view, images: [], influence_left_out: null, largest_share: 1 });
+  const corners = rig.corners.map((one) => ({ ...one, outliers: [[20, 30, 41.5, 3, 7]],
+    points: one.points.slice(0, 50) }));
+  return [
+    { ...rig, corners, proof: { notes: ["Models were not compared: <b>why</b>."] } },
+    { ...rig, file: "odd.rig.json", projection: holes, view_influence: alone, proof: undefined,
+      calibration: { ...rig.calibration, doubts: ["residuals of 1.2 px"], prior_dof: 2,
+        prior_chi2: 1.5, held: ["left.ax"], warp_m: [1e-3, -2e-4] } },
+  ];
+}
 
 const bare_cell = (cell) => ({ ...cell, success_interval_95: null, median_error_m: null,
   cpu_ms_p95: null, world_ceiling: null });
@@ -70,14 +91,20 @@ function with_zero(study) {
 function inspect() {
   const report = JSON.parse(document.getElementById("data").textContent);
   const cells = report.study?.cells ?? [];
+  const rig_sections = (rig, id) => [[true, id], [rig.corners, `${id}-corners`],
+    [rig.projection || rig.depth?.length, `${id}-projection`],
+    [rig.view_influence, `${id}-views`], [rig.proof, `${id}-proof`]];
   const wanted = [
     [cells.length, "headline"], [cells.length > 1, "sweep"], [cells.length, "cells"],
     [cells.length && report.study.comparisons?.length, "comparisons"],
     [report.world || cells.some((cell) => cell.trial_list?.length), "plan"],
-    [report.view, "view"], [report.rig, "rig"], [report.program || report.study, "making"],
+    [report.view, "view"], [report.rigs?.length > 1, "calibrations"],
+    ...(report.rigs ?? []).flatMap((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig")),
+    [report.program || report.study, "making"],
   ].filter(([needed]) => needed).map(([, id]) => id);
   const drawn = (place) => {
-    const traces = [...place.querySelectorAll(".scatterlayer .trace, .heatmaplayer .hm")];
+    const traces = [...place.querySelectorAll(".scatterlayer .trace, .heatmaplayer .hm,"
+      + " .barlayer .trace, .contourlayer .contour")];
     return traces.length >= place.data.length && place.data.length > 0
       && traces.every((trace) => trace.querySelector("path[d], image"));
   };

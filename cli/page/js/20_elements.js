@@ -26,15 +26,19 @@ function nodes_of(child) {
 
 const paragraph = (...children) => element("p", {}, ...children);
 
-/** Adds a headed section to the page, and to its contents. */
-function section(id, heading, ...children) {
+/** Adds a headed section to the page, and to its contents by `nav` (null: not listed there). */
+function section_named(id, heading, nav, ...children) {
   const made = element("section", { id, "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` }, heading), ...children);
   document.getElementById("report").append(made);
-  document.getElementById("contents").append(
-    element("li", {}, element("a", { href: `#${id}` }, heading)));
+  if (nav) {
+    document.getElementById("contents").append(
+      element("li", {}, element("a", { href: `#${id}` }, nav)));
+  }
   return made;
 }
+
+const section = (id, heading, ...children) => section_named(id, heading, heading, ...children);
 
 /**
  * A table. A column: {head, small (second line of the head), text (left aligned), cell: row =>

@@ -25,24 +25,107 @@ const KIND_MEANING = {
 
 const CONVENTION = "x points right, y down, z forward.";
 
-function rig_section(report) {
-  const { rig } = report;
-  const made = section("rig", "The stereo rig and how well it is known", cameras_words(rig));
-  const warnings = rig.calibration?.warnings ?? [];
-  if (warnings.length) {
-    made.append(element("div", { class: "warning", role: "note" },
-      element("strong", {}, warnings.length === 1 ? "Warning of the calibration"
-        : "Warnings of the calibration"),
-      element("ul", {}, warnings.map((words) => element("li", {}, words)))));
+const KIND_REASON = {
+  jackknife: (frames, free) => "the small-sample form of the sandwich (kind jackknife), because"
+    + ` ${frames} frames for ${free} parameters are fewer than three a parameter`,
+  clustered: (frames, free) => "the sandwich clustered by frame, because"
+    + ` ${frames} frames for ${free} parameters are three a parameter or more`,
+  mvb: () => "the minimum variance bound itself: the corners' noise was taken to be white",
+  prior: () => "as the rig file states it: assumed, not measured",
+  combined: () => "of several calibrations or batches combined",
+};
+
+/** The sections of every rig; with several, a table of all before them. */
+function rigs_sections(report) {
+  const rigs = report.rigs ?? [];
+  if (rigs.length > 1) calibrations_section(rigs);
+  rigs.forEach((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig", rigs.length > 1));
+}
+
+/** The sections that a rig has: [name of the part, heading, words in the contents, builder]. */
+function rig_parts(rig) {
+  return [
+    [rig.corners?.length, "corners", "Corners and residuals", corners_content],
+    [rig.projection || rig.depth?.length, "projection", "Uncertainty in pixels and in depth",
+      projection_content],
+    [rig.view_influence?.length, "views", "Influence of single views", views_content],
+    [rig.proof, "proof", "Proof on views left out", proof_content],
+  ].filter(([there]) => there).map(([, ...part]) => part);
+}
+
+function rig_sections(rig, id, several) {
+  const of_rig = several ? ` · ${rig.file ?? id}` : "";
+  const parts = rig_parts(rig);
+  const first = section_named(id, `The stereo rig and how well it is known${of_rig}`,
+    several ? rig.file ?? id : "The rig");
+  if (several && parts.length) {
+    first.append(element("ul", { class: "parts" }, parts.map(([name, heading]) =>
+      element("li", {}, element("a", { href: `#${id}-${name}` }, heading)))));
   }
-  const residuals = (rig.residuals ?? []).map((one) => residual_figure(rig, one)).filter(Boolean);
-  made.append(...[calibration_tiles(rig.calibration),
-    element("div", { class: "pair table-first" },
-      element("div", {}, parameter_table(rig), models_table(report.calibrations)),
-      element("div", {}, directions_list(rig))),
-    correlation_part(rig), depth_part(rig),
-    residuals.length && element("div", { class: "pair" }, residuals),
-  ].filter(Boolean));
+  first.append(...rig_content(rig));
+  for (const [name, heading, build] of parts) {
+    const made = section_named(`${id}-${name}`, heading + of_rig, several ? null : heading);
+    made.append(...build(rig).filter(Boolean));
+  }
+}
+
+function rig_content(rig) {
+  return [
+    cameras_words(rig),
+    rig.missing && element("p", { class: "notice" }, rig.missing),
+    findings("Doubts", rig.calibration?.doubts),
+    findings("Warnings of the calibration", rig.calibration?.warnings),
+    calibration_tiles(rig.calibration), summary_table(rig),
+    element("div", { class: "pair table-first" }, parameter_table(rig), directions_list(rig)),
+    correlation_part(rig),
+  ].filter(Boolean);
+}
+
+function findings(heading, list) {
+  if (!list?.length) return null;
+  return element("div", { class: "warning", role: "note" }, element("strong", {}, heading),
+    element("ul", {}, list.map((words) => element("li", {}, words))));
+}
+
+/** How the calibration was made, in words. */
+function summary_table(rig) {
+  const { calibration } = rig;
+  if (!calibration) return null;
+  const all = calibration.corners_used + calibration.corners_left_out;
+  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters);
+  const inflation = typical_inflation(rig);
+  const warp = calibration.warp_m;
+  const rows = [
+    ["Views", `${counted(calibration.views, "frame")}${is_number(calibration.images)
+      ? `, ${counted(calibration.images, "image")} with corners` : ""}`],
+    ["Corners", is_number(calibration.corners_used) ? `${count(calibration.corners_used)} used,`
+      + ` ${count(calibration.corners_left_out)} left out as outliers`
+      + ` (${percent(calibration.corners_left_out / all)})` : DASH],
+    ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
+      + (calibration.held?.length ? `held: ${calibration.held.join(", ")}` : "none held")],
+    ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates less parameters and six a`
+      + " frame for the board's pose"],
+    ["Prior", calibration.prior_dof > 0 ? `knows ${counted(calibration.prior_dof, "parameter")};`
+      + ` the solution is χ² = ${significant(calibration.prior_chi2, 3)} from it` : "none"],
+    ["Board", warp ? `bent by ${significant(1e3 * warp[0], 2)} mm along its rows and`
+      + ` ${significant(1e3 * warp[1], 2)} mm along its columns, estimated too`
+      : "taken as its file says, no warp estimated"],
+    ["Covariance", reason ? reason + (inflation ? `. It is ${significant(inflation, 2)} times the`
+      + " bound in standard deviation, on average" : "") : "none"],
+  ];
+  return table("How it was calibrated", [
+    { head: "What", text: true, cell: ([name]) => name },
+    { head: "Here", text: true, cell: ([, words]) => words },
+  ], rows, { wide: false });
+}
+
+/** Geometric mean of σ over the bound's σ; nothing where the two are the same. */
+function typical_inflation(rig) {
+  if (rig.kind === "mvb") return null;
+  const ratios = (rig.sigma ?? []).map((s, i) => s / (rig.sigma_mvb?.[i] ?? 0))
+    .filter((r) => is_number(r) && r > 0);
+  if (!ratios.length) return null;
+  return Math.exp(ratios.reduce((sum, r) => sum + Math.log(r), 0) / ratios.length);
 }
 
 function cameras_words(rig) {
@@ -78,8 +161,8 @@ function parameter_table(rig) {
     { head: "Parameter", text: true, cell: (row) => element("code", {}, row.name) },
     { head: "Meaning", text: true, cell: (row) => parameter_meaning(row.name) },
     { head: "Value", cell: (row) => value_beside_sigma(row.value, row.sigma) },
-    { head: "σ", cell: (row) => significant(row.sigma, 2) },
-    { head: "σ of the bound", cell: (row) => significant(row.bound, 2) },
+    { head: "σ", cell: (row) => row.sigma === 0 ? "held" : significant(row.sigma, 2) },
+    { head: "σ of the bound", cell: (row) => row.bound > 0 ? significant(row.bound, 2) : DASH },
     { head: "Ratio", cell: (row) => row.bound > 0 ? significant(row.sigma / row.bound, 2) : DASH },
   ], rows, { wide: false }));
 }
@@ -89,20 +172,31 @@ function parameter_meaning(name) {
   return found ? name.match(found[0])[0].replace(found[0], found[1]) : DASH;
 }
 
-function models_table(calibrations) {
-  if (!calibrations?.length) return null;
-  return element("div", {}, element("h3", {}, "Camera models and calibrations"), table(
+function calibrations_section(rigs) {
+  const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
+  const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
+  section("calibrations", "Calibrations side by side", table(
     "A smaller residual alone does not make a model right: a richer one always fits its own views"
-    + " better. And no covariance covers what a model cannot follow.", [
-      { head: "Calibration", text: true, cell: (row) => row.name ?? DASH },
-      { head: "Residual RMS, px", cell: (row) => significant(row.rms_px, 3) },
-      { head: "Corner noise, px", cell: (row) => significant(row.pixel_sigma_px, 2) },
-      { head: "Views", cell: (row) => count(row.views) },
-    ], calibrations, { wide: false }));
+    + " better, so views left out are the judge. And no covariance covers what a model cannot"
+    + " follow.", [
+      { head: "Calibration", text: true, cell: (rig) => rig.name ?? rig.file ?? DASH },
+      { head: "Views", cell: (rig) => count(rig.calibration?.views) },
+      { head: "Residual RMS", small: "px",
+        cell: (rig) => significant(rig.calibration?.rms_px, 3) },
+      { head: "Corner noise", small: "px",
+        cell: (rig) => significant(rig.calibration?.pixel_sigma_px, 3) },
+      { head: "Views left out", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
+      { head: "σ over bound", small: "on average",
+        cell: (rig) => significant(typical_inflation(rig), 2) },
+      { head: "Boards left out", small: "inside 95 %, honest",
+        cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
+      { head: "Boards left out", small: "inside 95 %, bound",
+        cell: (rig) => percent(covered(rig, "coverage_mvb"), 0) },
+    ], rigs, { wide: false }));
 }
 
 function directions_list(rig) {
-  const shown = (rig.directions ?? []).filter((d) => is_number(d.share));
+  const shown = (rig.directions ?? []).filter((d) => d.share > 1e-9);
   if (!shown.length) return null;
   const rows = shown.map(({ share, words }) => element("li", {},
     element("span", { class: "share" }, percent(share)),

@@ -4,8 +4,8 @@
 /** Heat map of correlations, and the strongest of them in words. */
 function correlation_part(rig) {
   const matrix = rig.correlation;
-  if (!matrix?.length || !rig.names) return null;
-  const n = rig.names.length;
+  if (!matrix?.length || !rig.correlation_names) return null;
+  const n = rig.correlation_names.length;
   const strongest = strongest_correlations(rig, 8);
   return element("div", { class: "pair" },
     figure("Correlations", "Blue: two parameters err together in the same sense; orange: in"
@@ -21,7 +21,7 @@ function correlation_part(rig) {
       ], strongest)));
 }
 
-function strongest_correlations({ names, correlation }, number) {
+function strongest_correlations({ correlation_names: names, correlation }, number) {
   const pairs = [];
   for (let i = 0; i < names.length; ++i) {
     for (let j = 0; j < i; ++j) {
@@ -32,7 +32,7 @@ function strongest_correlations({ names, correlation }, number) {
     .sort((p, q) => Math.abs(q.value) - Math.abs(p.value)).slice(0, number);
 }
 
-function correlation_plot({ names, correlation }) {
+function correlation_plot({ correlation_names: names, correlation }) {
   const labels = names.map(plot_text);
   return {
     data: [{
@@ -92,48 +92,5 @@ function depth_plot(rows) {
     data: [line("sigma_linear_m", "linear", COLOUR.blue, "solid", "circle"),
       line("sigma_sampled_m", "sampled", COLOUR.red, "dash", "square-open")],
     layout: { xaxis: log_axis("range, m", ranges), yaxis: log_axis("σ of depth, m", sigmas) },
-  };
-}
-
-/** Residual vectors of one camera, drawn longer than they are. */
-function residual_figure(rig, { camera, points }) {
-  if (!points?.length) return null;
-  const size = rig.cameras?.find((one) => one.name === camera)?.size_px ?? bounds_of(points);
-  const scale = residual_scale(points, size[0]);
-  const height = Math.round(110 + 470 * size[1] / size[0]);
-  return figure(`Residuals, ${camera} camera`, `Each stroke starts at a corner and is what`
-    + ` the calibrated model leaves of it unexplained, drawn ${count(scale)} times as long as it`
-    + " is. Strokes that point every way are noise. Neighbours that point the same way are a"
-    + " fault that the camera model does not follow, and no covariance on this page covers it.",
-    `${points.length} residual vectors of the ${camera} camera.`, height,
-    () => residual_plot(points, size, scale));
-}
-
-const bounds_of = (points) =>
-  [Math.max(...points.map((p) => p[0])), Math.max(...points.map((p) => p[1]))];
-
-/** 1, 2 or 5 times a power of ten that makes a long residual about 5 % of the image's width. */
-function residual_scale(points, width) {
-  const lengths = points.map((p) => Math.hypot(p[2], p[3])).sort((a, b) => a - b);
-  const long = lengths[Math.floor(0.95 * (lengths.length - 1))];
-  if (!(long > 0)) return 1;
-  const wanted = 0.05 * width / long;
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const step = [5, 2, 1].find((s) => s * power <= wanted) ?? 1;
-  return Math.max(1, step * power);
-}
-
-function residual_plot(points, size, scale) {
-  const strokes = points.map(([u, v, du, dv]) => [u, v, u + scale * du, v + scale * dv]);
-  return {
-    data: [
-      segments_trace(strokes, { name: `residual × ${count(scale)}`,
-        line: { color: COLOUR.red, width: 1.3 } }),
-      { type: "scatter", mode: "markers", name: "corner", x: points.map((p) => p[0]),
-        y: points.map((p) => p[1]), marker: { color: COLOUR.ink, size: 3 },
-        text: points.map((p) => `residual ${fixed(p[2], 2)}, ${fixed(p[3], 2)} px`),
-        hovertemplate: "(%{x:.1f}, %{y:.1f}) px<br>%{text}<extra></extra>" },
-    ],
-    layout: { ...image_axes(size), hovermode: "closest" },
   };
 }

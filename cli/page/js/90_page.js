@@ -27,7 +27,8 @@ function making_section(report) {
     ["Processor's instruction set", program?.instruction_set],
     ["Study file", study?.file], ["Method", study?.method],
     ["Trials a cell", study && count(study.trials)],
-    ["Seed", is_number(study?.seed) ? String(study.seed) : null], ["Rig", report.rig?.file],
+    ["Seed", is_number(study?.seed) ? String(study.seed) : null],
+    ["Rig", report.rigs?.map((rig) => rig.file).filter(Boolean).join(", ")],
   ].filter(([, value]) => value).map(([name, value]) => ({ name, value }));
   const made = section("making", "How this was made", paragraph("The same program, files and seed"
     + " give the same results on a processor of the same class, timings apart, however many"
@@ -76,7 +77,7 @@ function show(report) {
   }
   if (report.world || study?.cells.some((cell) => cell.trial_list?.length)) plan_section(report);
   if (report.view) view_section(report.view);
-  if (report.rig) rig_section(report);
+  rigs_sections(report);
   making_section(report);
   colophon(report);
   draw_waiting_plots();

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/view_influence.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/error.h"
+#include "calib/pose_covariance.h"
+
+namespace vernier {
+namespace {
+
+/// L of C = L Lᵀ by the eigenvectors of the scaled matrix, so that C may have rows of zeros.
+Eigen::MatrixXd factor_of(const Eigen::MatrixXd& C) {
+  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * C *
+                                                             inverse.asDiagonal());
+  return sd.asDiagonal() * eigen.eigenvectors() *
+         eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace
+
+std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equations,
+                                          const Eigen::MatrixXd& bound) {
+  constexpr double decides_alone = 1 - 1e-6;
+  const Eigen::MatrixXd L = factor_of(bound);
+  std::vector<ViewInfluence> influences;
+  for (std::size_t f = 0; f < equations.frame_information.size(); ++f) {
+    ViewInfluence one;
+    const Eigen::VectorXd u = L.transpose() * equations.scores.col(static_cast<Eigen::Index>(f));
+    const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (H + H.transpose()));
+    const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(1.0);
+    const Eigen::MatrixXd& V = eigen.eigenvectors();
+    one.leverage = H.trace();
+    one.largest_share = h.size() > 0 ? h.maxCoeff() : 0;
+    one.delta = L * u;
+    one.influence = u.norm();
+    one.influence_noise = std::sqrt((h * (1 - h)).sum());
+    one.influence_left_out = std::numeric_limits<double>::infinity();
+    if (one.largest_share < decides_alone) {
+      const Eigen::VectorXd without = V * ((V.transpose() * u).array() / (1 - h)).matrix();
+      one.influence_left_out = without.norm();
+      one.move_if_left_out = L * without;
+    }
+    influences.push_back(std::move(one));
+  }
+  return influences;
+}
+
+std::vector<ViewInfluence> view_influence(const RigEstimate& estimate, const std::string& place) {
+  if (!estimate.evidence) {
+    throw Error(place, "it holds no evidence, so what each view did to it is unknown",
+                "write it with vernier calibrate, without --no-evidence");
+  }
+  if (!estimate.calibration || !(estimate.calibration->pixel_sigma_px > 0)) {
+    throw Error(place, "its pixel noise is unknown", "give calibration.pixel_sigma_px above 0");
+  }
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  const double sigma = estimate.calibration->pixel_sigma_px;
+  const ReducedNormalEquations equations = reduced_normal_equations(
+      evidence.observations,
+      {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m}, sigma,
+      evidence.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free);
+  auto influences =
+      view_influence(equations, chosen_covariance(estimate, CovarianceChoice::bound, place));
+  for (std::size_t f = 0; f < influences.size(); ++f) influences[f].frame = evidence.frames[f];
+  std::size_t f = 0;
+  for (const BoardView& view : evidence.observations.views) {
+    while (evidence.frames[f] != view.frame) ++f;
+    influences[f].corners += static_cast<int>(view.ids.size());
+  }
+  for (std::size_t k = 0; k < influences.size(); ++k) {
+    influences[k].rms_px =
+        sigma * std::sqrt(equations.frame_chi2[k] / (2 * std::max(1, influences[k].corners)));
+  }
+  return influences;
+}
+
+}  // namespace vernier

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/normal_equations.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier {
+
+/// What the views of one frame did to a calibration. With C = L Lᵀ the minimum variance bound, S_f
+/// and g_f the frame's information and score (calib/normal_equations.h) and H_f = Lᵀ S_f L,
+///
+///     δ_f = C g_f                    the move of the estimate, to first order, were the frame's
+///                                    score taken away; Σ_f δ_f = 0 without a prior
+///     move without = L (I − H_f)⁻¹ Lᵀ g_f      its information taken away as well: the frame left
+///                                    out, to first order (Cook 1977, for a group of residuals)
+///
+/// Lengths |L⁻¹ δ| are in standard deviations of the bound. Where all residuals are independent
+/// noise, E |L⁻¹ δ_f|² = tr(H_f − H_f²): a frame far beyond that has an error of its own, such as
+/// a bent board, motion or wrong corners.
+struct ViewInfluence {
+  int frame = 0;
+  int corners = 0;
+  double rms_px = 0;         ///< of the frame's residuals, per coordinate
+  double leverage = 0;       ///< tr(C S_f); in sum the parameters that the views determine
+  double largest_share = 0;  ///< largest eigenvalue of H_f: of what is known in its best direction
+  double influence = 0;      ///< |L⁻¹ δ_f|
+  double influence_noise = 0;        ///< (tr(H_f − H_f²))^½, what independent noise gives (rms)
+  double influence_left_out = 0;     ///< |L⁻¹ (move without)|; infinite where largest_share is 1
+  Eigen::VectorXd delta;             ///< δ_f, in the tangent of calib/rig.h
+  Eigen::VectorXd move_if_left_out;  ///< "move without"; empty where influence_left_out is infinite
+};
+
+/// One a frame, in the equations' order, `bound` their C (rows of held parameters zero), without
+/// frame, corners and rms_px.
+std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equations,
+                                          const Eigen::MatrixXd& bound);
+
+/// One a frame of the estimate's evidence. A board whose warp is not zero is taken to have been
+/// estimated with it. Throws Error(`place`) without evidence, pixel noise or the bound.
+std::vector<ViewInfluence> view_influence(const RigEstimate& estimate,
+                                          const std::string& place = "rig");
+
+}  // namespace vernier

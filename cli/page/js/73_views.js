@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+
+const view_name = ({ images, frame }) => images?.length ? images[0].replace(/\.\w+$/, "")
+  : `frame ${frame}`;
+
+/** What every frame did to the estimate. */
+function views_content(rig) {
+  const views = rig.view_influence;
+  const together = Math.sqrt(sum_of(views, (v) => v.influence ** 2)
+    / sum_of(views, (v) => v.influence_noise ** 2));
+  return [
+    element("p", {}, "The estimate is where the pulls of all views balance. A view's influence is"
+      + " how far the estimate moves if its pull is taken away, as one length over all parameters"
+      + " in standard deviations of the minimum variance bound; beside it stands what noise alone"
+      + " would give a view that knows as much. Far more than that (twice, say) means that the"
+      + " view has an error of its own: a board bent or moving, blur, wrong corners, or a pose at"
+      + " which the camera model fails. Look at that image before leaving it out: a view that"
+      + " knows much pulls much, and a set without it may only look better."),
+    element("p", {}, `All views together pull ${significant(together, 2)} times as hard as`
+      + " independent noise would, which is why the covariance is wider than the bound."),
+    influence_figure(views), rms_figure(rig), views_table(views),
+  ];
+}
+
+const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
+
+const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
+  showgrid: false, tickfont: { size: 11 }, nticks: Math.min(views.length, 50) });
+
+function influence_figure(views) {
+  return figure("Influence of every view", "Bars: how far the estimate moves without the view's"
+    + " pull, in standard deviations of the bound. Marks: what independent noise would give (root"
+    + " mean square).", "Influence of every view; the table below has the largest.", 360, () => ({
+    data: [
+      { type: "bar", name: "influence", x: views.map(view_name), y: views.map((v) => v.influence),
+        marker: { color: views.map((v) => v.influence > 2 * v.influence_noise ? COLOUR.red
+          : COLOUR.sky) }, hovertemplate: "%{x}: %{y:.2f}<extra></extra>" },
+      { type: "scatter", mode: "markers", name: "independent noise", x: views.map(view_name),
+        y: views.map((v) => v.influence_noise), marker: { symbol: "line-ew", size: 12,
+          line: { color: COLOUR.ink, width: 2.4 } },
+        hovertemplate: "noise would give %{y:.2f}<extra></extra>" },
+    ],
+    layout: { bargap: 0.25, xaxis: views_axis(views),
+      yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
+  }));
+}
+
+function rms_figure(rig) {
+  const views = rig.view_influence;
+  const whole = rig.calibration?.rms_px;
+  return figure("Residual of every view", "Root mean square residual a coordinate; the line is that"
+    + " of all views. A view may fit well and still pull hard, and the other way round.",
+    "Residual of every view; the table below has numbers.", 300, () => ({
+      data: [{ type: "bar", name: "rms", x: views.map(view_name), y: views.map((v) => v.rms_px),
+        marker: { color: COLOUR.grey }, hovertemplate: "%{x}: %{y:.3f} px<extra></extra>" }],
+      layout: { bargap: 0.25, xaxis: views_axis(views), showlegend: false,
+        yaxis: axis("rms residual, px", { rangemode: "tozero" }),
+        shapes: is_number(whole) ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: whole,
+          y1: whole, line: { color: COLOUR.ink, width: 1.4, dash: "dot" } }] : [] },
+    }));
+}
+
+function views_table(views) {
+  const most = 20;
+  const rows = [...views].sort((a, b) => b.influence / b.influence_noise
+    - a.influence / a.influence_noise).slice(0, most);
+  const caption = (views.length > most ? `The ${most} of ${count(views.length)} views` : "Views")
+    + " by influence over what noise would give. Leverage: how many parameters' worth of"
+    + " information the view brings (all views together: the number of parameters). Best known"
+    + " direction: the view's share of all that is known there; near 100 % it stands alone. If left"
+    + " out: how far the estimate would move, its information gone too, and which parameter most"
+    + " (in its honest σ).";
+  return table(caption, [
+    { head: "Frame", text: true, cell: (v) => v.images?.length
+      ? `${v.frame}: ${v.images.join(", ")}` : String(v.frame) },
+    { head: "Corners", cell: (v) => count(v.corners) },
+    { head: "RMS", small: "px", cell: (v) => significant(v.rms_px, 3) },
+    { head: "Influence", cell: (v) => significant(v.influence, 3) },
+    { head: "of noise", cell: (v) => significant(v.influence_noise, 3) },
+    { head: "Ratio", cell: (v) => significant(v.influence / v.influence_noise, 2) },
+    { head: "Leverage", cell: (v) => significant(v.leverage, 3) },
+    { head: "Best known", small: "direction", cell: (v) => percent(v.largest_share, 0) },
+    { head: "If left out", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },
+    { head: "moves most", text: true, cell: ({ largest_move: m }) => m
+      ? `${m.name} by ${m.sigmas > 0 ? "+" : ""}${fixed(m.sigmas, 2)} σ` : DASH },
+  ], rows);
+}

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/report_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "calib/depth_uncertainty.h"
+#include "calib/error.h"
+#include "calib/pose_covariance.h"
+#include "cli/rig_table.h"
+
+namespace vernier::cli {
+namespace {
+
+std::vector<double> list(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
+
+Json depth_json(const RigEstimate& estimate) {
+  Json rows = Json::array();
+  for (const DepthUncertainty& u : depth_uncertainty(estimate, {0.5, 1, 2, 3, 5, 7, 10, 15, 20})) {
+    rows.push_back({{"range_m", u.range_m},
+                    {"sigma_linear_m", u.sigma_linear_m},
+                    {"sigma_sampled_m", u.sigma_sampled_m},
+                    {"non_physical_share", u.non_physical_share}});
+  }
+  return rows;
+}
+
+/// Correlations of the parameters that have a variance, with their names.
+void add_correlation(const Covariance& covariance, Json& json) {
+  const Eigen::VectorXd sd = covariance.matrix.diagonal().cwiseMax(0).cwiseSqrt();
+  json["correlation_names"] = Json::array();
+  json["correlation"] = Json::array();
+  for (Eigen::Index i = 0; i < sd.size(); ++i) {
+    if (!(sd[i] > 0)) continue;
+    json["correlation_names"].push_back(covariance.names[i]);
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < sd.size(); ++j) {
+      if (!(sd[j] > 0)) continue;
+      row.push_back(std::round(1e6 * covariance.matrix(i, j) / (sd[i] * sd[j])) / 1e6);
+    }
+    json["correlation"].push_back(std::move(row));
+  }
+}
+
+Json summary_json(const RigEstimate& estimate) {
+  const CalibrationSummary& s = *estimate.calibration;
+  Json json{{"source", s.source},
+            {"rms_px", s.rms_px},
+            {"pixel_sigma_px", s.pixel_sigma_px},
+            {"chi2", s.chi2},
+            {"dof", s.dof},
+            {"views", s.views},
+            {"corners_left_out", s.outliers.size()},
+            {"held", s.held},
+            {"prior_dof", s.prior_dof},
+            {"prior_chi2", s.prior_chi2},
+            {"warnings", s.warnings},
+            {"doubts", Json::array()}};
+  if (s.rms_px > 1) {
+    json["doubts"].push_back(
+        fmt::format("residuals of {:.2f} px are no corner noise: the board is not flat, corners "
+                    "are wrong, or the lens needs another model",
+                    s.rms_px));
+  }
+  if (estimate.evidence) {
+    const CalibrationEvidence& evidence = *estimate.evidence;
+    std::size_t corners = 0;
+    for (const BoardView& view : evidence.observations.views) corners += view.ids.size();
+    json["corners_used"] = corners;
+    json["images"] = evidence.observations.views.size();
+    if (!evidence.warp_m.isZero(0)) json["warp_m"] = {evidence.warp_m.x(), evidence.warp_m.y()};
+  }
+  return json;
+}
+
+void add_covariance(const RigEstimate& estimate, Json& json) {
+  const ScaledDecomposition decomposition(*estimate.covariance);
+  const Json table = rig_json(estimate);
+  json["sigma"] = table["sigma"];
+  json["kind"] = name(estimate.covariance->kind);
+  json["raw_condition"] = decomposition.raw_condition();
+  json["scaled_condition"] = decomposition.scaled_condition();
+  json["directions"] = table["directions"];
+  json["free_parameters"] = free_parameters(estimate).size();
+  add_correlation(*estimate.covariance, json);
+  if (estimate.rig.cameras.size() == 2) json["depth"] = depth_json(estimate);
+}
+
+/// Puts warnings there that are not there yet.
+void add_warnings(const Json& more, Json& warnings) {
+  for (const Json& one : more) {
+    if (std::find(warnings.begin(), warnings.end(), one) == warnings.end()) warnings.push_back(one);
+  }
+}
+
+}  // namespace
+
+Json report_rig(const RigEstimate& estimate,
+                const std::string& file,
+                Proof proof,
+                const Session& session) {
+  Json json{{"file", file}, {"cameras", Json::array()}};
+  std::set<std::string> models;
+  for (const Camera& camera : estimate.rig.cameras) {
+    models.emplace(model_name(camera.model));
+    json["cameras"].push_back({{"name", camera.name},
+                               {"model", model_name(camera.model)},
+                               {"size_px", {camera.size_px[0], camera.size_px[1]}}});
+  }
+  json["name"] = fmt::format("{}, {}", file, fmt::join(models, " and "));
+  json["names"] = parameter_names(estimate.rig);
+  json["values"] = list(parameters(estimate.rig));
+  json["sigma_mvb"] = rig_json(estimate).value("sigma_mvb", Json(nullptr));
+  json["calibration"] = estimate.calibration ? summary_json(estimate) : Json(nullptr);
+  if (estimate.covariance) add_covariance(estimate, json);
+  if (!estimate.evidence || !estimate.calibration || estimate.evidence->frames.empty()) {
+    json["missing"] =
+        "This rig file holds no evidence of its calibration (it was written by hand, or with "
+        "--no-evidence): corners, residuals, projection uncertainty, the influence of views and "
+        "the proofs on views left out cannot be shown.";
+    return json;
+  }
+  json["corners"] = report_corners(estimate);
+  if (estimate.covariance) {
+    json["projection"] = report_projection(estimate);
+    if (estimate.covariance_mvb || estimate.covariance->kind == CovarianceKind::mvb) {
+      json["view_influence"] = report_views(estimate);
+    }
+  }
+  if (proof == Proof::make) {
+    json["proof"] = report_proof(estimate, file, session);
+    Json& calibration = json["calibration"];
+    add_warnings(json["proof"].value("warnings", Json::array()), calibration["warnings"]);
+    add_warnings(json["proof"].value("doubts", Json::array()), calibration["doubts"]);
+  }
+  return json;
+}
+
+}  // namespace vernier::cli

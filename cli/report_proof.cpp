@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+#include "calib/left_out_boards.h"
+#include "calib/model_comparison.h"
+#include "calib/model_nesting.h"
+#include "cli/report_calibration.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr int most_frames = 60;  // evenly spaced ones stand for more
+constexpr int splits = 30;
+
+/// The options that `estimate` was calibrated with, as far as its file tells; without priors, which
+/// it does not hold. Its outliers are out already.
+CalibrationOptions options_of(const RigEstimate& estimate) {
+  const CalibrationSummary& summary = *estimate.calibration;
+  CalibrationOptions options;
+  options.models = models_of(estimate.rig);
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  const Eigen::VectorXd values = parameters(estimate.rig);
+  for (const std::string& held : summary.held) {
+    const auto i = std::find(names.begin(), names.end(), held) - names.begin();
+    if (i < values.size()) options.held.push_back({held, values[i]});
+  }
+  // A noise estimated from the residuals makes χ² the degrees of freedom.
+  const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
+  options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
+  options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
+  options.reject_outliers = false;
+  options.white_noise = estimate.covariance->kind == CovarianceKind::mvb;
+  return options;
+}
+
+Json models_json(const ModelComparison& comparison) {
+  Json rows = Json::array();
+  const auto add = [&](const ModelScore& s, bool in_use) {
+    rows.push_back({{"model", s.name},
+                    {"in_use", in_use},
+                    {"held_out_rms_px", s.held_out_rms_px},
+                    {"fitted_rms_px", s.fitted_rms_px},
+                    {"better_views", in_use ? Json(nullptr) : Json(s.better_views)},
+                    {"gain_sigmas", in_use ? Json(nullptr) : Json(s.gain_sigmas)},
+                    {"largest_move", s.largest_move},
+                    {"largest_move_sigmas", s.largest_move_sigmas}});
+  };
+  add(comparison.in_use, true);
+  for (const ModelScore& s : comparison.richer) add(s, false);
+  return {{"frames", comparison.frames}, {"rows", rows}};
+}
+
+void add_models(const RigEstimate& estimate, const CalibrationOptions& options, Json& json) {
+  const ModelComparison comparison = compare_models(estimate, options, most_frames);
+  if (comparison.richer.empty()) {
+    json["notes"].push_back(
+        "No richer lens model was compared: there is none, the views do not determine one, or "
+        "there are fewer than six frames.");
+    return;
+  }
+  json["models"] = models_json(comparison);
+  json["warnings"] = comparison.warnings;
+}
+
+Json coverage_json(const std::string& what, const std::string& unit, const LengthCoverage& c) {
+  return {{"what", what},
+          {"unit", unit},
+          {"lengths", c.lengths},
+          {"coverage_honest", c.coverage_honest},
+          {"coverage_mvb", c.coverage_mvb},
+          {"z_rms_honest", c.z_rms_honest},
+          {"z_rms_mvb", c.z_rms_mvb},
+          {"error_rms", c.error_rms_m},
+          {"sigma_honest", c.sigma_honest_m},
+          {"sigma_mvb", c.sigma_mvb_m}};
+}
+
+/// The observations at evenly spaced frames, so many at most.
+BoardObservations thinned(BoardObservations observations) {
+  const std::vector<int> frames = frames_of(observations);
+  const std::size_t n = frames.size();
+  if (n <= most_frames) return observations;
+  std::vector<int> some;
+  for (std::size_t k = 0; k < most_frames; ++k) some.push_back(frames[k * n / most_frames]);
+  std::erase_if(observations.views, [&](const BoardView& view) {
+    return !std::binary_search(some.begin(), some.end(), view.frame);
+  });
+  return observations;
+}
+
+void add_left_out(const RigEstimate& estimate,
+                  const CalibrationOptions& options,
+                  const std::string& file,
+                  const Session& session,
+                  Json& json) {
+  const BoardObservations observations = thinned(estimate.evidence->observations);
+  Progress progress(session, "boards left out of " + file);
+  const LeftOutBoardsResult result =
+      measure_left_out_boards(observations, {.splits = splits, .calibration = options},
+                              [&](int done, int total) { progress.update(done, total); });
+  const auto frames = static_cast<int>(frames_of(observations).size());
+  json["left_out"] = {{"splits", result.splits},
+                      {"failed", result.failed},
+                      {"boards", result.boards},
+                      {"frames", frames},
+                      {"training_frames", frames / 2 + 1},
+                      {"rows",
+                       {coverage_json("lengths on the board", "m", result.edges),
+                        coverage_json("size of the board", "1", result.scale)}}};
+  const double z = std::max(result.edges.z_rms_honest, result.scale.z_rms_honest);
+  if (z > 2) {
+    json["doubts"].push_back(
+        fmt::format("lengths on boards left out are off by {:.1f} times what the covariance "
+                    "allows: the model, the board or the corners are wrong",
+                    z));
+  }
+}
+
+}  // namespace
+
+Json report_proof(const RigEstimate& estimate, const std::string& file, const Session& session) {
+  Json json{{"notes", Json::array()}, {"warnings", Json::array()}, {"doubts", Json::array()}};
+  const auto note = [&](const std::string& words) { json["notes"].push_back(words); };
+  if (!estimate.covariance) {
+    note("Nothing was proved: the rig file has no covariance.");
+    return json;
+  }
+  if (estimate.calibration->prior_dof > 0 || estimate.calibration->source != "board") {
+    note(
+        "Models and boards left out are shown for calibrations from boards alone: this one used "
+        "knowledge that its rig file does not hold.");
+    return json;
+  }
+  const CalibrationOptions options = options_of(estimate);
+  try {
+    add_models(estimate, options, json);
+  } catch (const Error& error) {
+    note(fmt::format("Models were not compared: {}.", error.what()));
+  }
+  try {
+    add_left_out(estimate, options, file, session, json);
+  } catch (const Error& error) {
+    note(fmt::format("No boards were left out: {}.", error.what()));
+  }
+  return json;
+}
+
+}  // namespace vernier::cli

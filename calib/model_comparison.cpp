@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "calib/board_pose.h"
 #include "calib/board_warp.h"
 #include "calib/error.h"
 #include "calib/model_nesting.h"
-#include "calib/view_linearisation.h"
 
 namespace vernier {
 namespace {
@@ -72,10 +71,13 @@ HeldOut held_out_errors(const BoardObservations& observations,
         minimise_reprojection(at(observations, kept), at_frames(state, kept), problem);
     const auto target_m = warped_target(observations.target_m, trained.warp_m);
     for (int f = group; f < frames; f += groups) {
-      const BoardPoseFit fit = fit_board_pose(
-          trained.rig, target_m, at(observations, {state.frames[f]}).views, state.T_first_board[f]);
-      errors.squared_px2[f] = fit.squared_error_px2;
-      errors.coordinates[f] = fit.coordinates;
+      const std::vector<BoardView> views = at(observations, {state.frames[f]}).views;
+      const BoardPoseFit fit =
+          fit_board_pose(target_m, views, trained.rig, state.T_first_board[f], 50);
+      for (const BoardView& view : views) {
+        errors.coordinates[f] += 2 * static_cast<int>(view.ids.size());
+      }
+      errors.squared_px2[f] = fit.rms_px * fit.rms_px * errors.coordinates[f];
     }
   }
   return errors;
@@ -176,50 +178,6 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
 }
 
 }  // namespace
-
-BoardPoseFit fit_board_pose(const Rig& rig,
-                            const std::vector<Eigen::Vector3d>& target_m,
-                            const std::vector<BoardView>& views,
-                            const Pose& start) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  ViewLinearisation J;
-  const auto linearise = [&](const Pose& T, Linearise what, Matrix6& H, Vector6& g) {
-    H.setZero();
-    g.setZero();
-    double squares = 0;
-    for (const BoardView& view : views) {
-      linearise_view(rig.cameras[view.camera], rig.T_camera_first[view.camera], T, target_m, view,
-                     what, J);
-      squares += J.residual_px.squaredNorm();
-      if (what == Linearise::residual_only) continue;
-      H += J.by_board_pose.transpose() * J.by_board_pose;
-      g += J.by_board_pose.transpose() * J.residual_px;
-    }
-    return squares;
-  };
-  BoardPoseFit fit{start, 0, 0};
-  for (const BoardView& view : views) fit.coordinates += 2 * static_cast<int>(view.ids.size());
-  Matrix6 H, none;
-  Vector6 g, nothing;
-  for (int round = 0; round < 50; ++round) {
-    fit.squared_error_px2 = linearise(fit.T_first_board, Linearise::with_jacobian, H, g);
-    Vector6 step = -H.ldlt().solve(g);
-    bool descends = false;
-    for (int halving = 0; halving < 20 && !descends; ++halving, step *= 0.5) {
-      const Pose next = retract(fit.T_first_board, step);
-      const double squares = linearise(next, Linearise::residual_only, none, nothing);
-      if (!(squares < fit.squared_error_px2)) continue;
-      descends = true;
-      fit.T_first_board = next;
-      const double gain = fit.squared_error_px2 - squares;
-      fit.squared_error_px2 = squares;
-      if (gain < 1e-12 * squares) return fit;
-    }
-    if (!descends) return fit;
-  }
-  return fit;
-}
 
 ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,

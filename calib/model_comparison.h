@@ -38,16 +38,4 @@ ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,
                                int most_frames = 60);
 
-/// The pose of a board that minimises its squared residuals in the views of one frame, the rig
-/// held, and that sum (px²): Gauss–Newton from `start`, halving steps that do not descend.
-struct BoardPoseFit {
-  Pose T_first_board;
-  double squared_error_px2 = 0;
-  int coordinates = 0;
-};
-BoardPoseFit fit_board_pose(const Rig& rig,
-                            const std::vector<Eigen::Vector3d>& target_m,
-                            const std::vector<BoardView>& views,
-                            const Pose& start);
-
 }  // namespace vernier

@@ -70,18 +70,5 @@ TEST(ModelComparison, IsSilentWhereTheModelIsRight) {
   }
 }
 
-TEST(FitBoardPose, FindsTheTrueBoard) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 305, 0, {.pixel_sigma_px = 0});
-  std::vector<BoardView> views{board.observations.views[0], board.observations.views[1]};
-  const Pose& truth = board.truth.T_first_board[0];
-  const Pose start =
-      retract(truth, (Eigen::Matrix<double, 6, 1>() << 0.2, -0.1, 0.3, 0.05, 0, 0.1).finished());
-  const BoardPoseFit fit =
-      fit_board_pose(board.truth.rig, board.observations.target_m, views, start);
-  EXPECT_LT((fit.T_first_board.t - truth.t).norm(), 1e-9);
-  EXPECT_LT((fit.T_first_board.R - truth.R).norm(), 1e-9);
-  EXPECT_EQ(fit.coordinates, 2 * 2 * 54);
-}
-
 }  // namespace
 }  // namespace vernier

@@ -190,6 +190,7 @@ LeftOutBoardsResult measure_left_out_boards(
   const std::vector<SeenPair> seen = seen_pairs(observations, frames);
   Tally edges, scale;
   LeftOutBoardsResult result;
+  result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
     const std::vector<int> kept = training_frames(frames, training, options.seed, split);
     BoardObservations part = observations;

@@ -29,11 +29,12 @@ struct LengthCoverage {
 };
 
 struct LeftOutBoardsResult {
-  LengthCoverage edges;  ///< board rows, columns and diagonals end to end, one by one
-  LengthCoverage scale;  ///< the board's overall size, all lengths of a board together
-  int splits = 0;        ///< that could be calibrated
-  int failed = 0;        ///< that could not
-  int boards = 0;        ///< predictions of a whole board
+  LengthCoverage edges;     ///< board rows, columns and diagonals end to end, one by one
+  LengthCoverage scale;     ///< the board's overall size, all lengths of a board together
+  int training_frames = 0;  ///< of each split
+  int splits = 0;           ///< that could be calibrated
+  int failed = 0;           ///< that could not
+  int boards = 0;           ///< predictions of a whole board
 };
 
 /// Proof on boards left out: calibrates on some frames, triangulates the corners of the others

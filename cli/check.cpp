@@ -5,6 +5,7 @@
 #include "calib/model_nesting.h"
 #include "calib/rig_file.h"
 #include "cli/board_input.h"
+#include "cli/check_left_out.h"
 #include "cli/check_mrcal.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
@@ -18,7 +19,8 @@ struct Options {
   BoardInput board;
   SolverInput solver;
   NoisyCopies copies;
-  bool no_mrcal = false;
+  bool no_mrcal = false, holdout = false;
+  int splits = 100, training_frames = 0;
 };
 
 /// The calibration that a rig file's evidence is of, solved again from its corners.
@@ -47,8 +49,7 @@ RigEstimate solve_again(const Options& options, CalibrationOptions& how, Session
   return calibrate(estimate.evidence->observations, how);
 }
 
-CheckedProblem checked_problem(const Options& options, Session& session) {
-  CalibrationOptions how;
+CheckedProblem checked_problem(const Options& options, CalibrationOptions& how, Session& session) {
   RigEstimate estimate;
   if (!options.rig.empty()) {
     estimate = solve_again(options, how, session);
@@ -73,7 +74,8 @@ CheckedProblem checked_problem(const Options& options, Session& session) {
 }
 
 void run(const Options& options, Session& session) {
-  const CheckedProblem problem = checked_problem(options, session);
+  CalibrationOptions how;
+  const CheckedProblem problem = checked_problem(options, how, session);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
             {"cameras", problem.state.rig.cameras.size()},
             {"frames", problem.state.frames.size()},
@@ -95,6 +97,16 @@ void run(const Options& options, Session& session) {
     add("mrcal", check_by_mrcal(problem, session));
   }
   add("monte_carlo", check_by_noisy_copies(problem, options.copies));
+  if (options.holdout) {
+    how.reject_outliers = false;  // they are out already
+    how.check_input = false;      // and so is what does not fit
+    add("holdout", check_boards_left_out(problem.observations,
+                                         {.training_frames = options.training_frames,
+                                          .splits = options.splits,
+                                          .seed = options.copies.seed,
+                                          .calibration = how},
+                                         session));
+  }
   session.result(json, text);
 }
 
@@ -115,7 +127,15 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_option("--seed", o->copies.seed, "of the copies' noise")->capture_default_str();
   verb->add_option("--threads", o->copies.threads, "0: all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
-  verb->add_flag("--no-mrcal", o->no_mrcal, "noisy copies only");
+  verb->add_flag("--no-mrcal", o->no_mrcal, "leave mrcal out");
+  verb->add_flag("--holdout", o->holdout,
+                 "also predict lengths on boards left out of the calibration, over many splits");
+  verb->add_option("--splits", o->splits, "of --holdout")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_option("--training-frames", o->training_frames,
+                   "frames a split calibrates on (a little over half)")
+      ->check(CLI::NonNegativeNumber);
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

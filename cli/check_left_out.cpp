@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/check_left_out.h"
+
+namespace vernier::cli {
+namespace {
+
+Json coverage_json(const LengthCoverage& c) {
+  return {{"lengths", c.lengths},
+          {"coverage_honest", c.coverage_honest},
+          {"coverage_mvb", c.coverage_mvb},
+          {"z_rms_honest", c.z_rms_honest},
+          {"z_rms_mvb", c.z_rms_mvb},
+          {"error_rms", c.error_rms_m},
+          {"sigma_honest", c.sigma_honest_m},
+          {"sigma_mvb", c.sigma_mvb_m}};
+}
+
+std::string coverage_line(const std::string& what,
+                          const LengthCoverage& c,
+                          double scale,
+                          const std::string& unit) {
+  return fmt::format("  {:<26} {:>7} {:>10.3f} {:>8} {:>9.1f} % {:>9.1f} % {:>7.2f} {:>7.2f}\n",
+                     what, c.lengths, scale * c.error_rms_m, unit, 100 * c.coverage_honest,
+                     100 * c.coverage_mvb, c.z_rms_honest, c.z_rms_mvb);
+}
+
+}  // namespace
+
+CheckPart check_boards_left_out(const BoardObservations& observations,
+                                const LeftOutBoardsOptions& options,
+                                const Session& session) {
+  Progress progress(session, "splits");
+  const LeftOutBoardsResult result = measure_left_out_boards(
+      observations, options, [&](int done, int total) { progress.update(done, total); });
+  CheckPart part;
+  part.json = {{"splits", result.splits},
+               {"failed", result.failed},
+               {"training_frames", result.training_frames},
+               {"boards", result.boards},
+               {"seed", options.seed},
+               {"edges", coverage_json(result.edges)},
+               {"scale", coverage_json(result.scale)}};
+  part.text = fmt::format(
+      "boards left out: {} splits{}, {} frames to calibrate, {} boards predicted\n"
+      "  {:<26} {:>7} {:>19} {:>11} {:>11} {:>15}\n  {:<26} {:>7} {:>19} {:>11} {:>11} {:>7} "
+      "{:>7}\n",
+      result.splits, result.failed > 0 ? fmt::format(" ({} failed)", result.failed) : "",
+      result.training_frames, result.boards, "", "", "", "inside 95 %", "inside 95 %", "rms z", "",
+      "lengths", "rms error", "honest", "bound", "honest", "bound");
+  part.text += coverage_line("rows, columns, diagonals", result.edges, 1e3, "mm");
+  part.text += coverage_line("whole board's size", result.scale, 1e6, "ppm");
+  if (result.scale.z_rms_honest > 2) {
+    part.failures.push_back(fmt::format(
+        "boards left out are mispredicted: their size is off by {:.1f} stated standard deviations "
+        "(rms); the lens needs another model, or the views differ in kind",
+        result.scale.z_rms_honest));
+  }
+  return part;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/left_out_boards.h"
+#include "cli/check_mrcal.h"
+
+namespace vernier::cli {
+
+/// Lengths on boards that took no part in the calibration against their intervals, over splits.
+CheckPart check_boards_left_out(const BoardObservations& observations,
+                                const LeftOutBoardsOptions& options,
+                                const Session& session);
+
+}  // namespace vernier::cli

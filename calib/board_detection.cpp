@@ -112,6 +112,7 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
 }
 
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target) {
+  check_target(target);
   std::vector<std::vector<std::filesystem::path>> images;
   for (const std::string& pattern : patterns) images.push_back(matching_files(pattern));
   check_frames_meet(images);

@@ -286,7 +286,7 @@ class BadInput(Case):
             self.complains('detect', '--left', 'left*.png', '--board', board, '-o', 'c.vnl', of=of)
         self.complains('detect', '--left', 'left*.png', '--board', 'charuco:8x6', '--square-m',
                        '0.03', '--marker-m', '0.02', '--dictionary', '4x5', '-o', 'c.vnl',
-                       of='no file matches')
+                       of='"4x5" is not known; it is one of 4x4_50')
         self.complains('detect', '--right', 'right*.png', '--board', '9x6', '-o', 'c.vnl',
                        of='--left is missing')
         self.complains('detect', '--left', 'a*.png', '--camera', 'b*.png', '--board', '9x6', '-o',

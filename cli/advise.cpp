@@ -38,7 +38,7 @@ std::string find_target(const Options& options,
       throw Error("advise", "half of the board is given", "give both --board and --square-m");
     }
     const auto [columns, rows] = parse_size(options.board, "--board");
-    target_m = target_points({columns, rows, options.square_m});
+    target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }
   if (!rig.evidence) {

@@ -171,7 +171,7 @@ TEST(Mrcal, ConversionIsTheDerivativeOfItsParameters) {
 }
 
 TEST(Mrcal, GridTakesGapsAndShiftsAndNothingElse) {
-  std::vector<Eigen::Vector3d> target = target_points({5, 4, 0.03});
+  std::vector<Eigen::Vector3d> target = target_points(Chessboard{5, 4, 0.03});
   for (Eigen::Vector3d& X : target) X += Eigen::Vector3d(1, -2, 0.5);
   target.erase(target.begin() + 7);
   const BoardGrid grid = board_grid(target);

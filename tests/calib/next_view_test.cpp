@@ -180,12 +180,12 @@ TEST(BoardPlacements, RefuseABoardThatFitsNowhere) {
   rig.T_camera_first[1].t.x() = -2;
   EXPECT_EQ(
       test::error_message([&] {
-        placed_boards(rig, target_points({9, 6, 0.01}));
+        placed_boards(rig, target_points(Chessboard{9, 6, 0.01}));
       }),
       "board: nowhere do all cameras see it whole; give a larger board, which is held farther "
       "away, or let one camera see a part of it (--partly)");
   EXPECT_NE(test::error_message([&] {
-              placed_boards(rig, target_points({9, 1, 0.01}));
+              placed_boards(rig, target_points(Chessboard{9, 1, 0.01}));
             }).find("board: its corners lie on a line"),
             std::string::npos);
 }

@@ -106,7 +106,7 @@ TEST_F(ObservationChecks, LeftAndRightFromOneImageAreNamed) {
 }
 
 TEST_F(ObservationChecks, RowsAndColumnsExchangedAreNamed) {
-  good_.target_m = target_points({6, 9, 0.025});
+  good_.target_m = target_points(Chessboard{6, 9, 0.025});
   EXPECT_NE(complaint_of(good_).find(
                 "frame 0, camera 0: its corners do not lie like those of a flat board"),
             std::string::npos);

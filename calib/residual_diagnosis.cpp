@@ -37,6 +37,12 @@ double rms_of(double sum_px2, std::size_t corners) {
   return std::sqrt(sum_px2 / (2.0 * static_cast<double>(std::max<std::size_t>(1, corners))));
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
 class Diagnosis {
  public:
   Diagnosis(const BoardObservations& observations,
@@ -170,9 +176,10 @@ class Diagnosis {
     warped.target_m = warped_target(warped.target_m, state_.warp_m);
     for (int second = 1; second < static_cast<int>(state_.rig.cameras.size()); ++second) {
       const PairConsensus pair(warped, state_.rig, 0, second);
-      Rig rig{{state_.rig.cameras[0], state_.rig.cameras[second]},
-              {Pose{}, state_.rig.T_camera_first[second]}};
-      std::vector<std::string> apart;
+      if (pair.pairs().size() < 2) continue;
+      // the pose that the better half agrees on: the solution's own bends towards the bad frames
+      const Rig rig = pair.agreed_rig(PairReading::as_is);
+      std::vector<std::pair<double, std::size_t>> apart;
       double alone_sum = 0, together_sum = 0;
       for (std::size_t i = 0; i < pair.pairs().size(); ++i) {
         const ViewPair& views = pair.pairs()[i];
@@ -180,18 +187,23 @@ class Diagnosis {
         if (!(together > 2 * views.alone_px)) continue;
         const double corners =
             2.0 * static_cast<double>(views.first.ids.size() + views.second.ids.size());
-        apart.push_back(fmt::format("{} ({:.1f} px against {:.1f})", views.first.frame, together,
-                                    views.alone_px));
+        apart.emplace_back(together, i);
         alone_sum += corners * views.alone_px * views.alone_px;
         together_sum += corners * together * together;
       }
       if (apart.empty()) continue;
+      std::sort(apart.rbegin(), apart.rend());
+      std::vector<std::string> names;
+      for (const auto& [together, i] : apart) {
+        names.push_back(fmt::format("{} ({:.1f} px against {:.1f})", pair.pairs()[i].first.frame,
+                                    together, pair.pairs()[i].alone_px));
+      }
       findings_.push_back(
           {std::min(1.0, (together_sum - alone_sum) / sum_px2_),
            fmt::format("cameras 0 and {} did not see the board at one place in {} of {} frames, "
                        "each image fitting alone but not both together: {}; hold the board still, "
                        "trigger both at once, or leave these frames out",
-                       second, apart.size(), pair.pairs().size(), some_of(apart))});
+                       second, apart.size(), pair.pairs().size(), some_of(names))});
     }
   }
 
@@ -204,9 +216,7 @@ class Diagnosis {
       sums.push_back(sum);
       rms_px.push_back(rms_of(sum, view.size()));
     }
-    std::vector<double> sorted = rms_px;
-    std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-    const double usual = sorted[sorted.size() / 2];
+    const double usual = median(rms_px);
     std::vector<std::pair<double, std::size_t>> poor;
     double poor_sum = 0;
     std::size_t poor_corners = 0;
@@ -232,21 +242,24 @@ class Diagnosis {
 
   void look_at_cameras() {
     if (state_.rig.cameras.size() < 2) return;
-    std::map<int, std::pair<double, std::size_t>> of_camera;
-    for (std::size_t v = 0; v < residuals_.size(); ++v) {
-      auto& [sum, corners] = of_camera[observations_.views[v].camera];
-      for (const Eigen::Vector2d& r : residuals_[v]) sum += r.squaredNorm();
-      corners += residuals_[v].size();
-    }
-    for (const auto& [camera, own] : of_camera) {
-      const double px = rms_of(own.first, own.second);
-      const double others = rms_of(sum_px2_ - own.first, corners_ - own.second);
-      if (!(px > 2.5 * others)) continue;
+    for (int c = 0; c < static_cast<int>(state_.rig.cameras.size()); ++c) {
+      std::vector<double> own, others;
+      double sum = 0;
+      for (std::size_t v = 0; v < residuals_.size(); ++v) {
+        double view_sum = 0;
+        for (const Eigen::Vector2d& r : residuals_[v]) view_sum += r.squaredNorm();
+        const bool is_own = observations_.views[v].camera == c;
+        (is_own ? own : others).push_back(rms_of(view_sum, residuals_[v].size()));
+        if (is_own) sum += view_sum;
+      }
+      // the usual image of each, so that single bad ones are no fault of the camera
+      const double own_px = median(std::move(own)), others_px = median(std::move(others));
+      if (!(own_px > 2.5 * others_px)) continue;
       findings_.push_back(
-          {own.first / sum_px2_,
+          {sum / sum_px2_,
            fmt::format("camera {} (\"{}\") leaves {:.2f} px, the others {:.2f} px: look at its "
                        "focus, its images and its lens model",
-                       camera, state_.rig.cameras[camera].name, px, others)});
+                       c, state_.rig.cameras[c].name, own_px, others_px)});
     }
   }
 

@@ -88,10 +88,10 @@ class PairCheck {
     const Agreement as_is = agreement(consensus_, PairReading::as_is);
     if (as_is.count == n) return;
     if (consensus_.can_turn()) complain_if_turned_throughout(as_is.count);
-    if (2 * as_is.gross > n) {
-      complain_of_pairing(n - as_is.gross, diagnosis);
-    } else if (2 * as_is.count >= n) {
+    if (2 * as_is.count >= n) {
       complain_of_frames(as_is, diagnosis);
+    } else {
+      complain_of_pairing(as_is, diagnosis);
     }
   }
 
@@ -109,8 +109,9 @@ class PairCheck {
                 "reverse the order of the corners in one of the two cameras");
   }
 
-  void complain_of_pairing(std::size_t agreeing, ObservationDiagnosis& diagnosis) const {
+  void complain_of_pairing(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
     const std::size_t n = consensus_.pairs().size();
+    const std::size_t agreeing = as_is.count;
     for (const int shift : {1, -1, 2, -2}) {
       const PairConsensus shifted(observations_, rig_, first_, second_, shift);
       const std::size_t pairs = shifted.pairs().size();
@@ -126,6 +127,7 @@ class PairCheck {
                       std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
           "number the images so that those taken at once have one number");
     }
+    if (2 * as_is.gross <= n) return;  // a rough start may be the reason
     const std::string fault = fmt::format(
         "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
         "or not of one frame, or the cameras moved against each other",

@@ -28,7 +28,7 @@ struct ViewCheckOptions {
 ///  - most frames agree on no pose at all (not simultaneous, or the cameras moved);
 ///  - boards whose tilts leave the intrinsics undetermined (check_tilts, calib/tilt_check.h).
 ///
-/// Doubts: frames that are grossly off (3 % of the image) whichever way; in a pair, the second
+/// Doubts: frames that are grossly off (1.5 % of the image) whichever way; in a pair, the second
 /// camera standing to the left of the first, or both at one place.
 ObservationDiagnosis check_views(const BoardObservations& observations,
                                  const BoardState& start,

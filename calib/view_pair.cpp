@@ -16,7 +16,7 @@ namespace vernier {
 namespace {
 
 constexpr double sound_times_alone = 4;
-constexpr double gross_share = 0.03;  // of the image's longer side
+constexpr double gross_share = 0.015;  // of the image's longer side
 
 /// The half turn of the target about its middle, as poses and as corners; none where the corners
 /// do not fall on each other.

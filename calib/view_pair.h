@@ -48,7 +48,7 @@ class PairConsensus {
   /// image leaves alone, or 0.6 % of the image's longer side.
   bool fits(std::size_t pair, double together_px) const;
 
-  /// Whether no rough start can excuse it: more than 3 % of the image's longer side.
+  /// Whether no rough start can excuse it: more than 1.5 % of the image's longer side.
   bool misfits_grossly(double together_px) const;
 
  private:

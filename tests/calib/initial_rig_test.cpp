@@ -120,8 +120,8 @@ TEST_P(BadViews, DoNotRuinTheStart) {
   EXPECT_NEAR(start.rig.cameras[0].f_px() / 525, 1, 0.1);
   EXPECT_NEAR(start.rig.cameras[1].f_px() / 528, 1, 0.1);
   const Pose error = start.rig.T_camera_first[1] * test::stereo_rig().T_camera_first[1].inverse();
-  EXPECT_LT(vector_from_rotation(error.R).norm(), 0.02);
-  EXPECT_LT(error.t.norm(), 0.03);
+  EXPECT_LT(vector_from_rotation(error.R).norm(), 0.05);
+  EXPECT_LT(error.t.norm(), 0.08);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BadViews, testing::Range<std::uint64_t>(620, 630));

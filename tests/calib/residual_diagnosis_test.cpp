@@ -69,7 +69,9 @@ TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
     }
   }
   const Found found = found_in(seen);
-  EXPECT_EQ(found.first().find("the board is not flat: bent by 4 mm across and -2 mm along"), 0u)
+  EXPECT_EQ(found.first().find("the board is not flat: bent by 3.9 mm across and -2 mm along, it "
+                               "leaves 0.20 px"),
+            0u)
       << found.first();
 }
 

@@ -5,227 +5,17 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
+#include "calib/eliminated_boards.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
-#include "calib/ordered_parallel.h"
-#include "calib/packed_views.h"
 
 namespace vernier {
 namespace {
 
-constexpr std::size_t chunk_groups = 16;  // whose sums are taken together: 128 frames
-constexpr double least_rcond = 3e-14;     // of the scaled reduced system
-constexpr double far_step = 10;           // standard deviations
-constexpr double least_rate = 0.03;       // of convergence that is counted on
-
-double sum(const Lanes& lanes) {
-  const double* a = lanes.of;
-  return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
-}
-
-/// The reduced system in the tangent of (rig, warp where that is free).
-struct System {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient, diagonal;
-  double chi2 = 0, frames_drop = 0;
-};
-
-}  // namespace
-
-struct Resolver::Problem {
-  BoardState around;
-  ReprojectionProblem cost;
-  ResolveOptions options;
-  PackedViews views;
-  Eigen::Matrix2Xd pixels_px;
-  int rig_parameters, parameters;  // without and with the warp
-  double dof;
-
-  Problem(const BoardObservations& observations,
-          const BoardState& state,
-          ReprojectionProblem problem,
-          const ResolveOptions& chosen)
-      : around(state),
-        cost(std::move(problem)),
-        options(chosen),
-        views(observations, state, cost),
-        pixels_px(views.observed_px(observations)),
-        rig_parameters(parameter_count(state.rig)),
-        parameters(rig_parameters + (views.warp() ? 2 : 0)) {
-    dof = 2.0 * static_cast<double>(views.corners()) - parameters -
-          6.0 * static_cast<double>(state.frames.size());
-  }
-};
-
-namespace {
-
-/// One solution under way: what the last linearisation left.
-class Solution {
- public:
-  Solution(const PackedViews& views,
-           const ReprojectionProblem& cost,
-           std::vector<Lanes> pixels,
-           int parameters,
-           int threads)
-      : views_(views),
-        cost_(cost),
-        pixels_(std::move(pixels)),
-        parameters_(parameters),
-        threads_(threads),
-        factors_(views.groups().size() * frame_factor_size(parameters_)),
-        chunks_((views.groups().size() + chunk_groups - 1) / chunk_groups,
-                ReducedSums(parameters_)) {}
-
-  System linearise(const BoardState& state, double damping);
-  /// The state after a step of rig and warp, each board following.
-  BoardState moved(const BoardState& state, const Eigen::VectorXd& step) const;
-
- private:
-  void sum_chunk(const BoardState& state,
-                 const std::vector<CameraPlace>& places,
-                 const std::vector<Eigen::VectorXd>& intrinsics,
-                 double damping,
-                 std::size_t chunk);
-  System reduced() const;
-  Eigen::MatrixXd kernel_by_step(const Rig& rig) const;
-
-  const PackedViews& views_;
-  const ReprojectionProblem& cost_;
-  std::vector<Lanes> pixels_;
-  int parameters_, threads_;
-  std::vector<Lanes> factors_;
-  std::vector<ReducedSums> chunks_;
-};
-
-void Solution::sum_chunk(const BoardState& state,
-                         const std::vector<CameraPlace>& places,
-                         const std::vector<Eigen::VectorXd>& intrinsics,
-                         double damping,
-                         std::size_t chunk) {
-  ReducedSums& total = chunks_[chunk];
-  total = ReducedSums(parameters_);
-  std::vector<std::vector<Lanes>> blocks;
-  for (const Camera& camera : state.rig.cameras) {
-    blocks.emplace_back(packed_size(view_columns(camera.model, views_.warp())));
-  }
-  std::vector<const double*> sums(places.size());
-  const std::size_t end = std::min((chunk + 1) * chunk_groups, views_.groups().size());
-  for (std::size_t g = chunk * chunk_groups; g < end; ++g) {
-    const FrameGroup& group = views_.groups()[g];
-    for (std::size_t c = 0; c < places.size(); ++c) {
-      sums[c] = nullptr;
-      if (group.cameras[c].corners == 0) continue;
-      Lanes poses[12];
-      camera_poses(state, static_cast<int>(c), group, poses);
-      sum_views(views_.lanes(group, static_cast<int>(c), state, intrinsics[c].data(), poses[0].of,
-                             pixels_),
-                blocks[c][0].of);
-      sums[c] = blocks[c][0].of;
-    }
-    Lanes absent;
-    for (int l = 0; l < kernel_lanes; ++l) absent.of[l] = group.frames[l] < 0 ? 1 : 0;
-    eliminate_frames(places, sums, absent, damping, &factors_[g * frame_factor_size(parameters_)],
-                     total);
-  }
-}
-
-Eigen::MatrixXd Solution::kernel_by_step(const Rig& rig) const {
-  Eigen::MatrixXd M = Eigen::MatrixXd::Identity(parameters_, parameters_);
-  const int n = parameter_count(rig);
-  M.topLeftCorner(n, n) = kernel_by_tangent(rig);
-  return M;
-}
-
-System Solution::reduced() const {
-  const int n = parameters_;
-  System system{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-  for (const ReducedSums& part : chunks_) {  // in their order, whoever summed them
-    for (int i = 0; i < n; ++i) {
-      for (int j = i; j < n; ++j) {
-        system.information(j, i) += sum(part.information[packed_index(i, j, n)]);
-      }
-      system.gradient[i] += sum(part.gradient[i]);
-      system.diagonal[i] += sum(part.diagonal[i]);
-    }
-    system.chi2 += sum(part.chi2);
-    system.frames_drop += sum(part.frames_drop);
-  }
-  return system;
-}
-
-System Solution::linearise(const BoardState& state, double damping) {
-  const std::vector<CameraPlace> places = camera_places(state.rig, views_.warp());
-  std::vector<Eigen::VectorXd> intrinsics;
-  for (const Camera& camera : state.rig.cameras) intrinsics.push_back(kernel_intrinsics(camera));
-  for_each_index(chunks_.size(), threads_,
-                 [&](std::size_t chunk) { sum_chunk(state, places, intrinsics, damping, chunk); });
-  System system = reduced();
-  system.information.diagonal() += damping * system.diagonal;
-  const Eigen::MatrixXd M = kernel_by_step(state.rig);
-  const Eigen::MatrixXd S = system.information.selfadjointView<Eigen::Lower>();
-  system.information = M.transpose() * S * M;
-  system.gradient = M.transpose() * system.gradient;
-  system.diagonal = M.cwiseAbs2().transpose() * system.diagonal;
-  const int n = parameter_count(state.rig);
-  for (const RigPrior& prior : cost_.priors) {
-    const PriorOffset offset = prior_offset(prior, state.rig);
-    const Eigen::MatrixXd pull = offset.by_rig.transpose() * prior.information;
-    const Eigen::MatrixXd information = pull * offset.by_rig;
-    system.information.topLeftCorner(n, n) += information;
-    system.gradient.head(n) += pull * offset.delta;
-    system.diagonal.head(n) += information.diagonal();
-    system.chi2 += offset.delta.dot(prior.information * offset.delta);
-  }
-  return system;
-}
-
-/// The free directions of (rig, warp); empty where all are free.
-Eigen::MatrixXd directions(const Rig& rig, const std::vector<bool>& held, int parameters) {
-  if (held.empty()) return {};
-  const Eigen::MatrixXd of_rig = free_directions(rig, held);
-  const Eigen::Index warp = parameters - of_rig.rows();
-  Eigen::MatrixXd E = Eigen::MatrixXd::Zero(parameters, of_rig.cols() + warp);
-  E.topLeftCorner(of_rig.rows(), of_rig.cols()) = of_rig;
-  E.bottomRightCorner(warp, warp).setIdentity();
-  return E;
-}
-
-/// Held components of a rotation vector stay to the bit, not to first order only.
-void put_back_held(const Rig& before, const std::vector<bool>& held, Rig& rig) {
-  for (int c = 1; !held.empty() && c < static_cast<int>(rig.cameras.size()); ++c) {
-    const auto i = static_cast<std::size_t>(pose_index(rig, c));
-    if (!held[i] && !held[i + 1] && !held[i + 2]) continue;
-    const Eigen::Vector3d old = vector_from_rotation(before.T_camera_first[c].R);
-    Eigen::Vector3d r = vector_from_rotation(rig.T_camera_first[c].R);
-    for (int k = 0; k < 3; ++k) r[k] = held[i + k] ? old[k] : r[k];
-    rig.T_camera_first[c].R = held[i] && held[i + 1] && held[i + 2] ? before.T_camera_first[c].R
-                                                                    : rotation_from_vector(r);
-  }
-}
-
-BoardState Solution::moved(const BoardState& state, const Eigen::VectorXd& step) const {
-  BoardState next = state;
-  next.rig = retract(state.rig, step.head(parameter_count(state.rig)));
-  put_back_held(state.rig, cost_.held, next.rig);
-  if (views_.warp()) next.warp_m += step.tail<2>();
-  const Eigen::VectorXd kernel_step = kernel_by_step(state.rig) * step;
-  for (std::size_t g = 0; g < views_.groups().size(); ++g) {
-    Lanes twists[6];
-    frame_steps(&factors_[g * frame_factor_size(parameters_)], kernel_step, twists);
-    for (int l = 0; l < kernel_lanes; ++l) {
-      const int frame = views_.groups()[g].frames[l];
-      if (frame < 0) continue;
-      const auto at = [&](int k) { return twists[k].of[l]; };
-      const Eigen::Matrix3d turn = rotation_from_vector({at(0), at(1), at(2)});
-      Pose& T = next.T_first_board[frame];
-      T = {turn * T.R, turn * T.t + Eigen::Vector3d(at(3), at(4), at(5))};
-    }
-  }
-  return next;
-}
+constexpr double least_rcond = 3e-14;  // of the scaled reduced system
+constexpr double far_step = 10;        // standard deviations
+constexpr double least_rate = 0.03;    // of convergence that is counted on
 
 /// A step of the rig and how much it is worth.
 struct Step {
@@ -235,7 +25,7 @@ struct Step {
   double predicted = 0;  // fall of χ²
 };
 
-Step solve(const System& system, const Eigen::MatrixXd& E) {
+Step solve(const ReducedSystem& system, const Eigen::MatrixXd& E) {
   Step step;
   const bool all = E.size() == 0;
   Eigen::MatrixXd S = system.information;
@@ -278,6 +68,129 @@ struct Damping {
   void raise(bool far) { value = value == 0 ? (far ? 1e-4 : 1e-10) : value * 30; }
   bool hopeless() const { return value > 1e8; }
 };
+
+/// The steps from one start.
+class Descent {
+ public:
+  Descent(EliminatedBoards& boards,
+          const ReprojectionProblem& cost,
+          double tolerance_sigma,
+          double dof,
+          int parameters,
+          const BoardState& start)
+      : boards_(boards),
+        cost_(cost),
+        tolerance_sigma_(tolerance_sigma),
+        dof_(std::max(dof, 1.0)),
+        parameters_(parameters) {
+    result_.state = start;
+    linearise_again();
+  }
+
+  ResolveResult run() {
+    bool done = false;
+    while (!done && result_.iterations < cost_.max_iterations) done = take_step();
+    if (!done) result_.status = ResolveStatus::iteration_limit;
+    if (result_.status != ResolveStatus::converged) result_.chi2 = system_.chi2;
+    return result_;
+  }
+
+ private:
+  void linearise_again() {
+    system_ = boards_.linearise(result_.state, damping_.value);
+    ++result_.iterations;
+  }
+
+  /// Whether it was the last.
+  bool take_step() {
+    const Step step = solve(system_, directions(result_.state.rig, cost_.held, parameters_));
+    if (!step.sound) return leave_singular_point();
+    const double unit =
+        std::clamp(std::sqrt(system_.chi2 / dof_), least_unit_px / cost_.pixel_sigma_px, 1.0);
+    const bool damped = damping_.value > 0;
+    const double length = step.length / unit;
+    const double left = damped ? length : error_after(length, previous_length_);
+    const BoardState next = boards_.moved(result_.state, step.tangent);
+    if (!damped && left < tolerance_sigma_) {
+      result_.state = next;
+      result_.chi2 = std::max(0.0, system_.chi2 - step.predicted);
+      result_.error_left_sigma = left;
+      result_.status = ResolveStatus::converged;
+      return true;
+    }
+    const Damping used = damping_;
+    damping_.ease();
+    ReducedSystem after = boards_.linearise(next, damping_.value);
+    ++result_.iterations;
+    if (after.chi2 <= system_.chi2 * (1 + 1e-12)) {
+      previous_length_ = damped ? 0 : length;
+      result_.error_left_sigma = left;
+      result_.state = next;
+      system_ = std::move(after);
+      return false;
+    }
+    damping_ = used;
+    damping_.raise(length > far_step);
+    if (damping_.hopeless()) return stop(ResolveStatus::iteration_limit);
+    linearise_again();
+    return false;
+  }
+
+  /// Damping may lead to where the system is sound; undamped again it must be.
+  bool leave_singular_point() {
+    if (damping_.hopeless() || (was_singular_ && damping_.value == 0)) {
+      return stop(ResolveStatus::singular);
+    }
+    was_singular_ = true;
+    damping_.raise(true);
+    linearise_again();
+    return false;
+  }
+
+  bool stop(ResolveStatus status) {
+    result_.status = status;
+    return true;
+  }
+
+  EliminatedBoards& boards_;
+  const ReprojectionProblem& cost_;
+  double tolerance_sigma_, dof_;
+  int parameters_;
+  ResolveResult result_;
+  ReducedSystem system_;
+  Damping damping_;
+  double previous_length_ = 0;  // of the last undamped step, in standard deviations
+  bool was_singular_ = false;
+};
+
+}  // namespace
+
+struct Resolver::Problem {
+  BoardState around;
+  ReprojectionProblem cost;
+  ResolveOptions options;
+  PackedViews views;
+  Eigen::Matrix2Xd pixels_px;
+  int rig_parameters, parameters;  // without and with the warp
+  double dof;
+
+  Problem(const BoardObservations& observations,
+          const BoardState& state,
+          ReprojectionProblem problem,
+          const ResolveOptions& chosen)
+      : around(state),
+        cost(std::move(problem)),
+        options(chosen),
+        views(observations, state, cost),
+        pixels_px(views.observed_px(observations)),
+        rig_parameters(parameter_count(state.rig)),
+        parameters(rig_parameters + (views.warp() ? 2 : 0)) {
+    dof = 2.0 * static_cast<double>(views.corners()) - parameters -
+          6.0 * static_cast<double>(state.frames.size());
+  }
+};
+
+namespace {
 
 /// Throws Error where the problem is not one of this rig and these corners.
 void check(const BoardObservations& observations,
@@ -322,66 +235,17 @@ ResolveResult Resolver::resolve(const Eigen::Matrix2Xd& pixels_px) const {
 }
 
 ResolveResult Resolver::resolve(const Eigen::Matrix2Xd& pixels_px, const BoardState& start) const {
-  const ResolveOptions& options = problem_->options;
-  const ReprojectionProblem& cost = problem_->cost;
-  Solution solution(problem_->views, cost, problem_->views.pack(pixels_px), problem_->parameters,
-                    options.threads);
-  ResolveResult result;
-  result.state = start;
-  Damping damping;
-  System system = solution.linearise(start, 0);
-  double previous = 0;  // length of the last undamped step
-  bool was_singular = false;
-  for (result.iterations = 1; result.iterations < cost.max_iterations;) {
-    result.chi2 = system.chi2;
-    const Step step = solve(system, directions(result.state.rig, cost.held, problem_->parameters));
-    if (!step.sound) {
-      // Once damped the frames and the rig may leave the bad region; undamped again they must do.
-      if (damping.hopeless() || (was_singular && damping.value == 0)) return result;
-      was_singular = true;
-      damping.raise(true);
-      system = solution.linearise(result.state, damping.value);
-      ++result.iterations;
-      continue;
-    }
-    const double unit = std::clamp(std::sqrt(system.chi2 / std::max(problem_->dof, 1.0)),
-                                   least_unit_px / cost.pixel_sigma_px, 1.0);
-    const double left = damping.value > 0 ? step.length : error_after(step.length / unit, previous);
-    const BoardState next = solution.moved(result.state, step.tangent);
-    if (damping.value == 0 && left < options.tolerance_sigma) {
-      result.state = next;
-      result.chi2 = std::max(0.0, system.chi2 - step.predicted);
-      result.error_left_sigma = left;
-      result.status = ResolveStatus::converged;
-      return result;
-    }
-    const double used = damping.value;
-    damping.ease();
-    System after = solution.linearise(next, damping.value);
-    ++result.iterations;
-    if (after.chi2 <= system.chi2 * (1 + 1e-12)) {
-      previous = used == 0 ? step.length / unit : 0;
-      result.error_left_sigma = left;
-      result.state = next;
-      system = std::move(after);
-    } else {
-      damping.value = used;
-      damping.raise(step.length > far_step * unit);
-      if (damping.hopeless()) break;
-      system = solution.linearise(result.state, damping.value);
-      ++result.iterations;
-    }
-  }
-  result.chi2 = system.chi2;
-  result.status = ResolveStatus::iteration_limit;
-  return result;
+  const Problem& p = *problem_;
+  EliminatedBoards boards(p.views, p.cost, p.views.pack(pixels_px), p.parameters,
+                          p.options.threads);
+  return Descent(boards, p.cost, p.options.tolerance_sigma, p.dof, p.parameters, start).run();
 }
 
 Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
   const int n = problem_->parameters;
-  Solution solution(problem_->views, problem_->cost, problem_->views.pack(problem_->pixels_px), n,
-                    problem_->options.threads);
-  const System system = solution.linearise(state, 0);
+  EliminatedBoards boards(problem_->views, problem_->cost,
+                          problem_->views.pack(problem_->pixels_px), n, problem_->options.threads);
+  const ReducedSystem system = boards.linearise(state, 0);
   Eigen::MatrixXd E = directions(state.rig, problem_->cost.held, n);
   if (E.size() == 0) E = Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd S = E.transpose() * system.information * E;

@@ -1,42 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/resolve.h"
-
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <limits>
-
-#include "calib/board_warp.h"
-#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
-#include "calib/outliers.h"
-#include "calib/simulated_board.h"
-#include "tests/support/scenes.h"
+#include "tests/support/resolver_oracle.h"
 
 namespace vernier {
 namespace {
 
-constexpr double sigma_px = 0.2;
-
-/// Two cameras of one model with enough views for every model.
-SimulatedBoard scene(const Rig& rig, int frames = 24, double pixel_sigma_px = sigma_px) {
-  return simulate_board(rig, {9, 7, 0.03}, 7, 0,
-                        {.frames = frames, .pixel_sigma_px = pixel_sigma_px, .distance_m = 0.9});
-}
-
-/// Corners left out so that no two views have the same ones.
-void make_partial(BoardObservations& observations) {
-  for (std::size_t v = 0; v < observations.views.size(); ++v) {
-    BoardView& view = observations.views[v];
-    for (std::size_t i = view.ids.size(); i-- > 12;) {
-      if ((i * 7 + v * 13) % (3 + v % 5) != 0) continue;
-      view.ids.erase(view.ids.begin() + static_cast<std::ptrdiff_t>(i));
-      view.pixels_px.erase(view.pixels_px.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  }
-}
+using namespace test;
 
 Rig three_cameras() {
   Rig rig = test::stereo_rig(OpenCv4{});
@@ -46,134 +16,6 @@ Rig three_cameras() {
   rig.T_camera_first.push_back({rotation_from_vector({0.02, 0.03, -0.01}), {0.15, 0.01, 0}});
   return rig;
 }
-
-/// χ² at a state, by the plain code, and the standard deviations of the rig there were nothing
-/// held.
-struct Reference {
-  double chi2 = 0;
-  double residuals = 0;
-  Eigen::VectorXd sd;
-
-  Reference(const BoardObservations& observations,
-            const BoardState& state,
-            const ReprojectionProblem& problem = {}) {
-    const double variance = problem.pixel_sigma_px * problem.pixel_sigma_px;
-    const CornerResiduals all = corner_residuals(observations, state);
-    for (std::size_t v = 0; v < all.size(); ++v) {
-      for (std::size_t i = 0; i < all[v].size(); ++i) {
-        const double w = problem.corner_weights.empty() ? 1 : problem.corner_weights[v][i];
-        chi2 += w * all[v][i].squaredNorm() / variance;
-        residuals += 2;
-      }
-    }
-    for (const RigPrior& prior : problem.priors) chi2 += prior_chi2(prior, state.rig);
-    const auto equations = reduced_normal_equations(observations, state, problem.pixel_sigma_px);
-    sd = minimum_variance_bound(equations, parameter_names(state.rig)).diagonal().cwiseSqrt();
-  }
-};
-
-/// The rig at Ceres' minimum. Ceres accepts no step that the rounding of the cost (1e-12 px²)
-/// hides, so it may stop some 1e-6 standard deviations short: one Newton step by the plain code's
-/// normal equations follows. These know no weights.
-Rig minimum_by_ceres(const BoardObservations& observations,
-                     const BoardState& ceres,
-                     const ReprojectionProblem& problem) {
-  if (!problem.corner_weights.empty()) return ceres.rig;
-  auto equations =
-      reduced_normal_equations(observations, ceres, problem.pixel_sigma_px, problem.warp);
-  Eigen::VectorXd g = equations.scores.rowwise().sum();
-  for (const RigPrior& prior : problem.priors) {
-    const PriorOffset offset = prior_offset(prior, ceres.rig);
-    equations.information += offset.by_rig.transpose() * prior.information * offset.by_rig;
-    g += offset.by_rig.transpose() * prior.information * offset.delta;
-  }
-  Eigen::MatrixXd E = Eigen::MatrixXd::Identity(g.size(), g.size());
-  if (!problem.held.empty()) E = free_directions(ceres.rig, problem.held);
-  const Eigen::MatrixXd S = E.transpose() * equations.information * E;
-  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(
-      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
-  const Eigen::VectorXd z =
-      scale.asDiagonal() * factor.solve(scale.cwiseProduct(-E.transpose() * g));
-  return retract(ceres.rig, E * z);
-}
-
-/// The re-solver's answer from `start` against Ceres' from the same one.
-void expect_as_ceres(const BoardObservations& observations,
-                     const BoardState& start,
-                     const ReprojectionProblem& problem = {}) {
-  const BoardState ceres = minimise_reprojection(observations, start, problem);
-  const Reference at(observations, ceres, problem);
-  const ResolveResult ours = Resolver(observations, start, problem).resolve();
-  ASSERT_EQ(ours.status, ResolveStatus::converged);
-  EXPECT_NEAR(ours.chi2 / at.chi2, 1, 1e-9);
-  EXPECT_NEAR(Reference(observations, ours.state, problem).chi2 / at.chi2, 1, 1e-9);
-  const double unit = std::min(1.0, std::sqrt(at.chi2 / at.residuals));
-  const auto in_sigmas = [&](const Rig& rig) -> Eigen::VectorXd {
-    return difference(ours.state.rig, rig).cwiseQuotient(at.sd) / unit;
-  };
-  const Eigen::VectorXd miss = in_sigmas(minimum_by_ceres(observations, ceres, problem));
-  EXPECT_LT(miss.cwiseAbs().maxCoeff(), 1e-6) << miss.transpose();
-  EXPECT_LT(in_sigmas(ceres.rig).cwiseAbs().maxCoeff(), 1e-5);
-}
-
-/// A start `sigmas` standard deviations away in every parameter, boards moved as well.
-BoardState perturbed(const SimulatedBoard& board, double sigmas) {
-  BoardState start = board.truth;
-  const Reference at(board.observations, start);
-  Eigen::VectorXd sign = Eigen::VectorXd::Ones(at.sd.size());
-  for (Eigen::Index i = 1; i < sign.size(); i += 2) sign[i] = -1;
-  start.rig = retract(start.rig, sigmas * sigma_px * sign.cwiseProduct(at.sd));
-  for (Pose& T : start.T_first_board) {
-    Eigen::Matrix<double, 6, 1> step;
-    step << 1e-3, -1e-3, 2e-3, 1e-3, 1e-3, -2e-3;
-    T = retract(T, 0.2 * sigmas * step);
-  }
-  return start;
-}
-
-class ResolverOfEveryModel : public testing::TestWithParam<const char*> {
- protected:
-  SimulatedBoard board() const {
-    Rig rig = test::stereo_rig(camera_model(GetParam()));
-    if (std::string(GetParam()) == "opencv8") {
-      // Eight coefficients are told apart by wide lenses only.
-      for (Camera& camera : rig.cameras) camera.parameters[0] *= 0.5;
-    }
-    return scene(rig);
-  }
-};
-
-TEST_P(ResolverOfEveryModel, FromTheTruth) {
-  const SimulatedBoard board = this->board();
-  expect_as_ceres(board.observations, board.truth);
-}
-
-TEST_P(ResolverOfEveryModel, FromSomeStandardDeviationsAway) {
-  const SimulatedBoard board = this->board();
-  expect_as_ceres(board.observations, perturbed(board, 5));
-}
-
-TEST_P(ResolverOfEveryModel, WithPartialBoards) {
-  SimulatedBoard board = this->board();
-  make_partial(board.observations);
-  expect_as_ceres(board.observations, board.truth);
-}
-
-TEST_P(ResolverOfEveryModel, FromTheCornersAlone) {
-  if (std::string(GetParam()) == "opencv8") {
-    GTEST_SKIP() << "eight coefficients from zero: Ceres itself takes 130 steps along a valley";
-  }
-  SimulatedBoard board = this->board();
-  check_and_sort(board.observations);
-  const CameraModel model = camera_model(GetParam());
-  expect_as_ceres(board.observations, initial_state(board.observations, {model, model}));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Models,
-    ResolverOfEveryModel,
-    testing::Values("pinhole", "radial1", "opencv4", "opencv5", "opencv8", "fisheye4"));
 
 TEST(Resolver, OneCamera) {
   Rig rig = test::stereo_rig(OpenCv5{});
@@ -231,21 +73,6 @@ TEST(Resolver, IsTheSameToTheBitForAnyThreads) {
   }
 }
 
-/// Corners of a board bent by `warp_m`.
-SimulatedBoard bent(SimulatedBoard board, const Eigen::Vector2d& warp_m) {
-  const auto target = warped_target(board.observations.target_m, warp_m);
-  for (BoardView& view : board.observations.views) {
-    const Camera& camera = board.truth.rig.cameras[view.camera];
-    const Pose T =
-        board.truth.rig.T_camera_first[view.camera] * board.truth.T_first_board[view.frame];
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      view.pixels_px[i] += project(camera, T * target[view.ids[i]]) -
-                           project(camera, T * board.observations.target_m[view.ids[i]]);
-    }
-  }
-  return board;
-}
-
 TEST(Resolver, KnownWarpIsKept) {
   SimulatedBoard board = bent(scene(test::stereo_rig()), {2e-3, -1e-3});
   const double flat = Resolver(board.observations, board.truth).resolve().chi2;
@@ -255,14 +82,6 @@ TEST(Resolver, KnownWarpIsKept) {
   EXPECT_EQ(known.state.warp_m, board.truth.warp_m);
   EXPECT_LT(known.chi2, 0.7 * flat);
   expect_as_ceres(board.observations, board.truth);
-}
-
-TEST_P(ResolverOfEveryModel, FreeWarpIsFound) {
-  SimulatedBoard board = bent(this->board(), {2e-3, -1e-3});
-  const ReprojectionProblem problem{.warp = BoardWarp::free};
-  expect_as_ceres(board.observations, board.truth, problem);
-  const ResolveResult result = Resolver(board.observations, board.truth, problem).resolve();
-  EXPECT_LT((result.state.warp_m - Eigen::Vector2d(2e-3, -1e-3)).norm(), 1e-4);
 }
 
 TEST(Resolver, HeldParametersStay) {

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/packed_views.h"
+
+namespace vernier {
+
+/// The reduced system in the tangent of (rig, warp where that is free).
+struct ReducedSystem {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient, diagonal;
+  double chi2 = 0, frames_drop = 0;
+};
+
+/// A board calibration linearised with the board poses eliminated, and the way back to them: what
+/// the re-solver's steps are made of. Keeps what the last linearisation left.
+class EliminatedBoards {
+ public:
+  EliminatedBoards(const PackedViews& views,
+                   const ReprojectionProblem& cost,
+                   std::vector<Lanes> pixels,
+                   int parameters,
+                   int threads);
+
+  ReducedSystem linearise(const BoardState& state, double damping);
+  /// The state after a step of rig and warp, each board following by the last linearisation.
+  BoardState moved(const BoardState& state, const Eigen::VectorXd& step) const;
+
+ private:
+  void sum_chunk(const BoardState& state,
+                 const std::vector<CameraPlace>& places,
+                 const std::vector<Eigen::VectorXd>& intrinsics,
+                 double damping,
+                 std::size_t chunk);
+  ReducedSystem reduced() const;
+  Eigen::MatrixXd kernel_by_step(const Rig& rig) const;
+
+  const PackedViews& views_;
+  const ReprojectionProblem& cost_;
+  std::vector<Lanes> pixels_;
+  int parameters_, threads_;
+  std::vector<Lanes> factors_;
+  std::vector<ReducedSums> chunks_;
+};
+
+/// The free directions E of (rig, warp), a column each; empty where all are free.
+Eigen::MatrixXd directions(const Rig& rig, const std::vector<bool>& held, int parameters);
+
+}  // namespace vernier

@@ -57,13 +57,7 @@ Json summary_json(const RigEstimate& estimate) {
             {"prior_dof", s.prior_dof},
             {"prior_chi2", s.prior_chi2},
             {"warnings", s.warnings},
-            {"doubts", Json::array()}};
-  if (s.rms_px > 1) {
-    json["doubts"].push_back(
-        fmt::format("residuals of {:.2f} px are no corner noise: the board is not flat, corners "
-                    "are wrong, or the lens needs another model",
-                    s.rms_px));
-  }
+            {"doubts", s.doubts}};
   if (estimate.evidence) {
     const CalibrationEvidence& evidence = *estimate.evidence;
     std::size_t corners = 0;

@@ -32,6 +32,7 @@ CalibrationOptions options_of(const RigEstimate& estimate) {
   options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
   options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
   options.reject_outliers = false;
+  options.check_input = false;
   options.white_noise = estimate.covariance->kind == CovarianceKind::mvb;
   return options;
 }
@@ -106,7 +107,7 @@ void add_left_out(const RigEstimate& estimate,
                       {"failed", result.failed},
                       {"boards", result.boards},
                       {"frames", frames},
-                      {"training_frames", frames / 2 + 1},
+                      {"training_frames", result.training_frames},
                       {"rows",
                        {coverage_json("lengths on the board", "m", result.edges),
                         coverage_json("size of the board", "1", result.scale)}}};

@@ -135,6 +135,57 @@ class RealPairs(Case):
             self.assertAlmostEqual(two - rig['parameters'][0], 2 * (one - rig['parameters'][0]),
                                    places=9)
 
+    def page_data(self, *inputs):
+        """What the page of these inputs carries, and what was said on the way."""
+        page = self.folder / 'report.html'
+        done = self.works('report', *inputs, '-o', page)
+        text = page.read_text()
+        self.assertFalse('<!--VERNIER' in text, 'a mark of the template is left')
+        data = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)
+        return json.loads(data[1]), done.stderr
+
+    def test_report_of_a_rig_file_shows_its_calibration(self):
+        self.calibrate()
+        data, _ = self.page_data(self.folder / 'rig.json')
+        self.assertNotIn('study', data)
+        rig, = data['rigs']
+        self.assertEqual(rig['calibration']['corners_used'], 13 * 2 * 54)
+        for camera in rig['corners']:
+            self.assertEqual(len(camera['points']), 13 * 54)
+            self.assertEqual(sum(camera['structure']['counts']), 13 * 54)
+        for camera in rig['projection']['cameras']:
+            self.assertEqual([m['distance_m'] for m in camera['maps']], [1, 5, None])
+            for row in camera['figures']:
+                self.assertGreater(row['centre_px'], row['centre_bound_px'])
+        self.assertEqual(len(rig['view_influence']), 13)
+        self.assertAlmostEqual(sum(v['leverage'] for v in rig['view_influence']), 16, places=2)
+        models = rig['proof']['models']['rows']
+        self.assertEqual([m['model'] for m in models][:2], ['radial1', 'opencv4'])
+        self.assertLess(models[1]['held_out_rms_px'], models[0]['held_out_rms_px'])
+        for row in rig['proof']['left_out']['rows']:
+            self.assertGreater(row['coverage_honest'], row['coverage_mvb'])
+        again, _ = self.page_data(self.folder / 'rig.json')
+        self.assertEqual(again, data)
+
+    def test_report_says_what_a_rig_file_does_not_hold(self):
+        self.calibrate('--no-evidence')
+        data, _ = self.page_data(self.folder / 'rig.json', 'nominal', '--no-proof')
+        bare, nominal = data['rigs']
+        self.assertIn('no evidence', bare['missing'])
+        self.assertEqual(len(bare['correlation']), 16)
+        for key in ('corners', 'projection', 'view_influence', 'proof'):
+            self.assertNotIn(key, bare)
+        self.assertNotIn('missing', nominal)
+        self.assertNotIn('proof', nominal)
+
+    def test_report_of_held_parameters_and_a_prior(self):
+        self.calibrate('--hold', 'left.ax=1', '--know', 'left.f_px=533,2')
+        rig, = self.page_data(self.folder / 'rig.json')[0]['rigs']
+        self.assertNotIn('left.ax', rig['correlation_names'])
+        self.assertEqual(len(rig['correlation']), 15)
+        self.assertLess(sum(v['leverage'] for v in rig['view_influence']), 15)
+        self.assertIn('does not hold', rig['proof']['notes'][0])
+
     def test_wrong_board_size(self):
         self.complains('calibrate', '--left', IMAGES / 'left0[12].jpg', '--right',
                        IMAGES / 'right0[12].jpg', '--board', '11x8', '--square-m', '0.025', '-o',
@@ -347,6 +398,15 @@ class BadInput(Case):
         self.complains('simulate', '--pose', '1,2,3', '--source', 'edge_los=1', of='edge_loss')
         self.complains('report', self.folder, '-o', self.folder / 'r.html',
                        of='is not the folder of a study')
+        self.complains('report', 'no.rig.json', '-o', self.folder / 'r.html', of='no such file')
+        (self.folder / 'other.json').write_text('{"format": "other"}')
+        self.complains('report', 'nominal', self.folder / 'other.json', '-o',
+                       self.folder / 'r.html', of='other.json: is not a rig file',
+                       leaves=[self.folder / 'r.html'])
+        for name in ('one', 'two'):
+            (self.folder / name).mkdir()
+        self.complains('report', self.folder / 'one', self.folder / 'two', '-o',
+                       self.folder / 'r.html', of='is a second folder of a study')
 
     def test_numbers_that_are_none(self):
         for psi_c in ('nan', 'inf'):

@@ -1,4 +1,4 @@
-# Makes a page from a small study with the program itself and gives it to the browser test.
+# Makes pages of a small study and of a rig with the program itself, for the browser test.
 execute_process(COMMAND ${NODE} --version OUTPUT_VARIABLE node_version)
 if(NOT node_version MATCHES "^v[2-9][0-9]")
   message("report page: skipped: its browser driver needs Node.js 20, this is ${node_version}")
@@ -11,10 +11,12 @@ file(WRITE ${FOLDER}/small.toml
      "[sweep]\n\"sources.calibration\" = [0.1, 10]\n")
 execute_process(COMMAND ${VERNIER} study ${FOLDER}/small.toml -o ${FOLDER}/study -q
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
-execute_process(COMMAND ${VERNIER} report ${FOLDER}/study --calibration nominal
+execute_process(COMMAND ${VERNIER} report ${FOLDER}/study nominal --no-proof
                         -o ${FOLDER}/report.html
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
-execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html
+execute_process(COMMAND ${VERNIER} report nominal -o ${FOLDER}/rig.html
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html ${FOLDER}/rig.html
                 RESULT_VARIABLE status)
 if(status EQUAL 77)
   message("report page: skipped: no playwright-core (npm ci in cli/page) or no Chromium")

@@ -51,7 +51,8 @@ function grid_of({ columns, rows }, list) {
 /** The image's cells as a heat map below whatever else is drawn. */
 const cells_trace = ({ structure, size_px }, list, more) => ({
   type: "heatmap", x: cell_centres(structure.columns, size_px[0]),
-  y: cell_centres(structure.rows, size_px[1]), z: grid_of(structure, list), xgap: 1, ygap: 1, ...more,
+  y: cell_centres(structure.rows, size_px[1]), z: grid_of(structure, list), xgap: 1, ygap: 1,
+  ...more,
 });
 
 function coverage_figure(one) {
@@ -72,8 +73,9 @@ function coverage_plot(one) {
       colorscale: [[0, "#fbe3d0"], [0.5 / most, "#fbe3d0"], [0.5 / most, "#eef5fa"],
         [1, "#8fc3e3"]],
       hovertemplate: "%{z} corners in this cell<extra></extra>" }),
-    { type: "scatter", mode: "markers", name: "corner used", x: points.map((p) => p[0]),
-      y: points.map((p) => p[1]), marker: { color: COLOUR.ink, size: 3, opacity: 0.75 },
+    { type: "scatter", mode: "markers", name: "corner used", showlegend: true,
+      x: points.map((p) => p[0]), y: points.map((p) => p[1]),
+      marker: { color: COLOUR.ink, size: 3, opacity: 0.75 },
       hovertemplate: "(%{x:.1f}, %{y:.1f}) px<extra></extra>" },
     { type: "scatter", mode: "markers", name: "outlier, left out", x: outliers.map((o) => o[0]),
       y: outliers.map((o) => o[1]), marker: { color: COLOUR.red, size: 9, symbol: "x-thin",
@@ -133,11 +135,11 @@ function mean_figure(one) {
   const filled = structure.mean.filter((_, i) => structure.counts[i] > 2);
   const scale = magnification(upper(filled.map(([x, y]) => Math.hypot(x, y)), 0.95), size_px[0],
     0.9 / structure.columns);
-  return figure(`Mean residual by place, ${one.camera} camera`, "The mean residual of the corners"
-    + ` in each cell (three or more), drawn ${count(scale)} times as long. The colour says how`
-    + " many standard deviations it lies from zero: independent noise passes 2.4 in one cell of"
-    + ` twenty. Here ${count(structure.beyond_95)} of ${count(structure.filled)} cells do, where`
-    + ` ${fixed(0.05 * structure.filled, 0)} are expected.`,
+  return figure(`Mean residual by place, ${one.camera} camera`, "Arrows are the mean residual"
+    + ` of the corners in a cell (of three or more), ${count(scale)} times as long. The colour`
+    + " says how many standard deviations it lies from zero: independent noise passes 2.4 in one"
+    + ` cell of twenty. Here ${count(structure.beyond_95)} of ${count(structure.filled)} cells`
+    + ` do, where ${fixed(0.05 * structure.filled, 0)} are expected.`,
     `Mean residuals of the ${one.camera} camera over its image.`, image_height(size_px),
     () => mean_plot(one, scale));
 }
@@ -151,7 +153,7 @@ function mean_plot(one, scale) {
     : []);
   return {
     data: [
-      cells_trace(one, structure.in_sigmas.map((s, i) => structure.counts[i] > 2 ? s : null), {
+      cells_trace(one, structure.in_sigmas.map((s, i) => structure.counts[i] ? s : null), {
         zmin: 0, zmax: 8, colorscale: [[0, "#ffffff"], [0.3, "#fdf3df"], [0.31, "#fbdca4"],
           [1, COLOUR.amber]],
         colorbar: { thickness: 10, len: 0.9, outlinewidth: 0, tickvals: [0, 2.4, 4, 6, 8],
@@ -196,7 +198,8 @@ function histogram_plot({ structure: { histogram, first_edge, bin }, corners }) 
         line: { color: COLOUR.ink, width: 1.6 }, hoverinfo: "skip" },
     ],
     layout: { bargap: 0.06,
-      xaxis: axis("residual, σ (beyond ± 5 in the outermost bars)", { showgrid: false, dtick: 1 }),
+      xaxis: axis("residual, σ (beyond ± 5 in the outermost bars)",
+        { showgrid: false, dtick: 1 }),
       yaxis: axis("coordinates", { rangemode: "tozero" }) },
   };
 }

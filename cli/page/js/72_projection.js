@@ -50,7 +50,7 @@ function projection_figure(one, range) {
   const across = shown < 700 ? 1 : one.maps.length;
   const width = (Math.min(1104, shown) - 70) / across;
   const rows = one.maps.length / across;
-  const height = Math.round(70 + rows * (30 + 0.9 * width * one.size_px[1] / one.size_px[0]));
+  const height = Math.round(70 + rows * (20 + 0.86 * width * one.size_px[1] / one.size_px[0]));
   return figure(`Projection uncertainty, ${one.camera} camera`, "Standard deviation in pixels of"
     + " where a point at each place of the image is seen, at three distances along the ray. All"
     + " maps share the colours; lines join places of equal uncertainty, at steps of their own.",
@@ -69,9 +69,9 @@ function projection_plot(one, [low, high], across) {
     const y = [1 - (row + 1) / rows + 0.03, 1 - row / rows - (rows > 1 ? 0.05 : 0)];
     data.push(...map_traces(one, map, [low, high], name, i === one.maps.length - 1));
     layout[`xaxis${name}`] = { domain: x, anchor: `y${name}`, showgrid: false, zeroline: false,
-      showticklabels: false, constrain: "domain", range: [-0.5, one.size_px[0] - 0.5] };
+      showticklabels: false, ticks: "", constrain: "domain", range: [-0.5, one.size_px[0] - 0.5] };
     layout[`yaxis${name}`] = { domain: y, anchor: `x${name}`, showgrid: false, zeroline: false,
-      showticklabels: false, scaleanchor: `x${name}`, constrain: "domain",
+      showticklabels: false, ticks: "", scaleanchor: `x${name}`, constrain: "domain",
       range: [one.size_px[1] - 0.5, -0.5] };
     layout.annotations.push({ text: is_number(map.distance_m) ? `at ${map.distance_m} m`
       : "at infinity", showarrow: false, xref: `x${name} domain`, yref: `y${name} domain`, x: 0.5,
@@ -82,8 +82,9 @@ function projection_plot(one, [low, high], across) {
 
 function map_traces(one, map, [low, high], name, with_bar) {
   const place = { x: one.x_px, y: one.y_px, xaxis: `x${name}`, yaxis: `y${name}` };
-  const ticks = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200,
-    500, 1000].filter((t) => Math.log10(t) >= low && Math.log10(t) <= high);
+  const ticks = [-4, -3, -2, -1, 0, 1, 2, 3]
+    .flatMap((power) => [1, 2, 5].map((step) => Number((step * 10 ** power).toPrecision(1))))
+    .filter((t) => Math.log10(t) >= low && Math.log10(t) <= high);
   const sds = map.sd_px.flat().filter((sd) => sd > 0);
   const step = contour_step(Math.min(...sds), upper([...sds], 0.97));
   return [

@@ -26,24 +26,33 @@ function views_content(rig) {
 const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 
 const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
-  showgrid: false, tickfont: { size: 11 }, nticks: Math.min(views.length, 50) });
+  showgrid: false, tickfont: { size: 11 }, dtick: Math.ceil(views.length / 50) });
 
 function influence_figure(views) {
   return figure("Influence of every view", "Bars: how far the estimate moves without the view's"
     + " pull, in standard deviations of the bound. Marks: what independent noise would give (root"
-    + " mean square).", "Influence of every view; the table below has the largest.", 360, () => ({
-    data: [
-      { type: "bar", name: "influence", x: views.map(view_name), y: views.map((v) => v.influence),
-        marker: { color: views.map((v) => v.influence > 2 * v.influence_noise ? COLOUR.red
-          : COLOUR.sky) }, hovertemplate: "%{x}: %{y:.2f}<extra></extra>" },
-      { type: "scatter", mode: "markers", name: "independent noise", x: views.map(view_name),
-        y: views.map((v) => v.influence_noise), marker: { symbol: "line-ew", size: 12,
-          line: { color: COLOUR.ink, width: 2.4 } },
-        hovertemplate: "noise would give %{y:.2f}<extra></extra>" },
-    ],
-    layout: { bargap: 0.25, xaxis: views_axis(views),
-      yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
-  }));
+    + " mean square).", "Influence of every view; the table below has the largest.", 360,
+    () => influence_plot(views));
+}
+
+function influence_plot(views) {
+  const x = views.map(view_name);
+  const far = (v) => v.influence > 2 * v.influence_noise;
+  const bars = (name, color, wanted) => ({ type: "bar", name, x, marker: { color },
+    y: views.map((v) => wanted(v) ? v.influence : null),
+    hovertemplate: "%{x}: %{y:.2f}<extra></extra>" });
+  const data = [bars("influence", COLOUR.sky, (v) => !far(v)),
+    bars("influence, more than twice what noise gives", COLOUR.red, far)]
+    .filter((trace) => trace.y.some(is_number));
+  return {
+    data: [...data, { type: "scatter", mode: "markers", name: "independent noise", x,
+      y: views.map((v) => v.influence_noise), marker: { symbol: "line-ew", size: 12,
+        line: { color: COLOUR.ink, width: 2.4 } },
+      hovertemplate: "noise would give %{y:.2f}<extra></extra>" }],
+    layout: { bargap: 0.25, barmode: "overlay", xaxis: { ...views_axis(views),
+      categoryorder: "array", categoryarray: x },
+    yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
+  };
 }
 
 function rms_figure(rig) {
@@ -77,12 +86,12 @@ function views_table(views) {
     { head: "Corners", cell: (v) => count(v.corners) },
     { head: "RMS", small: "px", cell: (v) => significant(v.rms_px, 3) },
     { head: "Influence", cell: (v) => significant(v.influence, 3) },
-    { head: "of noise", cell: (v) => significant(v.influence_noise, 3) },
+    { head: "Noise gives", cell: (v) => significant(v.influence_noise, 3) },
     { head: "Ratio", cell: (v) => significant(v.influence / v.influence_noise, 2) },
     { head: "Leverage", cell: (v) => significant(v.leverage, 3) },
     { head: "Best known", small: "direction", cell: (v) => percent(v.largest_share, 0) },
     { head: "If left out", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },
-    { head: "moves most", text: true, cell: ({ largest_move: m }) => m
+    { head: "Moves most", text: true, cell: ({ largest_move: m }) => m
       ? `${m.name} by ${m.sigmas > 0 ? "+" : ""}${fixed(m.sigmas, 2)} σ` : DASH },
   ], rows);
 }

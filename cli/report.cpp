@@ -62,9 +62,11 @@ void add_rig(const std::string& name, Session& session, Proof proof, Json& data)
   const RigFile file = read_rig(path);
   for (const std::string& warning : file.warnings) session.warn(warning);
   data["rigs"].push_back(report_rig(file.estimate, path.filename().string(), proof, session));
-  if (const Json& calibration = data["rigs"].back()["calibration"]; calibration.is_object()) {
-    for (const Json& doubt : calibration["doubts"]) {
-      session.warn(path.filename().string() + ": " + doubt.get<std::string>());
+  const Json& calibration = data["rigs"].back()["calibration"];
+  if (!calibration.is_object()) return;
+  for (const std::string key : {"doubts", "warnings"}) {
+    for (const Json& words : calibration[key]) {
+      session.warn(path.filename().string() + ": " + words.get<std::string>());
     }
   }
 }

@@ -125,9 +125,7 @@ Json report_rig(const RigEstimate& estimate,
   }
   if (proof == Proof::make) {
     json["proof"] = report_proof(estimate, file, session);
-    Json& calibration = json["calibration"];
-    add_warnings(json["proof"].value("warnings", Json::array()), calibration["warnings"]);
-    add_warnings(json["proof"].value("doubts", Json::array()), calibration["doubts"]);
+    add_warnings(json["proof"]["warnings"], json["calibration"]["warnings"]);
   }
   return json;
 }

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// With so many decimals as the page can show; null where it is no number.
-Json rounded(double x, double unit) {
-  return std::isfinite(x) ? Json(std::round(x / unit) * unit) : Json(nullptr);
+/// With so many decimals; null where it is no number.
+Json rounded(double x, int decimals) {
+  const double k = std::pow(10, decimals);
+  return std::isfinite(x) ? Json(std::round(x * k) / k) : Json(nullptr);
 }
 
 /// To four significant digits.
@@ -51,8 +52,8 @@ Json structure_json(const ResidualStructure& s) {
             {"beyond_3_sigma", s.beyond_3_sigma}};
   for (const ResidualCell& cell : s.cells) {
     json["counts"].push_back(cell.corners);
-    json["mean"].push_back({rounded(cell.mean_px.x(), 1e-4), rounded(cell.mean_px.y(), 1e-4)});
-    json["in_sigmas"].push_back(rounded(cell.in_sigmas, 1e-2));
+    json["mean"].push_back({rounded(cell.mean_px.x(), 4), rounded(cell.mean_px.y(), 4)});
+    json["in_sigmas"].push_back(rounded(cell.in_sigmas, 2));
   }
   return json;
 }
@@ -68,8 +69,8 @@ Json outliers_json(const RigEstimate& estimate, int camera) {
   Json json = Json::array();
   for (const CornerOutlier& o : estimate.calibration->outliers) {
     if (o.camera != camera) continue;
-    json.push_back({rounded(o.pixel_px.x(), 0.01), rounded(o.pixel_px.y(), 0.01),
-                    rounded(o.residual_px, 0.01), o.frame, o.id});
+    json.push_back({rounded(o.pixel_px.x(), 2), rounded(o.pixel_px.y(), 2),
+                    rounded(o.residual_px, 2), o.frame, o.id});
   }
   return json;
 }
@@ -102,7 +103,7 @@ Json map_json(const ProjectionGrid& grid, double distance_m) {
     }
     rows.push_back(std::move(row));
   }
-  return {{"distance_m", rounded(distance_m, 1e-3)}, {"sd_px", rows}};
+  return {{"distance_m", rounded(distance_m, 3)}, {"sd_px", rows}};
 }
 
 /// Ranges of the boards' middles from the first camera: nearest, median, farthest.
@@ -131,9 +132,9 @@ Json camera_projection(const RigAndBoards& honest,
   for (const double distance_m : {board_range_m, 1.0, 5.0, infinity}) {
     const ProjectionGrid grid = projection_grid(uncertainty, columns, rows, distance_m);
     const MapFigures own = figures_of(grid);
-    Json row{{"distance_m", rounded(distance_m, 1e-3)}, {"boards", distance_m == board_range_m},
-             {"centre_px", short_number(own.centre)},   {"median_px", short_number(own.median)},
-             {"worst_px", short_number(own.worst)},     {"absent", grid.absent}};
+    Json row{{"distance_m", rounded(distance_m, 3)},  {"boards", distance_m == board_range_m},
+             {"centre_px", short_number(own.centre)}, {"median_px", short_number(own.median)},
+             {"worst_px", short_number(own.worst)},   {"absent", grid.absent}};
     if (bound) {
       const MapFigures sure = figures_of(projection_grid(
           ProjectionUncertainty(*bound, camera, PointFixedTo::boards), columns, rows, distance_m));
@@ -159,7 +160,7 @@ Json largest_move(const Eigen::VectorXd& move,
     const double sigma = std::sqrt(covariance.matrix(i, i));
     if (!(sigma > 0) || std::abs(move[i]) / sigma <= most) continue;
     most = std::abs(move[i]) / sigma;
-    largest = {{"name", names[i]}, {"sigmas", rounded(move[i] / sigma, 1e-3)}};
+    largest = {{"name", names[i]}, {"sigmas", rounded(move[i] / sigma, 3)}};
   }
   return largest;
 }
@@ -184,9 +185,8 @@ Json report_corners(const RigEstimate& estimate) {
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (!is_shown(i, residuals.size())) continue;
       const CornerResidual& r = residuals[i];
-      json["points"].push_back({rounded(r.pixel_px.x(), 0.01), rounded(r.pixel_px.y(), 0.01),
-                                rounded(r.residual_px.x(), 1e-3),
-                                rounded(r.residual_px.y(), 1e-3)});
+      json["points"].push_back({rounded(r.pixel_px.x(), 2), rounded(r.pixel_px.y(), 2),
+                                rounded(r.residual_px.x(), 3), rounded(r.residual_px.y(), 3)});
     }
     cameras.push_back(std::move(json));
   }
@@ -200,7 +200,7 @@ Json report_projection(const RigEstimate& estimate) {
     bound = rig_and_boards(estimate, CovarianceChoice::bound);
   }
   const auto [nearest, median, farthest] = board_ranges(*estimate.evidence);
-  Json json{{"boards_m", {rounded(nearest, 1e-3), rounded(median, 1e-3), rounded(farthest, 1e-3)}},
+  Json json{{"boards_m", {rounded(nearest, 3), rounded(median, 3), rounded(farthest, 3)}},
             {"cameras", Json::array()}};
   for (int c = 0; c < static_cast<int>(estimate.rig.cameras.size()); ++c) {
     json["cameras"].push_back(camera_projection(honest, bound, c, median));
@@ -221,12 +221,12 @@ Json report_views(const RigEstimate& estimate) {
     views.push_back({{"frame", one.frame},
                      {"images", images},
                      {"corners", one.corners},
-                     {"rms_px", rounded(one.rms_px, 1e-4)},
-                     {"leverage", rounded(one.leverage, 1e-4)},
-                     {"largest_share", rounded(one.largest_share, 1e-4)},
-                     {"influence", rounded(one.influence, 1e-4)},
-                     {"influence_noise", rounded(one.influence_noise, 1e-4)},
-                     {"influence_left_out", rounded(one.influence_left_out, 1e-4)},
+                     {"rms_px", rounded(one.rms_px, 4)},
+                     {"leverage", rounded(one.leverage, 4)},
+                     {"largest_share", rounded(one.largest_share, 4)},
+                     {"influence", rounded(one.influence, 4)},
+                     {"influence_noise", rounded(one.influence_noise, 4)},
+                     {"influence_left_out", rounded(one.influence_left_out, 4)},
                      {"largest_move", largest_move(alone ? one.delta : one.move_if_left_out,
                                                    *estimate.covariance, names)}});
   }

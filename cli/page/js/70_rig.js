@@ -195,22 +195,27 @@ function calibrations_section(rigs) {
     ], rigs, { wide: false }));
 }
 
+const DIRECTIONS_SHOWN = 8;
+
 function directions_list(rig) {
-  const shown = (rig.directions ?? []).filter((d) => d.share > 1e-9);
-  if (!shown.length) return null;
-  const rows = shown.map(({ share, words }) => element("li", {},
-    element("span", { class: "share" }, percent(share)),
-    element("span", { class: "bar", "aria-hidden": "true" },
-      element("i", { style: `width:${100 * Math.min(1, share)}%` })),
-    element("span", {}, words)));
+  const all = (rig.directions ?? []).filter((d) => d.share > 1e-9);
+  if (!all.length) return null;
+  const bars = (list) => element("ul", { class: "bars" }, list.map(({ share, words }) =>
+    element("li", {}, element("span", { class: "share" }, percent(share)),
+      element("span", { class: "bar", "aria-hidden": "true" },
+        element("i", { style: `width:${100 * Math.min(1, share)}%` })),
+      element("span", {}, words))));
   const condition = is_number(rig.scaled_condition) ? " The covariance has condition number"
     + ` ${significant(rig.raw_condition, 2)}, and ${significant(rig.scaled_condition, 2)} once each`
     + " parameter is counted in its own standard deviation." : "";
+  const rest = all.slice(DIRECTIONS_SHOWN);
   return element("div", {}, element("h3", {}, "Directions in which the calibration is loose"),
     element("p", { class: "reading" }, "Errors of parameters come together. Counted in standard"
-      + " deviations, the uncertainty splits into independent directions; the bar is each"
-      + " one's share of the whole. A few large shares mean that a few joint errors"
-      + " make up most of what is unknown."
+      + " deviations, the uncertainty splits into independent directions (the singular vectors of"
+      + " the scaled covariance); the bar is each one's share of the whole. A few large shares"
+      + " mean that a few joint errors make up most of what is unknown."
       + condition),
-    element("ul", { class: "bars" }, rows));
+    bars(all.slice(0, DIRECTIONS_SHOWN)),
+    rest.length > 0 && element("details", {}, element("summary", {}, `The other ${rest.length},`
+      + ` together ${percent(sum_of(rest, (one) => one.share))}`), bars(rest)));
 }

@@ -38,11 +38,11 @@ function projection_table({ cameras }) {
   ], rows, { wide: false });
 }
 
-/** One logarithmic range of colours for all maps, in powers of ten. */
+/** One logarithmic range of colours for all maps, in powers of ten; the last 2 % share its end. */
 function colour_range(cameras) {
   const sds = cameras.flatMap((one) => one.maps.flatMap((map) => map.sd_px.flat()))
     .filter((sd) => sd > 0);
-  return [Math.log10(Math.min(...sds)), Math.log10(Math.max(...sds))];
+  return [Math.log10(Math.min(...sds)), Math.log10(upper(sds, 0.98))];
 }
 
 function projection_figure(one, range) {
@@ -53,7 +53,10 @@ function projection_figure(one, range) {
   const height = Math.round(70 + rows * (20 + 0.86 * width * one.size_px[1] / one.size_px[0]));
   return figure(`Projection uncertainty, ${one.camera} camera`, "Standard deviation in pixels of"
     + " where a point at each place of the image is seen, at three distances along the ray. All"
-    + " maps share the colours; lines join places of equal uncertainty, at steps of their own.",
+    + " maps share the colours (the darkest is that much or more); lines join places of equal"
+    + " uncertainty, at steps of their own."
+    + (one.figures.some((row) => row.absent > 0) ? " Blank places are out of the lens model's"
+      + " reach: its distortion folds back before them." : ""),
     `Maps of the projection uncertainty of the ${one.camera} camera; the table below has the`
     + " figures.", height, () => projection_plot(one, range, across));
 }
@@ -86,7 +89,7 @@ function map_traces(one, map, [low, high], name, with_bar) {
     .flatMap((power) => [1, 2, 5].map((step) => Number((step * 10 ** power).toPrecision(1))))
     .filter((t) => Math.log10(t) >= low && Math.log10(t) <= high);
   const sds = map.sd_px.flat().filter((sd) => sd > 0);
-  const step = contour_step(Math.min(...sds), upper([...sds], 0.97));
+  const step = contour_step(Math.min(...sds), upper([...sds], 0.9));
   return [
     { type: "heatmap", ...place, zsmooth: "best", zmin: low, zmax: high, showscale: with_bar,
       z: map.sd_px.map((row) => row.map((sd) => sd > 0 ? Math.log10(sd) : null)),
@@ -96,7 +99,7 @@ function map_traces(one, map, [low, high], name, with_bar) {
         ticktext: ticks.map(String), title: { text: "px", side: "top" } },
       hovertemplate: "(%{x:.0f}, %{y:.0f}) px: %{customdata:.3g} px<extra></extra>" },
     { type: "contour", ...place, z: map.sd_px, showscale: false, hoverinfo: "skip",
-      contours: { coloring: "none", showlabels: true, start: step, end: 40 * step, size: step,
+      contours: { coloring: "none", showlabels: true, start: step, end: 12 * step, size: step,
         labelfont: { size: 11, color: COLOUR.ink } },
       line: { color: COLOUR.ink, width: 0.9, smoothing: 0.8 } },
   ];

@@ -75,7 +75,8 @@ function depth_figure(rows) {
   return figure("Depth uncertainty against range", "How far a point's depth may be off because of"
     + " calibration alone, on doubly logarithmic axes: a straight line of slope 2 is the growth"
     + " with the square of range that stereo expects. Linear: derivatives at the calibrated rig."
-    + ` Sampled: rigs drawn from the covariance. Where the two part, depth has left the range in which it is linear: trust the sampled one.${warning}`,
+    + " Sampled: rigs drawn from the covariance. Where the two part, depth has left the range in"
+    + ` which it is linear: trust the sampled one.${warning}`,
     "Standard deviation of depth against range, linear and sampled; the numbers are in the table"
     + " beside it.", 400, () => depth_plot(rows));
 }

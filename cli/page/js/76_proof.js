@@ -45,7 +45,9 @@ function left_out_content(left_out) {
     element("div", { class: "pair table-first" }, left_out_table(left_out),
       coverage_bars(left_out.rows)),
     element("p", { class: "reading" }, "Splits share frames, so these shares have no simple"
-      + " interval of their own; and lengths test the rig's geometry only where the boards stood."),
+      + " interval of their own. A single length carries its corners' noise as well, alike under"
+      + " both covariances; in the size of a board, the mean of its lengths, the noise averages out"
+      + " and the rig's error stays. Lengths test the rig only where the boards stood."),
   ];
 }
 

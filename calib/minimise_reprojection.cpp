@@ -85,6 +85,13 @@ ceres::Solver::Options solver_options(int max_iterations) {
   return options;
 }
 
+/// Whether the last twenty iterations brought nothing but rounding.
+bool moves_no_more(const ceres::Solver::Summary& summary) {
+  const auto& steps = summary.iterations;
+  return steps.size() > 20 &&
+         steps[steps.size() - 21].cost - summary.final_cost <= 1e-12 * summary.final_cost;
+}
+
 /// Builds the Ceres problem of one calibration and owns what its blocks refer to.
 class Minimisation {
  public:
@@ -106,7 +113,9 @@ class Minimisation {
     options.linear_solver_ordering = ordering_;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem_, &summary);
-    if (!summary.IsSolutionUsable() || summary.termination_type == ceres::NO_CONVERGENCE) {
+    const bool at_rest =
+        summary.termination_type != ceres::NO_CONVERGENCE || moves_no_more(summary);
+    if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
                   "look at the corners: a mirrored or turned board, or swapped cameras, do this");
     }

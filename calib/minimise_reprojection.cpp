@@ -71,8 +71,7 @@ ceres::Solver::Options solver_options(int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.max_num_iterations = max_iterations;
-  // Ceres drops the step at which it stops: a fall of χ² by 1e-17 of its value is the last 1e-7 σ.
-  options.function_tolerance = 1e-17;
+  options.function_tolerance = 1e-15;
   options.parameter_tolerance = 1e-13;
   options.gradient_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e12;  // Gauss-Newton steps until one fails

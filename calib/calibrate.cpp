@@ -102,28 +102,44 @@ double estimated_sigma(const Solution& s) {
   return s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / dof);
 }
 
-/// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
-/// cannot fit is not taken for wrong corners.
-void reject_outliers(Solution& s, const CalibrationOptions& options) {
-  RobustFit fit = without_outliers(s.observations, s.state, s.problem);
-  if (fit.outliers.empty()) return;
-  std::vector<CameraModel> rich = models_of(s.state.rig);
+/// The rig with opencv5 in place of poorer models, or nothing where there is none.
+std::optional<Rig> with_richer_lenses(const Rig& rig) {
+  std::vector<CameraModel> rich = models_of(rig);
   bool richer = false;
   for (CameraModel& model : rich) {
     if (richer_models(model).size() < 2) continue;  // opencv5, opencv8, fisheye4 stay
     model = OpenCv5{};
     richer = true;
   }
-  if (richer) {
-    BoardState state = s.state;
-    state.rig = in_models(state.rig, rich);
-    const ReprojectionProblem problem = problem_of(options, state.rig);
-    state = minimise_reprojection(s.observations, state, problem);
-    const RobustFit judged = without_outliers(s.observations, state, problem);
-    if (judged.outliers.empty()) return;
-    fit.inliers = judged.inliers;
-    fit.outliers = judged.outliers;
-    fit.state = at_frames(s.state, judged.state.frames);
+  if (!richer) return {};
+  return in_models(rig, rich);
+}
+
+/// What a lens model rich enough takes for outliers; nothing where the views do not determine it.
+std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
+                                                 const CalibrationOptions& options) {
+  const std::optional<Rig> rig = with_richer_lenses(s.state.rig);
+  if (!rig) return {};
+  BoardState state = s.state;
+  state.rig = *rig;
+  const ReprojectionProblem problem = problem_of(options, *rig);
+  try {
+    return without_outliers(s.observations, minimise_reprojection(s.observations, state, problem),
+                            problem);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
+/// cannot fit is not taken for wrong corners.
+void reject_outliers(Solution& s, const CalibrationOptions& options) {
+  RobustFit fit = without_outliers(s.observations, s.state, s.problem);
+  if (fit.outliers.empty()) return;
+  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, options)) {
+    if (judged->outliers.empty()) return;
+    judged->state = at_frames(s.state, judged->state.frames);
+    fit = std::move(*judged);
     fit.state = minimise_reprojection(fit.inliers, fit.state, s.problem);
   }
   s.observations = std::move(fit.inliers);

@@ -170,17 +170,19 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
-/// Whether the next corners beyond one of the grid's sides would lie outside the image.
+/// Whether the squares around the next corners beyond one of the grid's sides would not be all in
+/// the image.
 bool cut_by_border(const cv::Mat& grey, const CornerGrid& grid) {
-  const auto outside = [&](int column, int row) {
+  constexpr double step = 1.5;  // to the next corner, and half a square around it
+  const auto outside = [&](double column, double row) {
     const cv::Point2d p = beyond(grid, column, row);
     return p.x < 0 || p.y < 0 || p.x > grey.cols - 1 || p.y > grey.rows - 1;
   };
   for (int column = 0; column < grid.columns; ++column) {
-    if (outside(column, -1) || outside(column, grid.rows)) return true;
+    if (outside(column, -step) || outside(column, grid.rows - 1 + step)) return true;
   }
   for (int row = 0; row < grid.rows; ++row) {
-    if (outside(-1, row) || outside(grid.columns, row)) return true;
+    if (outside(-step, row) || outside(grid.columns - 1 + step, row)) return true;
   }
   return false;
 }
@@ -201,7 +203,8 @@ std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetectio
       return reason + "; " + bigger(board) + ": " + seen + " are seen";
     }
     reason += "; only " + seen + " of its corners can be followed";
-    if (grid->columns * grid->rows > 0.4 * board.columns * board.rows) {  // surely the board's own
+    // A few corners may be of something else; those of a board larger than 3x4 are not.
+    if (grid->columns * grid->rows > std::max(12, board.columns * board.rows / 4)) {
       reason += cut_by_border(grey, *grid)
                     ? ", the image's border cuts the board off"
                     : ", something covers the others, or the board has fewer";

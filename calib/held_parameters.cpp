@@ -37,6 +37,19 @@ void check_value(const HeldParameter& held) {
   }
 }
 
+/// What a parameter is where nothing else is said: ax 1, the centre in the middle of the image, no
+/// distortion. Focal lengths and poses have no such value and stay as they are.
+Eigen::VectorXd neutral_parameters(const Rig& rig) {
+  Rig neutral = rig;
+  for (Camera& camera : neutral.cameras) {
+    const Eigen::Vector2d middle = 0.5 * (camera.size_px.cast<double>() - Eigen::Vector2d::Ones());
+    const double f = camera.f_px();
+    camera.parameters.setZero();
+    camera.parameters.head<core_parameter_count>() << f, 1, middle.x(), middle.y();
+  }
+  return parameters(neutral);
+}
+
 }  // namespace
 
 std::vector<bool> held_mask(const Rig& rig, const std::vector<HeldParameter>& held) {
@@ -53,10 +66,12 @@ std::vector<bool> held_mask(const Rig& rig, const std::vector<HeldParameter>& he
 
 Rig with_held_values(const Rig& rig, const std::vector<HeldParameter>& held) {
   const std::vector<std::string> names = parameter_names(rig);
+  const Eigen::VectorXd neutral = neutral_parameters(rig);
   Eigen::VectorXd a = parameters(rig);
   for (const HeldParameter& h : held) {
     check_value(h);
-    if (h.value) a[index_of(names, h.name)] = *h.value;
+    const Eigen::Index i = index_of(names, h.name);
+    a[i] = h.value.value_or(neutral[i]);
   }
   Rig result = rig;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {

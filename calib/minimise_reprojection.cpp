@@ -71,8 +71,7 @@ ceres::Solver::Options solver_options(int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.max_num_iterations = max_iterations;
-  // Ceres drops the step at which it stops: a fall of χ² by 1e-17 of its value is the last 1e-7 σ.
-  options.function_tolerance = 1e-17;
+  options.function_tolerance = 1e-15;
   options.parameter_tolerance = 1e-13;
   options.gradient_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e12;  // Gauss-Newton steps until one fails
@@ -83,6 +82,13 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in one order: the same bits every time
   return options;
+}
+
+/// Whether the last twenty iterations brought nothing but rounding.
+bool moves_no_more(const ceres::Solver::Summary& summary) {
+  const auto& steps = summary.iterations;
+  return steps.size() > 20 &&
+         steps[steps.size() - 21].cost - summary.final_cost <= 1e-12 * summary.final_cost;
 }
 
 /// Builds the Ceres problem of one calibration and owns what its blocks refer to.
@@ -106,7 +112,9 @@ class Minimisation {
     options.linear_solver_ordering = ordering_;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem_, &summary);
-    if (!summary.IsSolutionUsable() || summary.termination_type == ceres::NO_CONVERGENCE) {
+    const bool at_rest =
+        summary.termination_type != ceres::NO_CONVERGENCE || moves_no_more(summary);
+    if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
                   "look at the corners: a mirrored or turned board, or swapped cameras, do this");
     }

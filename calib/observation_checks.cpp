@@ -86,6 +86,23 @@ void check_grids(const BoardObservations& observations,
   }
 }
 
+/// Whether the corners stand in evenly spaced columns, as a chessboard's. Corners of tags do not;
+/// these are told one by one, so no such view can be mirrored, and their y may point up.
+bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
+  std::vector<double> columns;
+  for (const Eigen::Vector3d& X : target_m) columns.push_back(X.x());
+  std::sort(columns.begin(), columns.end());
+  const double near = 1e-3 * (columns.back() - columns.front());
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    const double step = columns[i] - columns[i - 1];
+    if (step <= near) continue;
+    least = std::min(least, step);
+    most = std::max(most, step);
+  }
+  return most < 1.1 * least;
+}
+
 /// Throws for views mirrored against the others; a doubt where all are.
 void check_mirrored(const BoardObservations& observations,
                     const std::vector<BoardHomography>& homographies,
@@ -104,6 +121,7 @@ void check_mirrored(const BoardObservations& observations,
       "corners run row by row, x right and y down as seen: turn the mirrored images or their "
       "numbering round";
   if (others.empty()) {
+    if (!evenly_spaced(observations.target_m)) return;
     diagnosis.doubts.push_back(
         "every view shows the board mirrored (its corners run right to left or bottom to top): if "
         "the images are mirrored, so is the rig; " +

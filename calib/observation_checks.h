@@ -27,8 +27,9 @@ struct ObservationDiagnosis {
 ///  - one view twice: corners of two frames of a camera within 0.001 px;
 ///  - left and right images the same: corners of two cameras in a frame within 0.05 px.
 ///
-/// Doubts: every view mirrored; nearly no corner beyond half the image (wrong size). Warnings:
-/// frames seen by some cameras only, repeated views (rms below 0.3 px), a board of unlikely size.
+/// Doubts: every view of a chessboard mirrored; nearly no corner beyond half the image (wrong
+/// size). Warnings: frames seen by some cameras only, repeated views (rms below 0.3 px), a board of
+/// unlikely size.
 ObservationDiagnosis check_observations(const BoardObservations& observations);
 
 /// "frame 3, camera 1 (right03.png)".

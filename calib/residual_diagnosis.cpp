@@ -179,24 +179,31 @@ class Diagnosis {
       if (pair.pairs().size() < 2) continue;
       // the pose that the better half agrees on: the solution's own bends towards the bad frames
       const Rig rig = pair.agreed_rig(PairReading::as_is);
+      std::vector<double> together;
+      for (std::size_t i = 0; i < pair.pairs().size(); ++i) {
+        together.push_back(pair.together_px(i, PairReading::as_is, rig));
+      }
+      // a few frames far off spoil the intrinsics of all: then only these are meant
+      const double far_px = 2.5 * median(together);
+      const bool some_far =
+          std::any_of(together.begin(), together.end(), [&](double px) { return px > far_px; });
       std::vector<std::pair<double, std::size_t>> apart;
       double alone_sum = 0, together_sum = 0;
       for (std::size_t i = 0; i < pair.pairs().size(); ++i) {
         const ViewPair& views = pair.pairs()[i];
-        const double together = pair.together_px(i, PairReading::as_is, rig);
-        if (!(together > 2 * views.alone_px)) continue;
+        if (!(together[i] > 2 * views.alone_px) || (some_far && together[i] <= far_px)) continue;
         const double corners =
             2.0 * static_cast<double>(views.first.ids.size() + views.second.ids.size());
-        apart.emplace_back(together, i);
+        apart.emplace_back(together[i], i);
         alone_sum += corners * views.alone_px * views.alone_px;
-        together_sum += corners * together * together;
+        together_sum += corners * together[i] * together[i];
       }
       if (apart.empty()) continue;
       std::sort(apart.rbegin(), apart.rend());
       std::vector<std::string> names;
-      for (const auto& [together, i] : apart) {
+      for (const auto& [px, i] : apart) {
         names.push_back(fmt::format("{} ({:.1f} px against {:.1f})", pair.pairs()[i].first.frame,
-                                    together, pair.pairs()[i].alone_px));
+                                    px, pair.pairs()[i].alone_px));
       }
       findings_.push_back(
           {std::min(1.0, (together_sum - alone_sum) / sum_px2_),

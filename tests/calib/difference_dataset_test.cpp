@@ -23,7 +23,7 @@ TEST(RealPairs, TwoModelsDifferBeyondTheirBounds) {
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
   const ImageDetections found =
-      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025});
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, Chessboard{9, 6, 0.025});
   const RigEstimate a = calibrate(found.observations);
   const RigEstimate b = calibrate(found.observations, {.model = OpenCv4{}});
   const RigDifference d = rig_difference(a.rig, *chosen_covariance(a, CovarianceChoice::mvb), b.rig,
@@ -61,7 +61,8 @@ TEST(RealPairs, PredictedGainOfAViewIsWhatItBrings) {
   if (!data) GTEST_SKIP() << "VERNIER_DATA names no folder of data";
   const auto folder = (*data / "calib_opencv_case1").string();
   const BoardObservations all =
-      detect_images({folder + "/left*.png", folder + "/right*.png"}, {9, 6, 0.025}).observations;
+      detect_images({folder + "/left*.png", folder + "/right*.png"}, Chessboard{9, 6, 0.025})
+          .observations;
   const CalibrationOptions options{
       .pixel_sigma_px = 0.18, .reject_outliers = false, .white_noise = true};
   const int base = 8;

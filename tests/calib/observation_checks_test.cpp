@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "calib/error.h"
@@ -69,6 +70,27 @@ TEST_F(ObservationChecks, ABoardMirroredEverywhereIsDoubted) {
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
   ASSERT_EQ(diagnosis.doubts.size(), 1u);
   EXPECT_EQ(diagnosis.doubts[0].find("every view shows the board mirrored"), 0u);
+}
+
+TEST_F(ObservationChecks, AGridOfTagsWithItsYUpwardsIsNoMirroredBoard) {
+  // corners of 4 x 3 tags: pairs of columns and rows, the gap a third of a tag
+  for (auto& X : good_.target_m) {
+    const int column = static_cast<int>(std::lround(X.x() / 0.025));
+    const int row = static_cast<int>(std::lround(X.y() / 0.025));
+    X = {0.03 * (column / 2) + 0.02 * (column % 2), -0.03 * (row / 2) - 0.02 * (row % 2), 0};
+  }
+  const SimulatedBoard drawn = simulate_board(test::stereo_rig(), {}, 1);
+  for (BoardView& view : good_.views) {
+    const Pose T = drawn.truth.rig.T_camera_first[view.camera] *
+                   drawn.truth.T_first_board[view.frame] *
+                   Pose{rotation_from_vector({3.14159265358979, 0, 0}), {0.05, 0.05, 0}};
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      view.pixels_px[i] =
+          project(drawn.truth.rig.cameras[view.camera], T * good_.target_m[view.ids[i]]);
+    }
+  }
+  check_and_sort(good_);
+  EXPECT_TRUE(check_observations(good_).doubts.empty());
 }
 
 TEST_F(ObservationChecks, AMirroredImageIsNamedAsMirroredNumbering) {

@@ -269,7 +269,7 @@ TEST_F(RenderedBoards, ReasonsAreMeasured) {
   EXPECT_NE(reason(blurred).find("blurred: its sharpest edges are"), std::string::npos)
       << reason(blurred);
   BoardCamera aside = camera;
-  aside.t.x() += 0.15;
+  aside.t.x() += 0.12;
   EXPECT_NE(
       reason(photograph(draw(chessboard), aside)).find("the image's border cuts the board off"),
       std::string::npos)

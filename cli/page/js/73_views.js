@@ -12,14 +12,17 @@ function views_content(rig) {
   return [
     element("p", {}, "The estimate is where the pulls of all views balance. A view's influence is"
       + " how far the estimate moves if its pull is taken away, as one length over all parameters"
-      + " in standard deviations of the minimum variance bound; beside it stands what noise alone"
-      + " would give a view that knows as much. Far more than that (twice, say) means that the"
-      + " view has an error of its own: a board bent or moving, blur, wrong corners, or a pose at"
-      + " which the camera model fails. Look at that image before leaving it out: a view that"
-      + " knows much pulls much, and a set without it may only look better."),
+      + " in standard deviations of the minimum variance bound; beside it stands what"
+      + " independent noise alone would give a view that knows as much. Far more than that, and"
+      + " than the other views, means that the view has an error of its own: a board bent or"
+      + " moving, blur, wrong corners, or a pose at which the camera model fails. Look at that"
+      + " image before leaving it out: a view that knows much pulls much, and a set without it may"
+      + " only look better."),
     element("p", {}, `All views together pull ${significant(together, 2)} times as hard as`
-      + " independent noise would, which is why the covariance is wider than the bound."),
-    influence_figure(views), rms_figure(rig), views_table(views),
+      + " independent noise would"
+      + (together > 1.2 ? ": that is by how much the covariance from the views' scatter is wider"
+        + " than the bound." : ".")),
+    influence_figure(views, Math.max(2, 1.5 * together)), rms_figure(rig), views_table(views),
   ];
 }
 
@@ -28,21 +31,23 @@ const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
   showgrid: false, tickfont: { size: 11 }, dtick: Math.ceil(views.length / 50) });
 
-function influence_figure(views) {
+/** `far`: the ratio to what noise gives from which a view stands out. */
+function influence_figure(views, far) {
   return figure("Influence of every view", "Bars: how far the estimate moves without the view's"
     + " pull, in standard deviations of the bound. Marks: what independent noise would give (root"
-    + " mean square).", "Influence of every view; the table below has the largest.", 360,
-    () => influence_plot(views));
+    + " mean square). Orange: more than twice that, and 1.5 times what the views give on the"
+    + " whole.", "Influence of every view; the table below has the largest.", 360,
+    () => influence_plot(views, far));
 }
 
-function influence_plot(views) {
+function influence_plot(views, far) {
   const x = views.map(view_name);
-  const far = (v) => v.influence > 2 * v.influence_noise;
+  const stands_out = (v) => v.influence > far * v.influence_noise;
   const bars = (name, color, wanted) => ({ type: "bar", name, x, marker: { color },
     y: views.map((v) => wanted(v) ? v.influence : null),
     hovertemplate: "%{x}: %{y:.2f}<extra></extra>" });
-  const data = [bars("influence", COLOUR.sky, (v) => !far(v)),
-    bars("influence, more than twice what noise gives", COLOUR.red, far)]
+  const data = [bars("influence", COLOUR.sky, (v) => !stands_out(v)),
+    bars("influence, stands out", COLOUR.red, stands_out)]
     .filter((trace) => trace.y.some(is_number));
   return {
     data: [...data, { type: "scatter", mode: "markers", name: "independent noise", x,

@@ -122,7 +122,8 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
   if (!rig) return {};
   BoardState state = s.state;
   state.rig = *rig;
-  const ReprojectionProblem problem = problem_of(options, *rig);
+  ReprojectionProblem problem = problem_of(options, *rig);
+  problem.must_converge = false;
   try {
     return without_outliers(s.observations, minimise_reprojection(s.observations, state, problem),
                             problem);
@@ -147,6 +148,23 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   s.outliers = std::move(fit.outliers);
 }
 
+/// From the start to the minimum, without outliers.
+void descend(Solution& s, const CalibrationOptions& options) {
+  try {
+    s.state = minimise_reprojection(s.observations, s.state, s.problem);
+  } catch (const Error&) {
+    // Steps of Gauss and Newton creep where residuals are large, as those of wrong corners are.
+    if (!options.reject_outliers) throw;
+    ReprojectionProblem hasty = s.problem;
+    hasty.must_converge = false;
+    s.state = minimise_reprojection(s.observations, s.state, hasty);
+    reject_outliers(s, options);
+    if (s.outliers.empty()) throw;
+    return;
+  }
+  if (options.reject_outliers) reject_outliers(s, options);
+}
+
 Solution solve(BoardObservations observations, const CalibrationOptions& options) {
   std::vector<CameraModel> models = options.models;
   if (models.empty()) models.assign(observations.size_px.size(), options.model);
@@ -165,8 +183,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
-  s.state = minimise_reprojection(s.observations, s.state, s.problem);
-  if (options.reject_outliers) reject_outliers(s, options);
+  descend(s, options);
   linearise(s);
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution

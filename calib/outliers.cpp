@@ -49,6 +49,7 @@ BoardState redescending_minimum(const BoardObservations& observations,
                                 ReprojectionProblem problem,
                                 double limit) {
   constexpr int huber_rounds = 4, tukey_rounds = 15;
+  problem.must_converge = false;
   for (int round = 0; round < huber_rounds + tukey_rounds; ++round) {
     const CornerResiduals residuals = corner_residuals(observations, state);
     const double sigma = robust_pixel_sigma(residuals);
@@ -106,6 +107,18 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
     }
   }
   return flags;
+}
+
+/// Whether some view fits three times worse than is usual: least squares spreads the misfit of a
+/// wrong view over the others, so that no corner of it need look wrong by itself.
+bool some_view_stands_out(const BoardObservations& observations, const BoardState& state) {
+  std::vector<double> rms;
+  for (const auto& view : corner_residuals(observations, state)) {
+    double squares = 0;
+    for (const Eigen::Vector2d& r : view) squares += r.squaredNorm();
+    rms.push_back(std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, view.size()))));
+  }
+  return *std::max_element(rms.begin(), rms.end()) > 3 * median(rms);
 }
 
 bool any(const std::vector<std::vector<bool>>& flags) {
@@ -189,9 +202,14 @@ RobustFit without_outliers(const BoardObservations& observations,
                            const BoardState& state,
                            const ReprojectionProblem& problem,
                            double limit) {
-  if (!any(outlier_flags(observations, state, limit))) return {observations, state, {}};
+  if (!any(outlier_flags(observations, state, limit)) &&
+      !some_view_stands_out(observations, state)) {
+    return {observations, state, {}};
+  }
   const BoardState robust = redescending_minimum(observations, state, problem, limit);
-  RobustFit fit = separated(observations, robust, outlier_flags(observations, robust, limit));
+  const auto flags = outlier_flags(observations, robust, limit);
+  if (!any(flags)) return {observations, state, {}};
+  RobustFit fit = separated(observations, robust, flags);
   if (fit.inliers.views.empty()) {
     throw Error("calibration", "no view agrees with any other", "check the board and its size");
   }

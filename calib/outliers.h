@@ -32,7 +32,8 @@ CornerResiduals corner_residuals(const BoardObservations& observations, const Bo
 /// error in two coordinates (Rayleigh), which fewer than a half of wrong corners cannot ruin.
 double robust_pixel_sigma(const CornerResiduals& residuals);
 
-/// From the least-squares minimum `state`: where nothing is an outlier, nothing happens. Else the
+/// From the least-squares minimum `state`: where nothing is an outlier and no view fits three times
+/// worse than is usual, nothing happens. Else the
 /// cost is minimised with Huber's loss (Huber 1964), then with Tukey's redescending one (Beaton and
 /// Tukey 1974), both by iterated weights on the length of a corner's residual; what is an outlier
 /// at that minimum is left out, and least squares over the rest is the answer.

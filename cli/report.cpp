@@ -57,16 +57,30 @@ void add_study(const std::string& folder, Session& session, Proof proof, Json& d
   data["rigs"].push_back(report_rig(study.rig, study.file.rig, proof, session));
 }
 
-void add_rig(const std::string& name, Session& session, Proof proof, Json& data) {
-  const fs::path path = find_rig(name);
-  const RigFile file = read_rig(path);
-  for (const std::string& warning : file.warnings) session.warn(warning);
-  data["rigs"].push_back(report_rig(file.estimate, path.filename().string(), proof, session));
+struct NamedRig {
+  std::string file;
+  RigEstimate estimate;
+};
+
+/// All of them before any work is done, so that a bad file is told of at once.
+std::vector<NamedRig> read_rigs(const std::vector<std::string>& names, Session& session) {
+  std::vector<NamedRig> rigs;
+  for (const std::string& name : names) {
+    const fs::path path = find_rig(name);
+    RigFile file = read_rig(path);
+    for (const std::string& warning : file.warnings) session.warn(warning);
+    rigs.push_back({path.filename().string(), std::move(file.estimate)});
+  }
+  return rigs;
+}
+
+void add_rig(const NamedRig& rig, const Session& session, Proof proof, Json& data) {
+  data["rigs"].push_back(report_rig(rig.estimate, rig.file, proof, session));
   const Json& calibration = data["rigs"].back()["calibration"];
   if (!calibration.is_object()) return;
   for (const std::string key : {"doubts", "warnings"}) {
     for (const Json& words : calibration[key]) {
-      session.warn(path.filename().string() + ": " + words.get<std::string>());
+      session.warn(rig.file + ": " + words.get<std::string>());
     }
   }
 }
@@ -93,6 +107,7 @@ void run(const Options& options, Session& session) {
                 "set VERNIER_SHARE to the folder share/vernier of an installation");
   }
   const Inputs inputs = inputs_of(options);
+  const std::vector<NamedRig> rigs = read_rigs(inputs.rigs, session);
   const Proof proof = options.no_proof ? Proof::skip : Proof::make;
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},
@@ -100,7 +115,7 @@ void run(const Options& options, Session& session) {
                      {"command", command_of(inputs)}};
   data["rigs"] = Json::array();
   if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
-  for (const std::string& rig : inputs.rigs) add_rig(rig, session, proof, data);
+  for (const NamedRig& rig : rigs) add_rig(rig, session, proof, data);
   const std::string page = assemble_page(page_folder, data);
   write_atomically(options.output, page);
   session.result({{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}},

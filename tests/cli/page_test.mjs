@@ -68,10 +68,13 @@ function odd_rigs(rig) {
       y < 2 ? row.map(() => null) : row) })) })) };
   const alone = rig.view_influence.map((view, i) => i ? view
     : { ...view, images: [], influence_left_out: null, largest_share: 1 });
+  const many = Array.from({ length: 200 }, (_, frame) => ({ frame, images: [],
+    ...rig.view_influence[frame % rig.view_influence.length] }));
   const corners = rig.corners.map((one) => ({ ...one, outliers: [[20, 30, 41.5, 3, 7]],
     points: one.points.slice(0, 50) }));
   return [
-    { ...rig, corners, proof: { notes: ["Models were not compared: <b>why</b>."] } },
+    { ...rig, corners, view_influence: many,
+      proof: { notes: ["Models were not compared: <b>why</b>."] } },
     { ...rig, file: "odd.rig.json", projection: holes, view_influence: alone, proof: undefined,
       calibration: { ...rig.calibration, doubts: ["residuals of 1.2 px"], prior_dof: 2,
         prior_chi2: 1.5, held: ["left.ax"], warp_m: [1e-3, -2e-4] } },

@@ -85,9 +85,7 @@ function projection_plot(one, [low, high], across) {
 
 function map_traces(one, map, [low, high], name, with_bar) {
   const place = { x: one.x_px, y: one.y_px, xaxis: `x${name}`, yaxis: `y${name}` };
-  const ticks = [-4, -3, -2, -1, 0, 1, 2, 3]
-    .flatMap((power) => [1, 2, 5].map((step) => Number((step * 10 ** power).toPrecision(1))))
-    .filter((t) => Math.log10(t) >= low && Math.log10(t) <= high);
+  const ticks = colour_ticks(low, high);
   const sds = map.sd_px.flat().filter((sd) => sd > 0);
   const step = contour_step(Math.min(...sds), upper([...sds], 0.9));
   return [
@@ -103,6 +101,15 @@ function map_traces(one, map, [low, high], name, with_bar) {
         labelfont: { size: 11, color: COLOUR.ink } },
       line: { color: COLOUR.ink, width: 0.9, smoothing: 0.8 } },
   ];
+}
+
+/** Round values between two powers of ten: by 1, 2 and 5, or finer where these are few. */
+function colour_ticks(low, high) {
+  const among = (steps) => [-4, -3, -2, -1, 0, 1, 2, 3]
+    .flatMap((power) => steps.map((step) => Number((step * 10 ** power).toPrecision(2))))
+    .filter((t) => Math.log10(t) >= low && Math.log10(t) <= high);
+  const coarse = among([1, 2, 5]);
+  return coarse.length > 2 ? coarse : among([1, 1.5, 2, 3, 4, 5, 7]);
 }
 
 /** A round step that gives about six lines. */

@@ -22,7 +22,7 @@ function views_content(rig) {
       + " independent noise would"
       + (together > 1.2 ? ": that is by how much the covariance from the views' scatter is wider"
         + " than the bound." : ".")),
-    influence_figure(views, Math.max(2, 1.5 * together)), rms_figure(rig), views_table(views),
+    influence_figure(views, standing_out(views, together)), rms_figure(rig), views_table(views),
   ];
 }
 
@@ -31,16 +31,27 @@ const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
   showgrid: false, tickfont: { size: 11 }, dtick: Math.ceil(views.length / 50) });
 
-/** `far`: the ratio to what noise gives from which a view stands out. */
+const MOST_BARS = 60;
+
+/** The ratio to what noise gives from which a view stands out, from noise and from the others. */
+const standing_out = (views, together) =>
+  Math.max(views.length > MOST_BARS ? 3 : 2, 1.5 * together);
+
 function influence_figure(views, far) {
-  return figure("Influence of every view", "Bars: how far the estimate moves without the view's"
-    + " pull, in standard deviations of the bound. Marks: what independent noise would give (root"
-    + " mean square). Orange: more than twice that, and 1.5 times what the views give on the"
-    + " whole.", "Influence of every view; the table below has the largest.", 360,
-    () => influence_plot(views, far));
+  const many = views.length > MOST_BARS;
+  const reading = "How far the estimate moves without the view's pull, in standard deviations of"
+    + " the bound"
+    + (many ? ", against what independent noise would give (root mean square)."
+      + " On the line the two are the same."
+      : ". Marks: what independent noise would give (root mean square).")
+    + ` Orange: more than ${significant(far, 2)} times that, which noise seldom gives and 1.5 times`
+    + " what the views give on the whole.";
+  return figure("Influence of every view", reading,
+    "Influence of every view; the table below has the largest.", many ? 440 : 360,
+    () => (many ? influence_cloud : influence_bars)(views, far));
 }
 
-function influence_plot(views, far) {
+function influence_bars(views, far) {
   const x = views.map(view_name);
   const stands_out = (v) => v.influence > far * v.influence_noise;
   const bars = (name, color, wanted) => ({ type: "bar", name, x, marker: { color },
@@ -60,6 +71,26 @@ function influence_plot(views, far) {
   };
 }
 
+/** Too many views for bars: a point each. */
+function influence_cloud(views, far) {
+  const stands_out = (v) => v.influence > far * v.influence_noise;
+  const points = (name, color, list) => ({ type: "scatter", mode: "markers", name,
+    x: list.map((v) => v.influence_noise), y: list.map((v) => v.influence),
+    text: list.map(view_name), marker: { color, size: 6, opacity: 0.8 },
+    hovertemplate: "%{text}: %{y:.3f}, noise %{x:.3f}<extra></extra>" });
+  const end = Math.max(...views.map((v) => v.influence_noise));
+  return {
+    data: [points("view", COLOUR.blue, views.filter((v) => !stands_out(v))),
+      points("view that stands out", COLOUR.red, views.filter(stands_out)),
+      { type: "scatter", mode: "lines", name: "as noise gives", x: [0, end], y: [0, end],
+        line: { color: COLOUR.ink, width: 1.4, dash: "dot" }, hoverinfo: "skip" }]
+      .filter((trace) => trace.x.length),
+    layout: { hovermode: "closest",
+      xaxis: axis("what independent noise gives, standard deviations", { rangemode: "tozero" }),
+      yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
+  };
+}
+
 function rms_figure(rig) {
   const views = rig.view_influence;
   const whole = rig.calibration?.rms_px;
@@ -68,7 +99,8 @@ function rms_figure(rig) {
     "Residual of every view; the table below has numbers.", 300, () => ({
       data: [{ type: "bar", name: "rms", x: views.map(view_name), y: views.map((v) => v.rms_px),
         marker: { color: COLOUR.grey }, hovertemplate: "%{x}: %{y:.3f} px<extra></extra>" }],
-      layout: { bargap: 0.25, xaxis: views_axis(views), showlegend: false,
+      layout: { bargap: views.length > MOST_BARS ? 0 : 0.25, xaxis: views_axis(views),
+        showlegend: false,
         yaxis: axis("rms residual, px", { rangemode: "tozero" }),
         shapes: is_number(whole) ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: whole,
           y1: whole, line: { color: COLOUR.ink, width: 1.4, dash: "dot" } }] : [] },

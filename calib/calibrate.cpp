@@ -147,6 +147,24 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   s.outliers = std::move(fit.outliers);
 }
 
+/// From the start to the minimum, without the outliers. Wrong corners may leave plain least squares
+/// without a minimum worth the name; then outliers are sought from the start itself, which bad
+/// views do not move.
+void find_minimum(Solution& s, const CalibrationOptions& options) {
+  try {
+    s.state = minimise_reprojection(s.observations, s.state, s.problem);
+  } catch (const Error&) {
+    if (!options.reject_outliers) throw;
+    RobustFit fit = without_outliers(s.observations, s.state, s.problem);
+    if (fit.outliers.empty()) throw;
+    s.observations = std::move(fit.inliers);
+    s.state = std::move(fit.state);
+    s.outliers = std::move(fit.outliers);
+    return;
+  }
+  if (options.reject_outliers) reject_outliers(s, options);
+}
+
 Solution solve(BoardObservations observations, const CalibrationOptions& options) {
   std::vector<CameraModel> models = options.models;
   if (models.empty()) models.assign(observations.size_px.size(), options.model);
@@ -165,8 +183,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
-  s.state = minimise_reprojection(s.observations, s.state, s.problem);
-  if (options.reject_outliers) reject_outliers(s, options);
+  find_minimum(s, options);
   linearise(s);
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution

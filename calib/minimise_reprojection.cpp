@@ -112,8 +112,8 @@ class Minimisation {
     options.linear_solver_ordering = ordering_;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem_, &summary);
-    const bool at_rest =
-        summary.termination_type != ceres::NO_CONVERGENCE || moves_no_more(summary);
+    const bool at_rest = summary.termination_type != ceres::NO_CONVERGENCE ||
+                         what_.may_stop_early || moves_no_more(summary);
     if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
                   "look at the corners: a mirrored or turned board, or swapped cameras, do this");

@@ -19,6 +19,7 @@ struct ReprojectionProblem {
   /// One weight in [0, 1] a corner of every view, in the order of the observations; empty: all 1.
   std::vector<std::vector<double>> corner_weights;
   int max_iterations = 200;
+  bool may_stop_early = false;  ///< after max_iterations the state so far will do (no Error)
 };
 
 /// Minimises the unified cost

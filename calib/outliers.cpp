@@ -49,6 +49,7 @@ BoardState redescending_minimum(const BoardObservations& observations,
                                 ReprojectionProblem problem,
                                 double limit) {
   constexpr int huber_rounds = 4, tukey_rounds = 15;
+  problem.may_stop_early = true;  // the next round's weights differ anyway
   for (int round = 0; round < huber_rounds + tukey_rounds; ++round) {
     const CornerResiduals residuals = corner_residuals(observations, state);
     const double sigma = robust_pixel_sigma(residuals);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/board_pose.h"
+#include "calib/board_warp.h"
 #include "calib/error.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/model_nesting.h"
@@ -115,21 +117,46 @@ std::optional<Rig> with_richer_lenses(const Rig& rig) {
   return in_models(rig, rich);
 }
 
-/// What a lens model rich enough takes for outliers; nothing where the views do not determine it.
+/// Views of one frame.
+std::vector<BoardView> views_of(const BoardObservations& observations, int frame) {
+  std::vector<BoardView> views;
+  std::copy_if(observations.views.begin(), observations.views.end(), std::back_inserter(views),
+               [&](const BoardView& view) { return view.frame == frame; });
+  return views;
+}
+
+/// What a lens model rich enough takes for outliers, once it is fitted to what `fit` left in;
+/// frames that are out whole get a pose by that lens first. Nothing where the views do not
+/// determine it.
 std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
+                                                 const RobustFit& fit,
                                                  const CalibrationOptions& options) {
   const std::optional<Rig> rig = with_richer_lenses(s.state.rig);
   if (!rig) return {};
-  BoardState state = s.state;
-  state.rig = *rig;
   ReprojectionProblem problem = problem_of(options, *rig);
   problem.must_converge = false;
+  BoardState inside = fit.state;
+  inside.rig = in_models(inside.rig, models_of(*rig));
   try {
-    return without_outliers(s.observations, minimise_reprojection(s.observations, state, problem),
-                            problem);
+    inside = minimise_reprojection(fit.inliers, inside, problem);
   } catch (const Error&) {
     return {};
   }
+  BoardState whole = s.state;
+  whole.rig = inside.rig;
+  whole.warp_m = inside.warp_m;
+  const auto target_m = warped_target(s.observations.target_m, inside.warp_m);
+  for (std::size_t f = 0, k = 0; f < whole.frames.size(); ++f) {
+    while (k < inside.frames.size() && inside.frames[k] < whole.frames[f]) ++k;
+    if (k < inside.frames.size() && inside.frames[k] == whole.frames[f]) {
+      whole.T_first_board[f] = inside.T_first_board[k];
+      continue;
+    }
+    const std::vector<BoardView> views = views_of(s.observations, whole.frames[f]);
+    whole.T_first_board[f] =
+        fit_board_pose(target_m, views, whole.rig, whole.T_first_board[f], 50).T_first_board;
+  }
+  return outliers_at(s.observations, whole);
 }
 
 /// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
@@ -137,7 +164,7 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
 void reject_outliers(Solution& s, const CalibrationOptions& options) {
   RobustFit fit = without_outliers(s.observations, s.state, s.problem);
   if (fit.outliers.empty()) return;
-  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, options)) {
+  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, fit, options)) {
     if (judged->outliers.empty()) return;
     judged->state = at_frames(s.state, judged->state.frames);
     fit = std::move(*judged);

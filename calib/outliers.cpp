@@ -198,6 +198,14 @@ double robust_pixel_sigma(const CornerResiduals& residuals) {
   return lengths.empty() ? 0 : median(std::move(lengths)) / rayleigh_median;
 }
 
+RobustFit outliers_at(const BoardObservations& observations,
+                      const BoardState& state,
+                      double limit) {
+  RobustFit fit = separated(observations, state, outlier_flags(observations, state, limit));
+  measure(observations, fit);
+  return fit;
+}
+
 RobustFit without_outliers(const BoardObservations& observations,
                            const BoardState& state,
                            const ReprojectionProblem& problem,

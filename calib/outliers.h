@@ -32,6 +32,12 @@ CornerResiduals corner_residuals(const BoardObservations& observations, const Bo
 /// error in two coordinates (Rayleigh), which fewer than a half of wrong corners cannot ruin.
 double robust_pixel_sigma(const CornerResiduals& residuals);
 
+/// What `state` takes for outliers, by the rule of without_outliers(), and the state at the frames
+/// that are left; nothing is minimised.
+RobustFit outliers_at(const BoardObservations& observations,
+                      const BoardState& state,
+                      double limit = 6);
+
 /// From the least-squares minimum `state`: where nothing is an outlier and no view fits three times
 /// worse than is usual, nothing happens. Else the
 /// cost is minimised with Huber's loss (Huber 1964), then with Tukey's redescending one (Beaton and

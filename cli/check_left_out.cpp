@@ -5,17 +5,6 @@
 namespace vernier::cli {
 namespace {
 
-Json coverage_json(const LengthCoverage& c) {
-  return {{"lengths", c.lengths},
-          {"coverage_honest", c.coverage_honest},
-          {"coverage_mvb", c.coverage_mvb},
-          {"z_rms_honest", c.z_rms_honest},
-          {"z_rms_mvb", c.z_rms_mvb},
-          {"error_rms", c.error_rms_m},
-          {"sigma_honest", c.sigma_honest_m},
-          {"sigma_mvb", c.sigma_mvb_m}};
-}
-
 std::string coverage_line(const std::string& what,
                           const LengthCoverage& c,
                           double scale,
@@ -26,6 +15,17 @@ std::string coverage_line(const std::string& what,
 }
 
 }  // namespace
+
+Json coverage_json(const LengthCoverage& c) {
+  return {{"lengths", c.lengths},
+          {"coverage_honest", c.coverage_honest},
+          {"coverage_mvb", c.coverage_mvb},
+          {"z_rms_honest", c.z_rms_honest},
+          {"z_rms_mvb", c.z_rms_mvb},
+          {"error_rms", c.error_rms_m},
+          {"sigma_honest", c.sigma_honest_m},
+          {"sigma_mvb", c.sigma_mvb_m}};
+}
 
 CheckPart check_boards_left_out(const BoardObservations& observations,
                                 const LeftOutBoardsOptions& options,

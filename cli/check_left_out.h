@@ -7,6 +7,9 @@
 
 namespace vernier::cli {
 
+/// The shares inside their intervals and what goes with them.
+Json coverage_json(const LengthCoverage& coverage);
+
 /// Lengths on boards that took no part in the calibration against their intervals, over splits.
 CheckPart check_boards_left_out(const BoardObservations& observations,
                                 const LeftOutBoardsOptions& options,

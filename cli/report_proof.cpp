@@ -7,6 +7,7 @@
 #include "calib/left_out_boards.h"
 #include "calib/model_comparison.h"
 #include "calib/model_nesting.h"
+#include "cli/check_left_out.h"
 #include "cli/report_calibration.h"
 
 namespace vernier::cli {
@@ -66,17 +67,10 @@ void add_models(const RigEstimate& estimate, const CalibrationOptions& options, 
   for (const std::string& warning : comparison.warnings) json["warnings"].push_back(warning);
 }
 
-Json coverage_json(const std::string& what, const std::string& unit, const LengthCoverage& c) {
-  return {{"what", what},
-          {"unit", unit},
-          {"lengths", c.lengths},
-          {"coverage_honest", c.coverage_honest},
-          {"coverage_mvb", c.coverage_mvb},
-          {"z_rms_honest", c.z_rms_honest},
-          {"z_rms_mvb", c.z_rms_mvb},
-          {"error_rms", c.error_rms_m},
-          {"sigma_honest", c.sigma_honest_m},
-          {"sigma_mvb", c.sigma_mvb_m}};
+Json named_coverage(const std::string& what, const std::string& unit, const LengthCoverage& c) {
+  Json json{{"what", what}, {"unit", unit}};
+  json.update(coverage_json(c));
+  return json;
 }
 
 /// The observations at evenly spaced frames, so many at most.
@@ -108,8 +102,8 @@ void add_left_out(const RigEstimate& estimate,
                       {"frames", frames},
                       {"training_frames", result.training_frames},
                       {"rows",
-                       {coverage_json("lengths on the board", "m", result.edges),
-                        coverage_json("size of the board", "1", result.scale)}}};
+                       {named_coverage("lengths on the board", "m", result.edges),
+                        named_coverage("size of the board", "1", result.scale)}}};
   // Splits share boards: with a dozen of them 0.8 lies about 2.5 deviations below 0.95.
   for (const Json& row : json["left_out"]["rows"]) {
     if (row["coverage_honest"] >= 0.8) continue;

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/sampler.h"
 
-#include <cmath>
-
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 #include "cli/rig_table.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
@@ -20,20 +19,6 @@ struct Options {
   int count = 1000;
   std::uint64_t seed = 1;
 };
-
-/// CLI::NonNegativeNumber lets "nan" pass.
-std::string finite_and_not_negative(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return "";
-  return "\"" + text + "\" is not a finite number of 0 or more";
-}
-
-/// Without it -1 would wrap round to the largest seed.
-std::string not_negative(const std::string& text) {
-  return text.find('-') == std::string::npos
-             ? ""
-             : "\"" + text + "\" is not a whole number of 0 or more";
-}
 
 void run(const Options& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);

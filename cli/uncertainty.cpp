@@ -6,6 +6,7 @@
 
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/uncertainty_tables.h"
@@ -89,20 +90,6 @@ void run(const Options& options, Session& session) {
   Json all = session.json ? uncertainty_json(report, GridDetail::covariances) : Json::object();
   all.update(json);
   session.result(all, uncertainty_text(report) + written);
-}
-
-/// CLI::NonNegativeNumber lets "nan" pass.
-std::string finite_and_not_negative(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return "";
-  return "\"" + text + "\" is not a finite number of 0 or more";
-}
-
-/// Without it -1 would wrap round to the largest seed.
-std::string not_negative(const std::string& text) {
-  return text.find('-') == std::string::npos
-             ? ""
-             : "\"" + text + "\" is not a whole number of 0 or more";
 }
 
 }  // namespace

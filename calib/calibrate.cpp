@@ -50,17 +50,6 @@ struct Solution {
   double data_parameters = 0;        // how many of them the corners determine, tr(C S_data)
 };
 
-ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
-  ReprojectionProblem problem;
-  if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
-  problem.held = held_mask(rig, options.held);
-  problem.warp = options.warp;
-  problem.max_iterations = options.max_iterations;
-  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
-  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
-  return problem;
-}
-
 /// The normal equations and the bound at the solution's state.
 void linearise(Solution& s) {
   RefinedMinimum refined;
@@ -296,6 +285,17 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
 }
 
 }  // namespace
+
+ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
+  ReprojectionProblem problem;
+  if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
+  problem.held = held_mask(rig, options.held);
+  problem.warp = options.warp;
+  problem.max_iterations = options.max_iterations;
+  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
+  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
+  return problem;
+}
 
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options) {
   check_and_sort(observations);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/held_parameters.h"
+#include "calib/minimise_reprojection.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 
@@ -25,6 +26,11 @@ struct CalibrationOptions {
   /// The corner noise is known to be white (simulated corners): the covariance is the bound.
   bool white_noise = false;
 };
+
+/// The cost that these options describe for a rig like `rig`: held parameters, priors, warp. Its
+/// noise is that of the options, 1 px where they leave it to the residuals. Throws Error where a
+/// held or known parameter is none of the rig's.
+ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig);
 
 /// Calibrates a rig from views of a board by the unified cost (Tina Memo 2017-001, Eq. 1),
 ///

@@ -37,16 +37,12 @@ BoardObservations at(const BoardObservations& observations, const std::vector<in
   return part;
 }
 
+/// The problem of the options with the noise that was found.
 ReprojectionProblem problem_for(const CalibrationOptions& options,
                                 const Rig& rig,
                                 double pixel_sigma_px) {
-  ReprojectionProblem problem;
+  ReprojectionProblem problem = problem_of(options, rig);
   problem.pixel_sigma_px = pixel_sigma_px;
-  problem.held = held_mask(rig, options.held);
-  problem.warp = options.warp;
-  problem.max_iterations = options.max_iterations;
-  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
-  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
   return problem;
 }
 

@@ -59,11 +59,8 @@ CheckedProblem checked_problem(const Options& options, CalibrationOptions& how, 
   }
   const CalibrationEvidence& evidence = *estimate.evidence;
   CheckedProblem p;
+  p.problem = problem_of(how, estimate.rig);
   p.problem.pixel_sigma_px = estimate.calibration->pixel_sigma_px;
-  p.problem.held = held_mask(estimate.rig, how.held);
-  p.problem.warp = how.warp;
-  if (how.prior) p.problem.priors.push_back(rig_prior(estimate.rig, *how.prior));
-  if (!how.known.empty()) p.problem.priors.push_back(rig_prior(estimate.rig, how.known));
   p.state = {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   p.start = initial_state(evidence.observations, models_of(estimate.rig));
   p.start.rig = with_held_values(p.start.rig, how.held);

@@ -199,8 +199,13 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
   s.observations = std::move(observations);
-  descend(s, options);
-  linearise(s);
+  try {
+    descend(s, options);
+    linearise(s);
+  } catch (const Error& error) {  // what was found before may be the reason
+    if (s.said.doubts.empty()) throw;
+    throw Error(error.what(), fmt::format("{}", fmt::join(s.said.doubts, "; ")), "");
+  }
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution
     const double sigma = estimated_sigma(s);

@@ -209,8 +209,11 @@ ModelComparison compare_models(const RigEstimate& estimate,
           reduced_normal_equations(observations, fitted, sigma, options.warp);
       minimum_variance_bound(equations, parameter_names(fitted.rig));  // is it determined?
       const HeldOut errors = held_out_errors(observations, fitted, problem);
-      ModelScore score{richer, name_of(richer), rms(errors),
-                       sigma * std::sqrt(equations.chi2 / equations.residuals)};
+      ModelScore score;
+      score.models = richer;
+      score.name = name_of(richer);
+      score.held_out_rms_px = rms(errors);
+      score.fitted_rms_px = sigma * std::sqrt(equations.chi2 / equations.residuals);
       compare_errors(in_use, errors, score);
       compare_parameters(estimate, fitted.rig, score);
       comparison.richer.push_back(std::move(score));

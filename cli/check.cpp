@@ -89,7 +89,7 @@ void run(const Options& options, Session& session) {
     for (const std::string& failure : part.failures) session.doubt(failure);
   };
   if (options.no_mrcal) {
-    add("mrcal", {.json = nullptr, .text = "mrcal was left out", .reason = "--no-mrcal"});
+    add("mrcal", {nullptr, "mrcal was left out", "--no-mrcal", {}});
   } else {
     add("mrcal", check_by_mrcal(problem, session));
   }

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <glog/logging.h>
+
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -9,6 +11,7 @@
 
 int main(int argc, char** argv) {
   using namespace vernier;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres would say, results and errors say
   cli::Session session;
   CLI::App app{
       "Vernier: how wrong a stereo rig is, and what that does downstream.\n"

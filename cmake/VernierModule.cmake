@@ -3,6 +3,7 @@
 # the tree and after installation alike. DEPENDS are the modules to its left; PRIVATE libraries
 # never appear in its headers.
 function(vernier_module name)
+  set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
   add_library(${name} ${ARG_SOURCES})
   add_library(vernier::${name} ALIAS ${name})
@@ -14,8 +15,9 @@ function(vernier_module name)
   # pairs them; kernels that gain from fused operations say so themselves.
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
                                          -ffp-contract=off
-                                         # GCC 12 reports overlaps inside std::string that are none
-                                         $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+                                         # GCC 12 reports faults inside std::string and Eigen
+                                         # that are none
+                                         "$<$<CXX_COMPILER_ID:GNU>:${gcc_false_alarms}>")
   target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
   set_target_properties(${name} PROPERTIES OUTPUT_NAME vernier_${name}
                                            POSITION_INDEPENDENT_CODE ON)

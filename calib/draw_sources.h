@@ -21,6 +21,7 @@ enum class DrawSource : std::uint32_t {
   office = 11,           // generated worlds
   monte_carlo = 12,      // propagation by sampling
   left_out_boards = 13,  // splits of frames
+  simulated_pairs = 14,  // points, noise and wrong matches of simulated pairs
   noisy_copy = 16,       // corners of calibrations that are solved again, and their priors
   wishart = 17,          // null distribution of a sample covariance's eigenvalues
 };

@@ -42,3 +42,9 @@ HWY_INLINE Pack inverse_root_or_zero(Pack a, Pack floor) {
 /// Aligned or not: packed arrays are aligned to 64 bytes, which costs nothing to read unaligned.
 HWY_INLINE Pack load(const double* from) { return Pack(hn::LoadU(PackTag(), from)); }
 HWY_INLINE void store(Pack a, double* to) { hn::StoreU(a.lanes, PackTag(), to); }
+/// Whether a < limit in every lane.
+HWY_INLINE bool all_below(Pack a, double limit) {
+  return hn::AllTrue(PackTag(), hn::Lt(a.lanes, hn::Set(PackTag(), limit)));
+}
+HWY_INLINE Pack at_most(Pack a, Pack b) { return Pack(hn::Min(a.lanes, b.lanes)); }
+HWY_INLINE Pack magnitude(Pack a) { return Pack(hn::Abs(a.lanes)); }

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "calib/frame_kernel.h"
+#include "calib/loss.h"
+#include "calib/rig.h"
+
+namespace vernier {
+
+/// Lanes of eight packed pairs: u_left v_left u_right v_right 1/σ; 1/σ = 0 pads.
+inline constexpr int packed_pair_lanes = 5;
+
+/// A rig of two cameras as the kernels want it.
+struct EpipolarView {
+  CameraModel models[2];
+  double f_px[2], ax[2], ox_px[2], oy_px[2], k[2][8];
+  double R[9], t[3];
+
+  explicit EpipolarView(const Rig& rig);
+};
+
+/// Columns of a pair's row: the parameters of the rig (calib/rig.h), then the residual.
+inline int epipolar_columns(const EpipolarView& view) {
+  return parameter_count(view.models[0]) + parameter_count(view.models[1]) + 7;
+}
+
+/// What multiplies the products of rows: ρ'/2r, or ρ''/2 for the matrix of second derivatives
+/// of the cost (the residual's own curvature left out).
+enum class Weighting { weight, curvature };
+
+/// Adds Σ w [J r]ᵀ [J r] over `eights` x 8 pairs to `sums`, packed upper triangle of
+/// epipolar_columns(), and returns Σ ρ(r). Lane by lane, so that sums do not depend on the width
+/// of the registers.
+double sum_pairs(const EpipolarView& view,
+                 const Lanes* packed,
+                 std::size_t eights,
+                 const Loss& loss,
+                 Weighting weighting,
+                 double* sums);
+
+/// The residuals r alone, `eights` x 8 of them. Not a number where a pixel's ray is beyond the
+/// fold of the lens model.
+void pair_residuals(const EpipolarView& view,
+                    const Lanes* packed,
+                    std::size_t eights,
+                    double* residuals);
+
+}  // namespace vernier

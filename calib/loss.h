@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace vernier {
+
+/// What a residual r adds to the cost, in standard deviations.
+enum class LossShape {
+  square,  ///< r²
+  huber,   ///< r² up to the limit c, then 2 c |r| − c² (Huber 1964)
+  tukey    ///< c²/3 (1 − (1 − r²/c²)³), constant from c on (Beaton and Tukey 1974)
+};
+struct Loss {
+  LossShape shape = LossShape::square;
+  double limit = 0;  ///< c
+};
+
+/// ρ(r), its weight ρ'(r) / 2r, and ρ''(r) / 2, which Tukey's loss takes below zero.
+double cost_of(const Loss& loss, double r);
+double weight_of(const Loss& loss, double r);
+
+}  // namespace vernier

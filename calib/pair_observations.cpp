@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/pair_observations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+std::string row_place(const std::string& place, std::size_t row) {
+  return place.empty() ? fmt::format("pair {}", row + 1) : fmt::format("{}:{}", place, row + 2);
+}
+
+void check_row(const Eigen::Vector4d& y, const Rig& rig, const std::string& place) {
+  if (!y.allFinite()) {
+    throw Error(place, "a pixel coordinate is not finite", "remove the line");
+  }
+  for (int c = 0; c < 2; ++c) {
+    const Camera& camera = rig.cameras[static_cast<std::size_t>(c)];
+    const Eigen::Vector2d pixel = y.segment<2>(2 * c);
+    if (in_image(camera, pixel)) continue;
+    throw Error(place,
+                fmt::format("({:g}, {:g}) lies outside the {} image of {} x {} pixels", pixel[0],
+                            pixel[1], camera.name, camera.size_px[0], camera.size_px[1]),
+                "remove the line, or check that images and prior are of the same cameras");
+  }
+}
+
+/// A match that stands twice in an image pair counts its noise twice.
+void check_duplicates(const PairObservations& pairs, const std::string& place) {
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const ImagePair& image : pairs.image_pairs) {
+    const auto begin = order.begin() + static_cast<std::ptrdiff_t>(image.first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(image.count);
+    const auto before = [&](std::size_t a, std::size_t b) {
+      const Eigen::Vector4d &x = pairs.pixels_px[a], &y = pairs.pixels_px[b];
+      const auto differ = std::mismatch(x.begin(), x.end(), y.begin());
+      return differ.first == x.end() ? a < b : *differ.first < *differ.second;
+    };
+    std::sort(begin, end, before);
+    const auto same = std::adjacent_find(begin, end, [&](std::size_t a, std::size_t b) {
+      return pairs.pixels_px[a] == pairs.pixels_px[b];
+    });
+    if (same == end) continue;
+    throw Error(row_place(place, *(same + 1)), "it repeats " + row_place("", *same),
+                "give every match once");
+  }
+}
+
+}  // namespace
+
+void add_pair(PairObservations& pairs,
+              int number,
+              const Eigen::Vector4d& pixels_px,
+              double sigma_px) {
+  if (pairs.image_pairs.empty() || pairs.image_pairs.back().number != number) {
+    pairs.image_pairs.push_back({number, pairs.size(), 0});
+  }
+  ++pairs.image_pairs.back().count;
+  const auto sigma = static_cast<float>(sigma_px);
+  if (pairs.sigma_px.empty() && pairs.size() > 0) pairs.sigma_px = {1};
+  if (pairs.size() == 0) {
+    pairs.sigma_px = {sigma};
+  } else if (pairs.sigma_px.size() > 1 || pairs.sigma_px[0] != sigma) {
+    if (pairs.sigma_px.size() == 1) pairs.sigma_px.resize(pairs.size(), pairs.sigma_px[0]);
+    pairs.sigma_px.push_back(sigma);
+  }
+  pairs.pixels_px.push_back(pixels_px);
+}
+
+void append(PairObservations& pairs, const PairObservations& more) {
+  int offset = 0;
+  for (const ImagePair& image : pairs.image_pairs) offset = std::max(offset, image.number + 1);
+  for (const ImagePair& image : more.image_pairs) {
+    for (std::size_t i = image.first; i < image.first + image.count; ++i) {
+      add_pair(pairs, offset + image.number, more.pixels_px[i], more.sigma_of(i));
+    }
+  }
+}
+
+PairObservations selected(const PairObservations& pairs, const std::vector<bool>& kept) {
+  PairObservations some;
+  for (const ImagePair& image : pairs.image_pairs) {
+    for (std::size_t i = image.first; i < image.first + image.count; ++i) {
+      if (kept[i]) add_pair(some, image.number, pairs.pixels_px[i], pairs.sigma_of(i));
+    }
+  }
+  return some;
+}
+
+void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place) {
+  if (rig.cameras.size() != 2) {
+    throw Error(place.empty() ? "pairs" : place,
+                fmt::format("matched pairs are of two cameras, the rig has {}", rig.cameras.size()),
+                "take the two cameras out of the rig first");
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double sigma = pairs.sigma_of(i);
+    if (!(sigma > 0 && std::isfinite(sigma))) {
+      throw Error(row_place(place, i), fmt::format("its noise of {} px is none", sigma),
+                  "give a standard deviation above 0");
+    }
+    check_row(pairs.pixels_px[i], rig, row_place(place, i));
+  }
+  check_duplicates(pairs, place);
+}
+
+}  // namespace vernier

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "calib/loss.h"
+#include "calib/pair_observations.h"
+#include "calib/rig_prior.h"
+
+namespace vernier {
+
+class PackedPairs;
+
+/// What stands in the cost beside the pairs, and how they count.
+struct EpipolarProblem {
+  std::vector<RigPrior> priors;
+  std::vector<bool> held;  ///< one a parameter of the rig (held_mask); empty: all free
+  double sigma_scale = 1;  ///< multiplies the noise that the pairs state
+  Loss loss;               ///< its limit in standard deviations, scaled
+  int max_iterations = 100;
+};
+
+/// A minimum of the cost.
+struct EpipolarMinimum {
+  Rig rig;
+  double cost = 0;        ///< Σ ρ(r) and the priors' χ²
+  double prior_chi2 = 0;  ///< the priors' part
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Minimises the unified cost with the Sampson residual (Tina Memo 2017-001, Eq. 1),
+///
+///     χ²(a) = Σ priors + Σ_i ρ(r_i(a) / s)
+///
+/// by Gauss and Newton's steps, weighted where the loss is robust, damped where a step fails. The
+/// kernels are those of the solver of record (minimise_unified_cost), which is its oracle; this is
+/// for solving many times over. A step below 1e-8 standard deviations ends it.
+class PairResolver {
+ public:
+  explicit PairResolver(const PairObservations& pairs);
+
+  EpipolarMinimum minimise(const Rig& start, const EpipolarProblem& problem) const;
+
+ private:
+  std::shared_ptr<const PackedPairs> packed_;
+};
+
+}  // namespace vernier

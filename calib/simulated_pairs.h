@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "calib/pair_observations.h"
+
+namespace vernier {
+
+enum class SimulatedScene {
+  volume,  ///< points anywhere in view between the two depths
+  plane    ///< points of one tilted plane halfway between them
+};
+
+struct SimulatedPairsOptions {
+  int image_pairs = 20;
+  int pairs_per_image = 100;
+  SimulatedScene scene = SimulatedScene::volume;
+  double nearest_m = 1.5, farthest_m = 12;  ///< even in inverse depth
+  double pixel_sigma_px = 0.3;              ///< of each coordinate; 0 for none
+  double wrong_share = 0;       ///< of matches whose right corner is another one near by …
+  double wrong_radius_px = 10;  ///< … anywhere in a disc about the true one
+};
+
+/// Pairs that both cameras of `rig` see, with white noise: what a calibration from any scene is
+/// tested and planned with. The same seed gives the same points; noise and wrong matches are drawn
+/// by trial. Throws Error where the cameras hardly see the same space.
+PairObservations simulate_pairs(const Rig& rig,
+                                std::uint64_t seed,
+                                std::uint32_t trial = 0,
+                                const SimulatedPairsOptions& options = {});
+
+}  // namespace vernier

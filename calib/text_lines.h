@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// Lines of a text file with the number of each, for messages.
+class TextLines {
+ public:
+  /// Throws Error where the file cannot be read.
+  explicit TextLines(const std::filesystem::path& file);
+
+  /// The next line without its end (LF or CRLF); false at the end of the file.
+  bool next(std::string_view& line);
+
+  /// Bytes of the whole file.
+  std::size_t size() const { return text_.size(); }
+
+  /// "pairs.csv:37", the line last given out.
+  std::string place() const;
+
+ private:
+  std::filesystem::path file_;
+  std::string text_;
+  std::size_t begin_ = 0;
+  std::size_t number_ = 0;
+};
+
+/// Fields of a line between separators; with a blank among these, repeated ones count once.
+std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);
+
+/// Throws Error(`place`) where `field` is no number, naming `what` it should have been.
+double parse_real(std::string_view field, const std::string& place, std::string_view what);
+int parse_whole(std::string_view field, const std::string& place, std::string_view what);
+
+}  // namespace vernier

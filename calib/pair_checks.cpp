@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/pair_checks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <optional>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+/// Most pairs of an image pair that are looked at.
+constexpr std::size_t enough_pairs = 200;
+constexpr std::size_t fewest_pairs = 12;  // of an image pair that is judged
+
+/// Where a point at infinity on the left pixel's ray is in the right image, and the unit direction
+/// in which it moves as it comes nearer.
+struct FarPoint {
+  Eigen::Vector2d pixel_px, nearer;
+};
+std::optional<FarPoint> far_point(const Rig& rig, const Eigen::Vector2d& left_px) {
+  const auto ray = try_unproject(rig.cameras[0], left_px);
+  if (!ray) return std::nullopt;
+  const Pose& T = rig.T_camera_first[1];
+  const Eigen::Vector3d X = T.R * *ray;
+  if (!(X.z() > 0)) return std::nullopt;
+  ProjectionJacobian J;
+  FarPoint far{project(rig.cameras[1], X, J), {}};
+  far.nearer = (J.point * T.t).normalized();
+  if (!far.nearer.allFinite()) return std::nullopt;
+  return far;
+}
+
+/// How far before infinity a pair lies along its epipolar line, in pixels of the right image.
+std::optional<double> before_infinity_px(const Rig& rig, const Eigen::Vector4d& y) {
+  const std::optional<FarPoint> far = far_point(rig, y.head<2>());
+  if (!far) return std::nullopt;
+  return (y.tail<2>() - far->pixel_px).dot(far->nearer);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImagePair& image) {
+  const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
+  std::vector<Eigen::Vector4d> some;
+  for (std::size_t i = 0; i < image.count; i += step) {
+    some.push_back(pairs.pixels_px[image.first + i]);
+  }
+  return some;
+}
+
+/// Median distance before infinity; nothing where most pairs have none.
+std::optional<double> median_before_px(const Rig& rig, const std::vector<Eigen::Vector4d>& some) {
+  std::vector<double> before;
+  for (const Eigen::Vector4d& y : some) {
+    if (const auto b = before_infinity_px(rig, y)) before.push_back(*b);
+  }
+  if (2 * before.size() <= some.size()) return std::nullopt;
+  return median(std::move(before));
+}
+
+/// Standard deviation of that median as far as the rig decides it, by central differences.
+double sigma_before_px(const Rig& rig,
+                       const Eigen::MatrixXd& covariance,
+                       const std::vector<Eigen::Vector4d>& some) {
+  const auto p = covariance.rows();
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
+  for (Eigen::Index i = 0; i < p; ++i) {
+    const double h = 1e-3 * std::sqrt(covariance(i, i));
+    if (!(h > 0)) continue;
+    const auto up = median_before_px(retract(rig, h * Eigen::VectorXd::Unit(p, i)), some);
+    const auto down = median_before_px(retract(rig, -h * Eigen::VectorXd::Unit(p, i)), some);
+    if (up && down) gradient[i] = (*up - *down) / (2 * h);
+  }
+  return std::sqrt(gradient.dot(covariance * gradient));
+}
+
+bool swapped(const Rig& rig,
+             const Eigen::MatrixXd& covariance,
+             const std::vector<Eigen::Vector4d>& some) {
+  const auto before = median_before_px(rig, some);
+  if (!before || *before > 0) return false;
+  std::vector<Eigen::Vector4d> other;
+  for (const Eigen::Vector4d& y : some) {
+    other.emplace_back();
+    other.back() << y.tail<2>(), y.head<2>();
+  }
+  const auto exchanged_before = median_before_px(rig, other);
+  if (!exchanged_before || *exchanged_before < 0) return false;
+  return -*before > 4 * sigma_before_px(rig, covariance, some);
+}
+
+/// Whether a homography explains nearly all pairs within their noise.
+bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig& rig) {
+  std::vector<cv::Point2d> left, right;
+  const double f = rig.cameras[1].f_px();
+  double sigma = 0;
+  const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
+  for (std::size_t i = image.first; i < image.first + image.count; i += step) {
+    const auto l = try_unproject(rig.cameras[0], pairs.pixels_px[i].head<2>());
+    const auto r = try_unproject(rig.cameras[1], pairs.pixels_px[i].tail<2>());
+    if (!l || !r) continue;
+    left.emplace_back(f * l->x(), f * l->y());
+    right.emplace_back(f * r->x(), f * r->y());
+    sigma = std::max(sigma, pairs.sigma_of(i));
+  }
+  if (left.size() < fewest_pairs) return false;
+  // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
+  const double limit = 4 * std::sqrt(2.0) * sigma;
+  cv::Mat inside;
+  const cv::Mat H = cv::findHomography(left, right, cv::RANSAC, limit, inside);
+  return !H.empty() && cv::countNonZero(inside) >= 0.95 * static_cast<double>(left.size());
+}
+
+void check_rays(const PairObservations& pairs, const Rig& rig, const std::string& place) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (int c = 0; c < 2; ++c) {
+      if (try_unproject(rig.cameras[static_cast<std::size_t>(c)],
+                        pairs.pixels_px[i].segment<2>(2 * c))) {
+        continue;
+      }
+      throw Error(
+          place.empty() ? fmt::format("pair {}", i + 1) : fmt::format("{}:{}", place, i + 2),
+          "the prior's " + rig.cameras[static_cast<std::size_t>(c)].name +
+              " lens has no ray for it (its distortion folds the image there)",
+          "use a prior whose distortion holds to the image's edge");
+    }
+  }
+}
+
+}  // namespace
+
+ObservationDiagnosis check_scene(const PairObservations& pairs,
+                                 const Rig& rig,
+                                 const Eigen::MatrixXd& covariance,
+                                 const std::string& place) {
+  check_rays(pairs, rig, place);
+  std::vector<int> exchanged_pairs;
+  std::size_t judged = 0, flat = 0;
+  for (const ImagePair& image : pairs.image_pairs) {
+    if (image.count < fewest_pairs) continue;
+    ++judged;
+    if (swapped(rig, covariance, some_of(pairs, image))) exchanged_pairs.push_back(image.number);
+    flat += on_a_plane(pairs, image, rig);
+  }
+  if (!exchanged_pairs.empty()) {
+    const bool all = exchanged_pairs.size() == judged;
+    throw Error(place.empty() ? "pairs" : place,
+                all ? "left and right are swapped: the corners lie behind the rig"
+                    : fmt::format("left and right are swapped in image pairs {}: their corners "
+                                  "lie behind the rig",
+                                  fmt::join(exchanged_pairs, ", ")),
+                "exchange the images, or the cameras of the prior");
+  }
+  ObservationDiagnosis said;
+  if (judged > 0 && flat == judged) {
+    said.doubts.push_back(
+        "the corners of every image pair lie on one plane, or too far away for parallax: they "
+        "leave more of the rig to the prior; take images of a scene with depth");
+  } else if (2 * flat > judged) {
+    said.warnings.push_back(fmt::format(
+        "in {} of {} image pairs all corners lie on one plane, or too far away for parallax", flat,
+        judged));
+  }
+  return said;
+}
+
+}  // namespace vernier

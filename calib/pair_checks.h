@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/observation_checks.h"
+#include "calib/pair_observations.h"
+
+namespace vernier {
+
+/// Looks at matched pairs with a rough rig in hand before they are solved; `covariance` says how
+/// rough, over all parameters of the rig (calib/rig.h).
+///
+/// Throws Error where most pairs of an image pair lie behind the rig by more than four of the
+/// standard deviations that the rig allows them, and before it once left and right are exchanged;
+/// names the image pairs. Throws Error where a pixel has no ray in the rough rig.
+///
+/// Doubts: the corners of every image pair lie on one plane, or farther than parallax can tell (a
+/// homography explains 95 % of them within their noise), which leaves more directions unseen
+/// (unseen_directions, calib/observability.h). Warnings: most image pairs do.
+ObservationDiagnosis check_scene(const PairObservations& pairs,
+                                 const Rig& rig,
+                                 const Eigen::MatrixXd& covariance,
+                                 const std::string& place = "");
+
+}  // namespace vernier

@@ -10,31 +10,18 @@
 #include "calib/board_pose.h"
 #include "calib/board_warp.h"
 #include "calib/error.h"
+#include "calib/honest_covariance.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/model_nesting.h"
 #include "calib/observation_checks.h"
 #include "calib/refined_minimum.h"
 #include "calib/residual_diagnosis.h"
-#include "calib/small_sample_covariance.h"
 #include "calib/view_checks.h"
 
 namespace vernier {
 namespace {
 
 constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
-constexpr double frames_per_parameter = 3;     // enough for the clustered covariance as it is
-
-/// The covariance to be sampled.
-Covariance honest_covariance(const ReducedNormalEquations& equations,
-                             const Eigen::MatrixXd& bound,
-                             const std::vector<std::string>& names) {
-  const auto frames = static_cast<double>(equations.scores.cols());
-  if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
-    return {CovarianceKind::clustered, names,
-            clustered_sandwich(equations, bound, frames_per_parameter)};
-  }
-  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound).matrix};
-}
 
 /// A minimum of the cost and what surrounds it.
 struct Solution {
@@ -320,7 +307,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   auto& warnings = estimate.calibration->warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
   estimate.evidence = CalibrationEvidence{std::move(s.observations), s.state.frames,
-                                          s.state.T_first_board, s.state.warp_m};
+                                          s.state.T_first_board, s.state.warp_m, {}, {}};
   return estimate;
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/pair_cost.h"
 #include "calib/parameter_buffer.h"
 #include "calib/view_cost.h"
 
@@ -91,6 +92,20 @@ bool moves_no_more(const ceres::Solver::Summary& summary) {
          steps[steps.size() - 21].cost - summary.final_cost <= 1e-12 * summary.final_cost;
 }
 
+/// All residuals, before Ceres asks for the first.
+class AllResiduals : public ceres::EvaluationCallback {
+ public:
+  AllResiduals(CompressedViews& views, CompressedPairs* pairs) : views_(views), pairs_(pairs) {}
+  void PrepareForEvaluation(bool jacobians, bool new_point) override {
+    views_.PrepareForEvaluation(jacobians, new_point);
+    if (pairs_) pairs_->PrepareForEvaluation(jacobians, new_point);
+  }
+
+ private:
+  CompressedViews& views_;
+  CompressedPairs* pairs_;
+};
+
 /// Builds the Ceres problem of one calibration and owns what its blocks refer to.
 class Minimisation {
  public:
@@ -101,8 +116,11 @@ class Minimisation {
         what_(what),
         buffer_(start),
         views_(observations, start, what, buffer_),
-        problem_(problem_options(&views_)) {
+        pairs_(pairs_of(start, what, buffer_)),
+        all_(views_, pairs_.get()),
+        problem_(problem_options(&all_)) {
     add_views(observations);
+    add_pairs();
     add_priors();
     hold();
   }
@@ -125,6 +143,14 @@ class Minimisation {
   }
 
  private:
+  static std::unique_ptr<CompressedPairs> pairs_of(const BoardState& start,
+                                                   const ReprojectionProblem& what,
+                                                   const ParameterBuffer& buffer) {
+    if (what.pairs.size() == 0) return nullptr;
+    return std::make_unique<CompressedPairs>(
+        what.pairs, what.pair_weights, what.pixel_sigma_px / what.pair_sigma_scale, start, buffer);
+  }
+
   static ceres::Problem::Options problem_options(ceres::EvaluationCallback* views) {
     ceres::Problem::Options options;
     options.evaluation_callback = views;
@@ -143,6 +169,16 @@ class Minimisation {
       for (double* block : blocks) ordering_->AddElementToGroup(block, 1);
       ordering_->AddElementToGroup(blocks[1], 0);
     }
+  }
+
+  void add_pairs() {
+    if (!pairs_) return;
+    const std::vector<double*> blocks{buffer_.intrinsics(0), buffer_.intrinsics(1),
+                                      buffer_.camera_pose(1)};
+    for (std::size_t i = 0; i < pairs_->image_pairs(); ++i) {
+      problem_.AddResidualBlock(pairs_->cost(i).release(), nullptr, blocks);
+    }
+    for (double* block : blocks) ordering_->AddElementToGroup(block, 1);
   }
 
   void add_priors() {
@@ -182,6 +218,8 @@ class Minimisation {
   const ReprojectionProblem& what_;
   ParameterBuffer buffer_;
   CompressedViews views_;
+  std::unique_ptr<CompressedPairs> pairs_;
+  AllResiduals all_;
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();

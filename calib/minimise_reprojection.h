@@ -6,6 +6,7 @@
 
 #include "calib/initial_rig.h"
 #include "calib/normal_equations.h"
+#include "calib/pair_observations.h"
 #include "calib/rig_prior.h"
 
 namespace vernier {
@@ -18,6 +19,9 @@ struct ReprojectionProblem {
   BoardWarp warp = BoardWarp::known;
   /// One weight in [0, 1] a corner of every view, in the order of the observations; empty: all 1.
   std::vector<std::vector<double>> corner_weights;
+  PairObservations pairs;            ///< matched corners of any scene; none: a board alone
+  std::vector<double> pair_weights;  ///< one in [0, 1] a row; empty: all 1
+  double pair_sigma_scale = 1;       ///< multiplies the noise that the pairs state
   int max_iterations = 200;
   bool must_converge = true;  ///< else the state after the last iteration will do
 };
@@ -27,7 +31,9 @@ struct ReprojectionProblem {
 ///     χ²(a) = Σ priors + Σ_i w_i |r_i(a)|² / σ²
 ///
 /// over the rig, one pose of the board a frame and, if free, the board's warp, by Ceres (dense
-/// Schur, one analytic block a view). Returns the state at the minimum; throws Error where Ceres
+/// Schur, one analytic block a view). r is the reprojection residual of the board's corners and
+/// the Sampson residual of matched pairs (calib/epipolar_formulas.h), which have σ of their own;
+/// either may be absent. Returns the state at the minimum; throws Error where Ceres
 /// finds none.
 BoardState minimise_reprojection(const BoardObservations& observations,
                                  BoardState start,

@@ -101,6 +101,16 @@ bool swapped(const Rig& rig,
   return -*before > 4 * sigma_before_px(rig, covariance, some);
 }
 
+double median_transfer_px(const cv::Mat& H,
+                          const std::vector<cv::Point2d>& left,
+                          const std::vector<cv::Point2d>& right) {
+  std::vector<cv::Point2d> moved;
+  cv::perspectiveTransform(left, moved, H);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < moved.size(); ++i) distances.push_back(cv::norm(moved[i] - right[i]));
+  return median(std::move(distances));
+}
+
 /// Whether a homography explains nearly all pairs within their noise.
 bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig& rig) {
   std::vector<cv::Point2d> left, right;
@@ -118,6 +128,9 @@ bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig
   if (left.size() < fewest_pairs) return false;
   // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
   const double limit = 4 * std::sqrt(2.0) * sigma;
+  // A scene with depth shows in the plain fit, which saves the robust one.
+  const cv::Mat rough = cv::findHomography(left, right, 0);
+  if (rough.empty() || median_transfer_px(rough, left, right) > 3 * limit) return false;
   cv::Mat inside;
   const cv::Mat H = cv::findHomography(left, right, cv::RANSAC, limit, inside);
   return !H.empty() && cv::countNonZero(inside) >= 0.95 * static_cast<double>(left.size());

@@ -36,7 +36,7 @@ struct EpipolarMinimum {
 ///     χ²(a) = Σ priors + Σ_i ρ(r_i(a) / s)
 ///
 /// by Gauss and Newton's steps, weighted where the loss is robust, damped where a step fails. The
-/// kernels are those of the solver of record (minimise_unified_cost), which is its oracle; this is
+/// kernels are those of the solver of record (minimise_reprojection), which is its oracle; this is
 /// for solving many times over. A step below 1e-8 standard deviations ends it.
 class PairResolver {
  public:

@@ -8,8 +8,18 @@
 
 #include "calib/covariance.h"
 #include "calib/outliers.h"
+#include "calib/pair_observations.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
+
+/// A matched pair left out of a calibration.
+struct PairOutlier {
+  int image_pair = 0;
+  std::size_t row = 0;  ///< among the pairs of the evidence
+  Eigen::Vector4d pixels_px{0, 0, 0, 0};
+  double residual_px = 0;  ///< its Sampson distance
+};
 
 /// How a calibration went.
 struct CalibrationSummary {
@@ -23,6 +33,7 @@ struct CalibrationSummary {
   int prior_dof = 0;                    ///< parameters that the priors know
   std::vector<std::string> held;        ///< parameters that were not estimated
   std::vector<CornerOutlier> outliers;  ///< corners left out
+  std::vector<PairOutlier> pair_outliers;
   std::vector<std::string> warnings;
   std::vector<std::string> doubts;  ///< why the result may be wrong, and what to do
 };
@@ -30,9 +41,11 @@ struct CalibrationSummary {
 /// All that is needed to solve again, to propagate with the board poses, to compare and combine.
 struct CalibrationEvidence {
   BoardObservations observations;
-  std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
-  Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board_warp.h)
+  std::vector<int> frames;           ///< ascending
+  std::vector<Pose> T_first_board;   ///< one a frame
+  Eigen::Vector2d warp_m{0, 0};      ///< of the board (calib/board_warp.h)
+  PairObservations pairs;            ///< matched corners, outliers and all
+  std::vector<RigKnowledge> priors;  ///< what was known before the rest
 };
 
 /// A rig and how well it is known: the content of a rig.json.

@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/combine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+#include "calib/rig_difference.h"
+
+namespace vernier {
+namespace {
+
+bool has_boards(const RigEstimate& estimate) {
+  return estimate.evidence && !estimate.evidence->observations.views.empty();
+}
+bool has_pairs(const RigEstimate& estimate) {
+  return estimate.evidence && estimate.evidence->pairs.size() > 0;
+}
+
+/// The estimate's covariance over its free parameters.
+RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& name) {
+  const Covariance& all = required_covariance(estimate, name);
+  const std::vector<Eigen::Index> free = free_parameters(estimate);
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  RigKnowledge known{estimate.rig, {all.kind, {}, all.matrix(free, free)}};
+  for (const Eigen::Index i : free) known.covariance.names.push_back(names[i]);
+  return known;
+}
+
+std::string kind_of(const CombineInput& input) {
+  if (!input.estimate || (has_pairs(*input.estimate) && !has_boards(*input.estimate))) {
+    return "pairs";
+  }
+  if (has_boards(*input.estimate)) {
+    return has_pairs(*input.estimate) ? "board and pairs" : "board";
+  }
+  return "prior";
+}
+
+bool same(const RigKnowledge& a, const RigKnowledge& b) {
+  return a.covariance.names == b.covariance.names && a.covariance.matrix == b.covariance.matrix &&
+         parameters(a.rig) == parameters(b.rig);
+}
+
+void add(JointEvidence& to, const JointEvidence& more) {
+  for (const RigKnowledge& prior : more.priors) {
+    const bool known = std::any_of(to.priors.begin(), to.priors.end(),
+                                   [&](const RigKnowledge& p) { return same(p, prior); });
+    if (!known) to.priors.push_back(prior);
+  }
+  to.boards.insert(to.boards.end(), more.boards.begin(), more.boards.end());
+  append(to.pairs, more.pairs);
+}
+
+void check_models(const Rig& first, const CombineInput& input) {
+  if (!input.estimate) {
+    check_pairs(input.pairs, first, input.name);
+    return;
+  }
+  const Rig& rig = input.estimate->rig;
+  check_same_cameras(first, rig, input.name);
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    if (rig.cameras[c].model.index() == first.cameras[c].model.index()) continue;
+    throw Error(input.name,
+                fmt::format("its {} lens is {}, that of the first input {}", rig.cameras[c].name,
+                            model_name(rig.cameras[c].model), model_name(first.cameras[c].model)),
+                "calibrate with the same model");
+  }
+}
+
+/// A joint calibration as a prior for what comes next.
+RigKnowledge knowledge_of(const JointCalibration& joint) {
+  return knowledge_of(joint.estimate, "combination");
+}
+
+Eigen::MatrixXd part_of(const Eigen::MatrixXd& all, const std::vector<Eigen::Index>& free) {
+  return all(free, free);
+}
+
+/// Pairs against what was known before them.
+PriorAgreement agreement_of_pairs(const RigKnowledge& before,
+                                  const PairObservations& pairs,
+                                  const CombineInput& input,
+                                  const JointOptions& options) {
+  const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
+  const std::vector<Eigen::Index> free = free_parameters(with.estimate);
+  const RigPrior prior = rig_prior(before.rig, before);
+  const Eigen::VectorXd offset = difference(with.estimate.rig, before.rig)(free);
+  return prior_agreement(offset, before.covariance.names, before.covariance.matrix,
+                         part_of(*with.estimate.covariance_mvb, free),
+                         part_of(with.estimate.covariance->matrix, free));
+}
+
+PriorAgreement agreement_of_rigs(const RigKnowledge& before,
+                                 const RigEstimate& estimate,
+                                 const std::string& name) {
+  const RigKnowledge own = knowledge_of(estimate, name);
+  const RigDifference d = rig_difference(before.rig, before.covariance, own.rig, own.covariance);
+  PriorAgreement agreement{d.mahalanobis2, d.dof, d.p_value, 0, ""};
+  if (!d.directions.empty()) {
+    agreement.in_sigma = std::abs(d.directions.front().in_sigma);
+    agreement.words = d.directions.front().words;
+  }
+  return agreement;
+}
+
+PriorAgreement agreement_of(const RigKnowledge& before,
+                            const CombineInput& input,
+                            const JointEvidence& evidence,
+                            const JointOptions& options) {
+  if (kind_of(input) == "pairs") {
+    return agreement_of_pairs(before, evidence.pairs, input, options);
+  }
+  return agreement_of_rigs(before, *input.estimate, input.name);
+}
+
+/// Parameters that no input may move: those that the first does not know.
+JointOptions with_held(JointOptions options, const CombineInput& first) {
+  if (!first.estimate) return options;
+  for (const HeldParameter& held : held_by(knowledge_of(*first.estimate, first.name))) {
+    options.held.push_back(held);
+  }
+  return options;
+}
+
+}  // namespace
+
+JointEvidence evidence_of(const CombineInput& input) {
+  JointEvidence evidence;
+  if (!input.estimate) {
+    evidence.pairs = input.pairs;
+    return evidence;
+  }
+  const RigEstimate& estimate = *input.estimate;
+  if (has_boards(estimate)) {
+    CalibrationEvidence boards = *estimate.evidence;
+    boards.pairs = {};
+    boards.priors.clear();
+    const double sigma = estimate.calibration ? estimate.calibration->pixel_sigma_px : 1;
+    evidence.boards.push_back({std::move(boards), sigma});
+  }
+  if (has_pairs(estimate)) evidence.pairs = estimate.evidence->pairs;
+  if (estimate.evidence) evidence.priors = estimate.evidence->priors;
+  if (!has_boards(estimate) && !has_pairs(estimate)) {
+    evidence.priors = {knowledge_of(estimate, input.name)};
+  }
+  return evidence;
+}
+
+Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options) {
+  if (inputs.empty()) throw Error("combination", "there is no input", "give rig files or pairs");
+  if (!inputs.front().estimate) {
+    throw Error(inputs.front().name, "pairs alone do not determine a rig",
+                "put a prior or a board calibration first");
+  }
+  const Rig& start = inputs.front().estimate->rig;
+  const JointOptions joint = with_held(options.joint, inputs.front());
+  Combination result;
+  std::optional<RigKnowledge> before;
+  for (const CombineInput& input : inputs) {
+    check_models(start, input);
+    const JointEvidence evidence = evidence_of(input);
+    CombinedInput& said = result.inputs.emplace_back();
+    said.name = input.name;
+    said.kind = kind_of(input);
+    if (before) {
+      said.agreement = agreement_of(*before, input, evidence, joint);
+      said.used = options.keep_disagreeing || said.agreement.p_value >= options.least_p;
+      if (!said.used) continue;
+    }
+    add(result.evidence, evidence);
+    if (&input == &inputs.back()) break;
+    before = result.inputs.size() == 1
+                 ? knowledge_of(*input.estimate, input.name)
+                 : knowledge_of(calibrate_jointly(result.evidence, before->rig, joint));
+  }
+  result.joint = calibrate_jointly(result.evidence, start, joint);
+  return result;
+}
+
+FilteredRig information_filter(const std::vector<CombineInput>& inputs,
+                               const Combination& batch,
+                               const CombineOptions& options) {
+  JointOptions joint = with_held(options.joint, inputs.front());
+  joint.white_noise = true;
+  RigKnowledge known = knowledge_of(*inputs.front().estimate, inputs.front().name);
+  if (inputs.front().estimate->covariance_mvb && has_boards(*inputs.front().estimate)) {
+    const std::vector<Eigen::Index> free = free_parameters(*inputs.front().estimate);
+    known.covariance.matrix = part_of(*inputs.front().estimate->covariance_mvb, free);
+  }
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    if (!batch.inputs[i].used) continue;
+    JointEvidence evidence = evidence_of(inputs[i]);
+    const bool prior_only = evidence.boards.empty() && evidence.pairs.size() == 0;
+    if (!prior_only) evidence.priors.clear();
+    evidence.priors.push_back(known);
+    known = knowledge_of(calibrate_jointly(evidence, known.rig, joint));
+  }
+  FilteredRig filtered{known.rig, known.covariance, 0, ""};
+  const Eigen::VectorXd d = difference(known.rig, batch.joint.estimate.rig);
+  const Eigen::MatrixXd& C = *batch.joint.estimate.covariance_mvb;
+  const std::vector<std::string> names = parameter_names(known.rig);
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    if (!(C(i, i) > 0)) continue;
+    const double in_sigma = std::abs(d[i]) / std::sqrt(C(i, i));
+    if (in_sigma <= filtered.worst_in_sigma) continue;
+    filtered.worst_in_sigma = in_sigma;
+    filtered.worst_parameter = names[static_cast<std::size_t>(i)];
+  }
+  return filtered;
+}
+
+std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
+                                    const Combination& combination,
+                                    const CombineOptions& options) {
+  const JointOptions joint = with_held(options.joint, inputs.front());
+  JointEvidence before = combination.evidence;
+  before.pairs = {};
+  const RigEstimate& all = combination.joint.estimate;
+  std::vector<MonitoredBatch> batches;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const JointEvidence own = evidence_of(inputs[i]);
+    if (own.pairs.size() == 0) continue;
+    JointEvidence evidence = before;
+    evidence.pairs = own.pairs;
+    const JointCalibration alone = calibrate_jointly(evidence, all.rig, joint);
+    MonitoredBatch& batch = batches.emplace_back();
+    batch.name = inputs[i].name;
+    batch.pairs = own.pairs.size();
+    batch.outliers = alone.estimate.calibration->pair_outliers.size();
+    batch.rms_px = alone.estimate.calibration->rms_px;
+    batch.offset = difference(alone.estimate.rig, all.rig);
+    const double sign = combination.inputs[i].used ? -1 : 1;
+    const Eigen::VectorXd variance =
+        alone.estimate.covariance->matrix.diagonal() + sign * all.covariance->matrix.diagonal();
+    batch.sigma = variance.cwiseMax(0).cwiseSqrt();
+    batch.agreement = combination.inputs[i].agreement;
+  }
+  return batches;
+}
+
+}  // namespace vernier

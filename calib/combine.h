@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/joint_calibration.h"
+#include "calib/prior_agreement.h"
+
+namespace vernier {
+
+/// Something that is known of a rig: a rig file (a calibration with evidence, or a mere prior), or
+/// a batch of matched pairs.
+struct CombineInput {
+  std::string name;
+  std::optional<RigEstimate> estimate;
+  PairObservations pairs;  ///< where there is no estimate
+};
+
+struct CombineOptions {
+  double least_p = 1e-4;          ///< an input that disagrees more than this is left out
+  bool keep_disagreeing = false;  ///< … or not
+  JointOptions joint;
+};
+
+/// What became of an input.
+struct CombinedInput {
+  std::string name;
+  std::string kind;          ///< prior, board, pairs, or board and pairs
+  PriorAgreement agreement;  ///< with what stood before it; of the first: none
+  bool used = true;
+};
+
+struct Combination {
+  JointCalibration joint;
+  JointEvidence evidence;  ///< of the inputs used
+  std::vector<CombinedInput> inputs;
+};
+
+/// One calibration from many. Evidence is put together and solved as one problem
+/// (calibrate_jointly): raw pairs and corners are linearised again at the common minimum, so the
+/// order of the inputs does not matter and the answer is the batch solution. A rig file without
+/// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
+/// several files counts once). Before it is taken in, every input is compared with all before it:
+/// of pairs, the prior's offset (prior_agreement.h); of calibrations, their difference
+/// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
+/// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
+/// lens models than the first.
+Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
+
+/// Evidence of one input, its knowledge of the rig as a prior where it has no other.
+JointEvidence evidence_of(const CombineInput& input);
+
+/// The information filter of Thacker and Mayhew (1991): batch after batch, what is known is kept as
+/// a mean and a covariance only, linearised where each batch left it.
+struct FilteredRig {
+  Rig rig;
+  Covariance covariance;        ///< the bound that the filter believes
+  double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
+  std::string worst_parameter;  ///< … in that one's bound, and of which parameter
+};
+FilteredRig information_filter(const std::vector<CombineInput>& inputs,
+                               const Combination& batch,
+                               const CombineOptions& options = {});
+
+/// The rig as one batch of pairs alone saw it.
+struct MonitoredBatch {
+  std::string name;
+  std::size_t pairs = 0, outliers = 0;
+  double rms_px = 0;
+  Eigen::VectorXd offset;    ///< from the combined rig, in its tangent
+  Eigen::VectorXd sigma;     ///< standard deviation of that offset; 0 where the batch says nothing
+  Eigen::VectorXd sd_ratio;  ///< standard deviation after the batch over the prior's
+  PriorAgreement agreement;  ///< of the batch with all the others
+};
+
+/// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the
+/// combined rig. The offset of a batch that is part of the combination has the covariance
+/// C_batch − C_all; of one that was left out, the same with a plus.
+std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
+                                    const Combination& combination,
+                                    const CombineOptions& options = {});
+
+}  // namespace vernier

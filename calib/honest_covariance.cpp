@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/honest_covariance.h"
+
+#include "calib/small_sample_covariance.h"
+
+namespace vernier {
+
+Covariance honest_covariance(const ReducedNormalEquations& equations,
+                             const Eigen::MatrixXd& bound,
+                             const std::vector<std::string>& names) {
+  constexpr double frames_per_parameter = 3;
+  const auto frames = static_cast<double>(equations.scores.cols());
+  if (frames >= frames_per_parameter * static_cast<double>(names.size())) {
+    return {CovarianceKind::clustered, names,
+            clustered_sandwich(equations, bound, frames_per_parameter)};
+  }
+  return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound).matrix};
+}
+
+}  // namespace vernier

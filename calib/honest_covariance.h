@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/covariance.h"
+
+namespace vernier {
+
+/// The covariance that is true on real images, where residuals of one frame (or image pair) depend
+/// on each other: the clustered sandwich with at least three clusters a parameter, its small-sample
+/// form (calib/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the inverse of the
+/// equations' information. Throws Error below three clusters.
+Covariance honest_covariance(const ReducedNormalEquations& equations,
+                             const Eigen::MatrixXd& bound,
+                             const std::vector<std::string>& names);
+
+}  // namespace vernier

@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/joint_calibration.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+#include "calib/honest_covariance.h"
+#include "calib/loss.h"
+#include "calib/merged_boards.h"
+#include "calib/minimise_reprojection.h"
+#include "calib/packed_pairs.h"
+#include "calib/pair_checks.h"
+#include "calib/pair_equations.h"
+
+namespace vernier {
+namespace {
+
+constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
+constexpr int huber_rounds = 12, tukey_rounds = 40;
+
+/// A joint calibration while it is made.
+struct Joint {
+  MergedBoards boards;
+  ReprojectionProblem cost;
+  BoardState state;
+  Loss loss;                      // of the pairs at the minimum
+  std::vector<double> residuals;  // of the pairs there, in their stated standard deviations
+};
+
+double median_length(std::vector<double> values) {
+  for (double& v : values) v = std::abs(v);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+constexpr double normal_median = 0.6744897501960817;  // of |z|
+
+void minimise(Joint& joint) {
+  joint.state = minimise_reprojection(joint.boards.observations, joint.state, joint.cost);
+  joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
+}
+
+/// One round of iterated weights; returns the largest change of a weight.
+double reweigh(Joint& joint, const Loss& loss) {
+  std::vector<double> weights;
+  double change = joint.cost.pair_weights.empty() ? 1 : 0;
+  for (std::size_t i = 0; i < joint.residuals.size(); ++i) {
+    weights.push_back(weight_of(loss, joint.residuals[i] / joint.cost.pair_sigma_scale));
+    if (!joint.cost.pair_weights.empty()) {
+      change = std::max(change, std::abs(weights[i] - joint.cost.pair_weights[i]));
+    }
+  }
+  joint.cost.pair_weights = std::move(weights);
+  return change;
+}
+
+/// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
+void minimise_robustly(Joint& joint, double fixed_scale) {
+  const auto scale = [&](bool first) {
+    const double found = median_length(joint.residuals) / normal_median;
+    return fixed_scale > 0 ? (first ? std::max(found, fixed_scale) : fixed_scale) : found;
+  };
+  joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
+  for (int round = 0; round < huber_rounds; ++round) {
+    joint.cost.pair_sigma_scale = scale(true);
+    if (reweigh(joint, {LossShape::huber, huber_limit}) < 1e-2) break;
+    minimise(joint);
+  }
+  joint.loss = {LossShape::tukey, tukey_limit};
+  for (int round = 0; round < tukey_rounds; ++round) {
+    joint.cost.pair_sigma_scale = scale(false);
+    if (reweigh(joint, joint.loss) < 1e-7) break;
+    minimise(joint);
+  }
+}
+
+/// The scale of the pairs' noise from their residuals, with their degrees of freedom.
+void minimise_plainly(Joint& joint, double fixed_scale) {
+  joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
+  for (int round = 0; round < 20; ++round) {
+    minimise(joint);
+    if (fixed_scale > 0 || joint.residuals.empty()) return;
+    double squares = 0;
+    for (const double r : joint.residuals) squares += r * r;
+    const double scale = std::sqrt(squares / static_cast<double>(joint.residuals.size()));
+    if (std::abs(scale / joint.cost.pair_sigma_scale - 1) < 1e-9) return;
+    joint.cost.pair_sigma_scale = scale;
+  }
+}
+
+bool is_outlier(const Joint& joint, std::size_t row) {
+  return joint.loss.shape != LossShape::square &&
+         std::abs(joint.residuals[row]) >= joint.loss.limit * joint.cost.pair_sigma_scale;
+}
+
+/// The equations of boards and pairs, in all parameters.
+ReducedNormalEquations data_equations(const Joint& joint,
+                                      const JointEvidence& evidence,
+                                      const PairObservations& pairs,
+                                      const Loss& loss) {
+  ReducedNormalEquations sum;
+  for (std::size_t b = 0; b < evidence.boards.size(); ++b) {
+    const BoardTerm& term = evidence.boards[b];
+    add_equations(sum,
+                  reduced_normal_equations(term.evidence.observations,
+                                           state_of(joint.boards, evidence.boards, joint.state, b),
+                                           term.pixel_sigma_px));
+  }
+  if (pairs.size() > 0) {
+    add_equations(sum, pair_equations(pairs, joint.state.rig, loss, joint.cost.pair_sigma_scale));
+  }
+  return sum;
+}
+
+/// The same in the free directions, with the priors.
+ReducedNormalEquations free_equations(const Joint& joint,
+                                      const JointEvidence& evidence,
+                                      const PairObservations& pairs,
+                                      const Loss& loss,
+                                      const Eigen::MatrixXd& free) {
+  ReducedNormalEquations equations = restricted(data_equations(joint, evidence, pairs, loss), free);
+  for (const RigPrior& prior : joint.cost.priors) {
+    const Eigen::MatrixXd J = prior_offset(prior, joint.state.rig).by_rig * free;
+    add_prior(equations, J.transpose() * prior.information * J);
+  }
+  return equations;
+}
+
+PairObservations inliers_of(const Joint& joint) {
+  std::vector<bool> kept;
+  for (std::size_t i = 0; i < joint.cost.pairs.size(); ++i) kept.push_back(!is_outlier(joint, i));
+  return selected(joint.cost.pairs, kept);
+}
+
+/// Clusters of the scores: image pairs, or cells of them where they are fewer than three.
+PairObservations clustered_pairs(const Joint& joint) {
+  const PairObservations& pairs = joint.cost.pairs;
+  if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
+  return split_into_cells(pairs, joint.state.rig.cameras[0].size_px, 4);
+}
+
+std::vector<PairOutlier> outliers_of(const Joint& joint) {
+  std::vector<PairOutlier> outliers;
+  for (const ImagePair& image : joint.cost.pairs.image_pairs) {
+    for (std::size_t i = image.first; i < image.first + image.count; ++i) {
+      if (!is_outlier(joint, i)) continue;
+      outliers.push_back({image.number, i, joint.cost.pairs.pixels_px[i],
+                          joint.residuals[i] * joint.cost.pairs.sigma_of(i)});
+    }
+  }
+  return outliers;
+}
+
+CalibrationSummary summary_of(const Joint& joint,
+                              const JointEvidence& evidence,
+                              const PairObservations& inliers,
+                              const ReducedNormalEquations& plain,
+                              const Eigen::MatrixXd& bound) {
+  CalibrationSummary summary;
+  summary.source = evidence.boards.empty() && evidence.priors.size() <= 1 ? "pairs" : "combined";
+  summary.pair_outliers = outliers_of(joint);
+  summary.views = static_cast<int>(joint.state.frames.size() + joint.cost.pairs.image_pairs.size());
+  double squares_px = 0, sigma = 0;
+  for (std::size_t i = 0; i < joint.cost.pairs.size(); ++i) {
+    if (is_outlier(joint, i)) continue;
+    squares_px += std::pow(joint.residuals[i] * joint.cost.pairs.sigma_of(i), 2);
+    sigma += joint.cost.pairs.sigma_of(i) * joint.cost.pair_sigma_scale;
+  }
+  const auto n = static_cast<double>(inliers.size());
+  if (n > 0) {
+    summary.pixel_sigma_px = sigma / n;
+    summary.rms_px = std::sqrt(squares_px / n);
+  } else {
+    summary.pixel_sigma_px = evidence.boards.front().pixel_sigma_px;
+    summary.rms_px = summary.pixel_sigma_px * std::sqrt(plain.chi2 / plain.residuals);
+  }
+  double from_data = static_cast<double>(bound.rows());
+  if (plain.prior_information.size() > 0) from_data -= (bound * plain.prior_information).trace();
+  summary.chi2 = plain.chi2;
+  summary.dof = static_cast<int>(std::lround(plain.residuals - from_data -
+                                             6 * static_cast<double>(joint.state.frames.size())));
+  for (const RigPrior& prior : joint.cost.priors) {
+    summary.prior_chi2 += prior_chi2(prior, joint.state.rig);
+    summary.prior_dof += static_cast<int>((prior.information.diagonal().array() > 0).count());
+  }
+  return summary;
+}
+
+Joint start_of(const JointEvidence& evidence, const Rig& start, const JointOptions& options) {
+  Joint joint;
+  joint.boards = merge_boards(evidence.boards, start);
+  joint.state = joint.boards.state;
+  joint.state.rig = with_held_values(start, options.held);
+  joint.cost.pixel_sigma_px = joint.boards.pixel_sigma_px;
+  joint.cost.corner_weights = joint.boards.corner_weights;
+  joint.cost.held = held_mask(start, options.held);
+  joint.cost.pairs = evidence.pairs;
+  for (const RigKnowledge& prior : evidence.priors) {
+    joint.cost.priors.push_back(rig_prior(start, prior));
+  }
+  return joint;
+}
+
+/// What the pairs brought beyond priors and boards, where these alone determine the rig.
+std::optional<Observability> what_pairs_brought(const Joint& joint,
+                                                const JointEvidence& evidence,
+                                                const Eigen::MatrixXd& free,
+                                                const std::vector<std::string>& names,
+                                                const Eigen::MatrixXd& bound) {
+  if (evidence.pairs.size() == 0) return {};
+  ReducedNormalEquations before = free_equations(joint, evidence, {}, {}, free);
+  try {
+    return observability(joint.state.rig, names, minimum_variance_bound(before, names), bound);
+  } catch (const Error&) {
+    return {};  // without the pairs something is free
+  }
+}
+
+}  // namespace
+
+std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
+  std::vector<HeldParameter> held;
+  const std::vector<std::string> names = parameter_names(prior.rig);
+  const Eigen::VectorXd a = parameters(prior.rig);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& known = prior.covariance.names;
+    if (std::find(known.begin(), known.end(), names[i]) != known.end()) continue;
+    held.push_back({names[i], a[static_cast<Eigen::Index>(i)]});
+  }
+  return held;
+}
+
+JointCalibration calibrate_jointly(const JointEvidence& evidence,
+                                   const Rig& start,
+                                   const JointOptions& options) {
+  Joint joint = start_of(evidence, start, options);
+  if (options.reject_outliers && evidence.pairs.size() > 0) {
+    minimise_robustly(joint, options.pair_sigma_scale);
+  } else {
+    minimise_plainly(joint, options.pair_sigma_scale);
+  }
+  const Eigen::MatrixXd free = free_directions(joint.state.rig, joint.cost.held);
+  const std::vector<std::string> names = free_names(joint.state.rig, joint.cost.held);
+  const PairObservations inliers = inliers_of(joint);
+  const ReducedNormalEquations plain = free_equations(joint, evidence, inliers, {}, free);
+  const Eigen::MatrixXd bound = minimum_variance_bound(plain, names);
+  const ReducedNormalEquations robust =
+      free_equations(joint, evidence, clustered_pairs(joint), joint.loss, free);
+  Covariance honest{CovarianceKind::mvb, names, bound};
+  if (!options.white_noise) {
+    honest = honest_covariance(robust, minimum_variance_bound(robust, names), names);
+  }
+  const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    return free * C * free.transpose();
+  };
+  JointCalibration result;
+  result.pair_sigma_scale = joint.cost.pair_sigma_scale;
+  result.observability = what_pairs_brought(joint, evidence, free, names, bound);
+  RigEstimate& estimate = result.estimate;
+  estimate.rig = joint.state.rig;
+  estimate.covariance_mvb = expand(bound);
+  estimate.covariance =
+      Covariance{honest.kind, parameter_names(estimate.rig), expand(honest.matrix)};
+  estimate.calibration = summary_of(joint, evidence, inliers, plain, bound);
+  for (const HeldParameter& held : options.held) {
+    estimate.calibration->held.push_back(held.name);
+  }
+  estimate.evidence = merged_evidence(joint.boards, joint.state);
+  estimate.evidence->pairs = evidence.pairs;
+  estimate.evidence->priors = evidence.priors;
+  return result;
+}
+
+JointCalibration calibrate_from_pairs(const PairObservations& pairs,
+                                      const RigKnowledge& prior,
+                                      const JointOptions& options,
+                                      const std::string& place) {
+  check_pairs(pairs, prior.rig, place);
+  JointOptions with_held = options;
+  for (const HeldParameter& held : held_by(prior)) {
+    const bool twice = std::any_of(options.held.begin(), options.held.end(),
+                                   [&](const HeldParameter& h) { return h.name == held.name; });
+    if (!twice) with_held.held.push_back(held);
+  }
+  const std::vector<bool> mask = held_mask(prior.rig, with_held.held);
+  const auto free = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), false));
+  if (pairs.size() < free) {
+    throw Error(place.empty() ? "pairs" : place,
+                fmt::format("{} pairs for {} free parameters", pairs.size(), free),
+                "match more corners, or hold parameters");
+  }
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(parameter_count(prior.rig), parameter_count(prior.rig));
+  for (std::size_t i = 0; i < prior.covariance.names.size(); ++i) {
+    for (std::size_t k = 0; k < prior.covariance.names.size(); ++k) {
+      const std::vector<std::string> all = parameter_names(prior.rig);
+      const auto at = [&](std::size_t n) {
+        return std::find(all.begin(), all.end(), prior.covariance.names[n]) - all.begin();
+      };
+      C(at(i), at(k)) =
+          prior.covariance.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+    }
+  }
+  const ObservationDiagnosis said = check_scene(pairs, prior.rig, C, place);
+  JointEvidence evidence;
+  evidence.priors.push_back(prior);
+  evidence.pairs = pairs;
+  JointCalibration result = calibrate_jointly(evidence, prior.rig, with_held);
+  auto& summary = *result.estimate.calibration;
+  summary.warnings.insert(summary.warnings.begin(), said.warnings.begin(), said.warnings.end());
+  summary.doubts.insert(summary.doubts.begin(), said.doubts.begin(), said.doubts.end());
+  return result;
+}
+
+}  // namespace vernier

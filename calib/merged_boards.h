@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/joint_calibration.h"
+
+namespace vernier {
+
+/// Board views of several calibrations as those of one: their targets side by side (a bent board's
+/// as it is bent), their frames numbered on, and the noise of each as weights.
+struct MergedBoards {
+  BoardObservations observations;                   ///< no views where there is no term
+  BoardState state;                                 ///< at the start
+  std::vector<std::vector<double>> corner_weights;  ///< in [0, 1], or empty
+  double pixel_sigma_px = 1;                        ///< of weight 1
+  struct Part {
+    std::size_t first_frame = 0, frames = 0;
+  };
+  std::vector<Part> parts;  ///< one a term, places in state.frames
+};
+
+/// Throws Error where the terms are of other cameras than `rig`.
+MergedBoards merge_boards(const std::vector<BoardTerm>& terms, const Rig& rig);
+
+/// The part of `state` that belongs to a term, in that term's own frames.
+BoardState state_of(const MergedBoards& boards,
+                    const std::vector<BoardTerm>& terms,
+                    const BoardState& state,
+                    std::size_t term);
+
+/// The views as evidence of the joint calibration, with the poses of `state`.
+CalibrationEvidence merged_evidence(const MergedBoards& boards, const BoardState& state);
+
+}  // namespace vernier

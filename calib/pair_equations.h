@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/loss.h"
+#include "calib/normal_equations.h"
+#include "calib/pair_observations.h"
+
+namespace vernier {
+
+/// The pairs' part of the normal equations at `rig`, a cluster for every image pair: information
+/// Σ ρ''/2 J Jᵀ, scores Σ ρ'/2 J, with residuals divided by `sigma_scale`. Square loss gives the
+/// plain ones.
+ReducedNormalEquations pair_equations(const PairObservations& pairs,
+                                      const Rig& rig,
+                                      const Loss& loss,
+                                      double sigma_scale);
+
+/// Adds the terms and clusters of `more`; no prior in either yet.
+void add_equations(ReducedNormalEquations& equations, const ReducedNormalEquations& more);
+
+/// The same pairs with every image pair split into `cells` x `cells` of the left image, each an
+/// image pair of its own.
+PairObservations split_into_cells(const PairObservations& pairs,
+                                  const Eigen::Vector2i& size_px,
+                                  int cells);
+
+}  // namespace vernier

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/prior_agreement.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "calib/chi_squared.h"
+#include "calib/covariance.h"
+#include "calib/error.h"
+
+namespace vernier {
+
+PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
+                               const std::vector<std::string>& names,
+                               const Eigen::MatrixXd& prior,
+                               const Eigen::MatrixXd& bound,
+                               const Eigen::MatrixXd& honest) {
+  constexpr double least_share = 0.05;
+  const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
+  const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd R = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
+    return 0.5 * (R + R.transpose());
+  };
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> before(scaled(prior));
+  const auto n = offset.size();
+  if (!(before.eigenvalues()[0] > 1e-13 * before.eigenvalues()[n - 1])) {
+    throw Error("prior",
+                "its covariance is singular along " +
+                    describe_direction(before.eigenvectors().col(0), names),
+                "hold what is known exactly");
+  }
+  // In the prior's own standard deviations, where C_0 = I.
+  const Eigen::MatrixXd root = before.operatorSqrt(), inverse_root = before.operatorInverseSqrt();
+  const Eigen::MatrixXd C = inverse_root * scaled(bound) * inverse_root;
+  const Eigen::MatrixXd noise = inverse_root * scaled(honest) * inverse_root - C * C;
+  const Eigen::MatrixXd moved = Eigen::MatrixXd::Identity(n, n) - C;  // C H
+  const Eigen::MatrixXd D = noise + moved * moved.transpose();
+  const Eigen::VectorXd delta = inverse_root * sd.cwiseInverse().asDiagonal() * offset;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (D + D.transpose()));
+  PriorAgreement agreement;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double variance = eigen.eigenvalues()[i];
+    if (variance < least_share) continue;
+    const double z = eigen.eigenvectors().col(i).dot(delta) / std::sqrt(variance);
+    agreement.chi2 += z * z;
+    ++agreement.dof;
+    if (std::abs(z) <= agreement.in_sigma) continue;
+    agreement.in_sigma = std::abs(z);
+    agreement.words = describe_direction((root * eigen.eigenvectors().col(i)).normalized(), names);
+  }
+  if (agreement.dof > 0) agreement.p_value = chi_squared_survival(agreement.chi2, agreement.dof);
+  return agreement;
+}
+
+}  // namespace vernier

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace vernier {
+
+/// Whether new data and what was known before them can be of one rig.
+struct PriorAgreement {
+  double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
+  int dof = 0;          ///< directions that the data improved
+  double p_value = 1;   ///< of a χ² this large or larger
+  double in_sigma = 0;  ///< along the direction that disagrees most …
+  std::string words;    ///< … which is this
+};
+
+/// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
+/// and C the honest covariance of the estimate, all over the same directions, the offset of a
+/// right prior and right data has the covariance
+///
+///     D = C_mvb (B + H C_0 H) C_mvb,   H = C_mvb⁻¹ − C_0⁻¹,   C_mvb B C_mvb = C − C_mvb C_0⁻¹
+///     C_mvb
+///
+/// (the estimate is the prior's mean moved by C_mvb times the score of the data there, whose noise
+/// has the scatter B). χ² is of δ over the eigenvectors of C_0^(-1/2) D C_0^(-1/2) with eigenvalues
+/// above 0.05, that is where the data say something. Bar-Shalom, Li and Kirubarajan, "Estimation
+/// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the
+/// normalised innovation squared. Throws Error where C_0 is singular.
+PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
+                               const std::vector<std::string>& names,
+                               const Eigen::MatrixXd& prior,
+                               const Eigen::MatrixXd& bound,
+                               const Eigen::MatrixXd& honest);
+
+}  // namespace vernier

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Calibration from matched pairs against simulated truth. Seeds are fixed; false-alarm rates stand
+// at the bounds. The prior's mean is drawn anew in every trial. Loss and limits were chosen on seed
+// 101; the seeds here judged them.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "calib/combine.h"
+#include "calib/distributions.h"
+#include "calib/epipolar_system.h"
+#include "calib/simulated_pairs.h"
+#include "tests/support/pair_priors.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+namespace {
+
+/// Pools trials of an estimate of 16 parameters.
+struct Trials {
+  std::vector<double> nees;
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(16);
+
+  void add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+    nees.push_back(error.dot(covariance.llt().solve(error)));
+    squares += error.cwiseAbs2();
+  }
+  double mean() const {
+    double sum = 0;
+    for (const double n : nees) sum += n;
+    return sum / static_cast<double>(nees.size());
+  }
+  /// Root mean square of all errors, each over its standard deviation.
+  double rms(const Eigen::VectorXd& sd) const {
+    return std::sqrt(squares.cwiseQuotient(sd.cwiseAbs2()).mean() /
+                     static_cast<double>(nees.size()));
+  }
+};
+
+Eigen::MatrixXd clean_bound(const Rig& truth, const PairObservations& pairs) {
+  const Eigen::MatrixXd P = test::datasheet_sd().cwiseAbs2().cwiseInverse().asDiagonal();
+  return (P + epipolar_sums(PackedPairs(pairs), truth, {}).information).inverse();
+}
+
+void expect_chi_squared(const Trials& trials, const char* what) {
+  const auto n = static_cast<double>(trials.nees.size());
+  const double low = chi_squared_quantile(0.005, 16 * n) / n;
+  const double high = chi_squared_quantile(0.995, 16 * n) / n;
+  const double p =
+      kolmogorov_smirnov_p(trials.nees, [](double x) { return chi_squared_cdf(x, 16); });
+  testing::Test::RecordProperty(std::string("nees_") + what, std::to_string(trials.mean()));
+  testing::Test::RecordProperty(std::string("ks_p_") + what, std::to_string(p));
+  EXPECT_GT(trials.mean(), low) << what;  // 0.5 % each
+  EXPECT_LT(trials.mean(), high) << what;
+  EXPECT_GT(p, 0.01) << what;  // 1 %
+}
+
+TEST(PairsStatistics, NormalisedErrorOfTheResolverIsChiSquared) {
+  const Rig truth = test::stereo_rig();
+  Trials trials;
+  for (std::uint32_t t = 0; t < 500; ++t) {
+    const PairResolver resolver(simulate_pairs(truth, 21, t));
+    const RigKnowledge known = test::datasheet(truth, 21, t);
+    const RigPrior prior = rig_prior(truth, known);
+    const EpipolarMinimum found = resolver.minimise(known.rig, {.priors = {prior}});
+    ASSERT_TRUE(found.converged) << t;
+    const EpipolarSystem system =
+        epipolar_system(PackedPairs(simulate_pairs(truth, 21, t)), found.rig, {.priors = {prior}},
+                        Eigen::MatrixXd::Identity(16, 16));
+    trials.add(difference(truth, found.rig), system.information.inverse());
+  }
+  expect_chi_squared(trials, "resolver");
+}
+
+TEST(PairsStatistics, WrongMatchesDoLittleHarm) {
+  const Rig truth = test::stereo_rig();
+  const Eigen::VectorXd sd = clean_bound(truth, simulate_pairs(truth, 22, 0, {.pixel_sigma_px = 0}))
+                                 .diagonal()
+                                 .cwiseSqrt();
+  // Without noise the pairs state 1 px; the bound is of 0.3 px.
+  const Eigen::MatrixXd P = test::datasheet_sd().cwiseAbs2().cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd H =
+      epipolar_sums(PackedPairs(simulate_pairs(truth, 22, 0)), truth, {}).information;
+  const Eigen::VectorXd clean = (P + H).inverse().diagonal().cwiseSqrt();
+  ASSERT_EQ(sd.size(), 16);
+  for (const double share : {0.0, 0.01, 0.05}) {
+    Trials robust, plain, bound;
+    std::size_t listed = 0, count = 0;
+    for (std::uint32_t t = 0; t < 200; ++t) {
+      const PairObservations pairs = simulate_pairs(truth, 22, t, {.wrong_share = share});
+      const RigKnowledge known = test::datasheet(truth, 22, t);
+      const JointCalibration found = calibrate_from_pairs(pairs, known, {.pair_sigma_scale = 1});
+      robust.add(difference(truth, found.estimate.rig), found.estimate.covariance->matrix);
+      bound.add(difference(truth, found.estimate.rig), *found.estimate.covariance_mvb);
+      listed += found.estimate.calibration->pair_outliers.size();
+      count += pairs.size();
+      const JointCalibration least_squares = calibrate_from_pairs(
+          pairs, known, {.pair_sigma_scale = 1, .reject_outliers = false, .white_noise = true});
+      plain.add(difference(truth, least_squares.estimate.rig),
+                least_squares.estimate.covariance->matrix);
+    }
+    const std::string name = std::to_string(static_cast<int>(100 * share)) + "_percent";
+    RecordProperty("rms_over_clean_" + name, std::to_string(robust.rms(clean)));
+    RecordProperty("nees_sandwich_" + name, std::to_string(robust.mean()));
+    RecordProperty("nees_bound_" + name, std::to_string(bound.mean()));
+    RecordProperty("nees_least_squares_" + name, std::to_string(plain.mean()));
+    RecordProperty("listed_" + name,
+                   std::to_string(static_cast<double>(listed) / static_cast<double>(count)));
+    // 3200 errors: the rms of right ones scatters by 1.3 %, so 1.05 has 1.03 beside it.
+    EXPECT_LT(robust.rms(clean), 1.05 + 0.03) << share;
+    EXPECT_NEAR(robust.mean(), 16, 0.15 * 16) << share;
+    if (share > 0) {
+      EXPECT_GT(plain.mean(), 20) << share;
+    }
+  }
+}
+
+TEST(PairsStatistics, AKnockIsFoundAndNothingElse) {
+  const Rig truth = test::stereo_rig();
+  std::vector<double> p_values;
+  int caught = 0;
+  for (std::uint32_t t = 0; t < 100; ++t) {
+    CombineInput known{"prior", RigEstimate{}, {}};
+    const RigKnowledge datasheet = test::datasheet(truth, 23, t);
+    known.estimate->rig = datasheet.rig;
+    known.estimate->covariance = datasheet.covariance;
+    const SimulatedPairsOptions scene{.image_pairs = 60, .pairs_per_image = 40};
+    const CombineInput first{"first", {}, simulate_pairs(truth, 23, t, scene)};
+    const CombineInput second{"second", {}, simulate_pairs(truth, 24, t, scene)};
+    const CombineOptions options{.joint = {.pair_sigma_scale = 1}};
+    const Combination same = combine({known, first, second}, options);
+    p_values.push_back(same.inputs[2].agreement.p_value);
+    // The right camera turned by a milliradian about its axis: half a pixel at the image's edge.
+    Rig knocked = truth;
+    Eigen::VectorXd delta = Eigen::VectorXd::Zero(16);
+    delta[12] = 1e-3;
+    knocked = retract(truth, delta);
+    const CombineInput after{"after", {}, simulate_pairs(knocked, 24, t, scene)};
+    caught += !combine({known, first, after}, options).inputs[2].used;
+  }
+  const double p = kolmogorov_smirnov_p(p_values, [](double x) { return std::clamp(x, 0.0, 1.0); });
+  RecordProperty("ks_p", std::to_string(p));
+  EXPECT_GT(p, 0.001);  // false alarm 0.1 %
+  EXPECT_EQ(std::count_if(p_values.begin(), p_values.end(), [](double x) { return x < 1e-4; }), 0);
+  EXPECT_EQ(caught, 100);
+}
+
+}  // namespace
+}  // namespace vernier

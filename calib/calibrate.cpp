@@ -306,8 +306,8 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
-  estimate.evidence = CalibrationEvidence{std::move(s.observations), s.state.frames,
-                                          s.state.T_first_board, s.state.warp_m, {}, {}};
+  estimate.evidence = CalibrationEvidence{
+      std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};
   return estimate;
 }
 

@@ -14,6 +14,15 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
+/// Beyond it a number is a slip of the pen, and its square too many corners.
+constexpr int most_along_a_side = 1000;
+
+void require_few(int columns, int rows, const std::string& place) {
+  if (columns > most_along_a_side || rows > most_along_a_side) {
+    throw Error(place, "more than 1000 along a side", "check its size");
+  }
+}
+
 void require_length(double metres, const std::string& place, const std::string& what) {
   if (!(metres > 0) || !std::isfinite(metres)) {
     throw Error(place, what + " is not above 0", "give it in metres");
@@ -35,6 +44,7 @@ void check(const Chessboard& board, const std::string& place) {
     throw Error(place, "fewer than 3 inner corners along a side",
                 "count the inner corners, not the squares");
   }
+  require_few(board.columns, board.rows, place);
   require_length(board.square_m, place, "the side of a square");
   if (board.row_m == 0) return;
   require_length(board.row_m, place, "the distance between rows");
@@ -48,6 +58,7 @@ void check(const CharucoBoard& board, const std::string& place) {
   if (board.columns < 3 || board.rows < 3) {
     throw Error(place, "fewer than 3 squares along a side", "count the squares");
   }
+  require_few(board.columns, board.rows, place);
   require_length(board.square_m, place, "the side of a square");
   require_length(board.marker_m, place, "the side of a marker");
   if (board.marker_m >= board.square_m) {
@@ -58,6 +69,7 @@ void check(const CharucoBoard& board, const std::string& place) {
 }
 
 void check(const AprilTagGrid& grid, const std::string& place) {
+  require_few(grid.columns, grid.rows, place);
   if (grid.columns < 1 || grid.rows < 1 || grid.columns * grid.rows < 2) {
     throw Error(place, "fewer than 2 tags", "give the columns and rows of tags");
   }

@@ -52,8 +52,9 @@ struct AprilTagGrid {
 /// What is looked for in images.
 using BoardTarget = std::variant<Chessboard, CharucoBoard, AprilTagGrid>;
 
-/// Throws Error for a target that cannot be: too few corners, a size that is not above 0, a marker
-/// larger than its square, an unknown dictionary, more tags than the family has.
+/// Throws Error for a target that cannot be: too few corners or more than 1000 a side, a size that
+/// is not above 0, a marker larger than its square, an unknown dictionary, more tags than the
+/// family has.
 void check_target(const BoardTarget& target);
 
 /// Corner positions on the target in the order of their indices, z = 0, metres.

@@ -14,6 +14,7 @@
 #include "calib/colmap_poses.h"
 #include "calib/error.h"
 #include "calib/opencv_intrinsics.h"
+#include "calib/rig_json.h"
 
 namespace vernier {
 namespace {
@@ -105,10 +106,12 @@ std::string rig_config_entry(const Camera& camera, const Pose& T, bool first) {
                                        "\"cam_from_rig_rotation\": [{}],\n        "
                                        "\"cam_from_rig_translation\": [{}, {}, {}]",
                                        fmt::join(quaternion(T.R), ", "), T.t[0], T.t[1], T.t[2]);
+  constexpr auto replace = rig_json::Json::error_handler_t::replace;  // a name may hold any bytes
   return fmt::format(
-      "      {{\n        \"image_prefix\": \"{}/\",\n        {},\n        "
+      "      {{\n        \"image_prefix\": {},\n        {},\n        "
       "\"camera_model_name\": \"{}\",\n        \"camera_params\": [{}]\n      }}",
-      camera.name, pose, words[0], fmt::join(words.begin() + 3, words.end(), ", "));
+      rig_json::Json(camera.name + "/").dump(-1, ' ', false, replace), pose, words[0],
+      fmt::join(words.begin() + 3, words.end(), ", "));
 }
 
 }  // namespace
@@ -118,23 +121,26 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
   const std::filesystem::path file = std::filesystem::is_directory(file_or_folder)
                                          ? file_or_folder / "cameras.txt"
                                          : file_or_folder;
+  std::vector<Line> lines = colmap::read_lines(file);
   std::map<int, Camera> cameras;
-  for (const Line& line : colmap::read_lines(file)) {
+  for (const Line& line : lines) {
     if (!cameras.emplace(line.whole(0), read_camera(line, options)).second) {
       throw Error(line.place(), fmt::format("camera {} is there twice", line.whole(0)),
                   "keep one of them");
     }
   }
   if (cameras.empty()) throw Error(file.string(), "holds no camera", "name another file");
-  std::vector<int> ids;
-  for (const auto& [id, camera] : cameras) ids.push_back(id);
+  std::sort(lines.begin(), lines.end(),
+            [](const Line& a, const Line& b) { return a.whole(0) < b.whole(0); });
 
+  ImportedRig imported;
   std::vector<PlacedCamera> placed;
-  for (const colmap::PlacedId& p : colmap::read_poses(file, ids, options.unit_m)) {
+  for (const auto& p : colmap::read_poses(file, lines, options.unit_m, imported.notes)) {
     placed.push_back({cameras.at(p.id), p.T_camera_reference});
     placed.back().camera.name = p.name;
   }
-  return {rig_of(std::move(placed)), {}};
+  imported.rig = rig_of(std::move(placed));
+  return imported;
 }
 
 std::vector<ForeignFile> colmap_cameras(const Rig& rig) {

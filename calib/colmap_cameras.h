@@ -25,8 +25,9 @@ namespace vernier {
 
 /// Reads cameras.txt, or the one of a folder. Of two cameras or more the poses come from the first
 /// of these that lies beside it: rigs.txt (COLMAP 3.12 and later; one rig), rig_config.json (one
-/// rig, its cameras in the order of their CAMERA_ID), images.txt (one image a camera). Names are
-/// the folders of the images where they are given.
+/// rig, its cameras known by their parameters, else by the images under their prefix, else, with a
+/// note, by the order of their CAMERA_ID), images.txt (one image a camera). Names are the folders
+/// of the images where they are given.
 ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
                                 const ImportOptions& options = {});
 

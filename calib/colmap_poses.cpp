@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "calib/atomic_file.h"
@@ -36,6 +38,15 @@ Pose pose(const Line& line, std::size_t at, double unit_m) {
   return pose(v.head<4>(), unit_m * v.tail<3>(), line.place());
 }
 
+/// The cameras of cameras.txt and how to read lengths.
+struct Cameras {
+  const std::vector<Line>& lines;  ///< by ascending CAMERA_ID
+  double unit_m;
+
+  std::size_t count() const { return lines.size(); }
+  int id(std::size_t i) const { return lines[i].whole(0); }
+};
+
 void check_camera(int id, const std::vector<int>& ids, const std::string& place) {
   if (std::find(ids.begin(), ids.end(), id) == ids.end()) {
     throw Error(place, fmt::format("cameras.txt has no camera {}", id),
@@ -44,8 +55,8 @@ void check_camera(int id, const std::vector<int>& ids, const std::string& place)
 }
 
 std::vector<PlacedId> from_rigs(const std::filesystem::path& file,
-                                const std::vector<int>&,
-                                double unit_m) {
+                                const Cameras& cameras,
+                                std::vector<std::string>&) {
   const std::vector<Line> lines = read_lines(file);
   if (lines.size() != 1) {
     throw Error(file.string(), fmt::format("holds {} rigs", lines.size()), "keep one");
@@ -60,7 +71,7 @@ std::vector<PlacedId> from_rigs(const std::filesystem::path& file,
       throw Error(line.place(), fmt::format("camera {} has no pose", line.whole(at + 1)),
                   "solve for it in COLMAP first");
     }
-    placed.push_back({line.whole(at + 1), "", pose(line, at + 3, unit_m)});
+    placed.push_back({line.whole(at + 1), "", pose(line, at + 3, cameras.unit_m)});
     at += 10;
   }
   return placed;
@@ -81,8 +92,7 @@ Json parse_json(const std::filesystem::path& file) {
 }
 
 PlacedId from_entry(const Node& camera, int id, double unit_m) {
-  PlacedId placed{camera.has("camera_id") ? camera.at("camera_id").integer() : id,
-                  name_of_prefix(camera.at("image_prefix").text()), Pose{}};
+  PlacedId placed{id, name_of_prefix(camera.at("image_prefix").text()), Pose{}};
   const bool reference = camera.has("ref_sensor") && camera.at("ref_sensor").json() == true;
   if (reference) return placed;
   const Node rotation = camera.at("cam_from_rig_rotation");
@@ -93,30 +103,92 @@ PlacedId from_entry(const Node& camera, int id, double unit_m) {
   return placed;
 }
 
+/// Whether a camera has the model and the parameters of an entry, as far as decimals tell.
+bool has_parameters(const Line& camera, const Node& entry) {
+  constexpr double rounding = 1e-9;
+  if (!entry.has("camera_model_name") || !entry.has("camera_params")) return false;
+  const Eigen::VectorXd values = entry.at("camera_params").vector();
+  if (camera.word(1) != entry.at("camera_model_name").text()) return false;
+  if (camera.size() != 4 + static_cast<std::size_t>(values.size())) return false;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double there = camera.number(4 + static_cast<std::size_t>(i));
+    if (!(std::abs(there - values[i]) <= rounding * (1 + std::abs(there)))) return false;
+  }
+  return true;
+}
+
+/// The cameras of the images under each prefix, by images.txt where it is there.
+using CamerasOfPrefix = std::map<std::string, std::set<int>>;
+CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const Node& entries) {
+  CamerasOfPrefix found;
+  if (!std::filesystem::exists(images)) return found;
+  for (const Line& line : read_lines(images, true)) {
+    line.check_count(10);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const std::string prefix = entries.at(i).at("image_prefix").text();
+      if (line.word(9).rfind(prefix, 0) == 0) found[prefix].insert(line.whole(8));
+    }
+  }
+  return found;
+}
+
+/// The CAMERA_ID of each entry where they say it one by one, no two the same; else nothing.
+std::vector<int> ids_said(const Node& entries,
+                          const Cameras& cameras,
+                          const CamerasOfPrefix& of_prefix) {
+  std::vector<int> ids;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Node entry = entries.at(i);
+    std::set<int> candidates;
+    for (std::size_t k = 0; k < cameras.count(); ++k) {
+      if (has_parameters(cameras.lines[k], entry)) candidates.insert(cameras.id(k));
+    }
+    const auto under = of_prefix.find(entry.at("image_prefix").text());
+    if (entry.has("camera_id")) {
+      candidates = {entry.at("camera_id").integer()};
+    } else if (candidates.size() != 1 && under != of_prefix.end()) {
+      candidates = under->second;
+    }
+    if (candidates.size() != 1) return {};
+    ids.push_back(*candidates.begin());
+  }
+  const std::set<int> different(ids.begin(), ids.end());
+  return different.size() == ids.size() ? ids : std::vector<int>();
+}
+
 std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
-                                      const std::vector<int>& ids,
-                                      double unit_m) {
+                                      const Cameras& cameras,
+                                      std::vector<std::string>& notes) {
   const Json json = parse_json(file);
   const Node root(json, file.string() + ":");
   if (root.array().size() != 1) {
     throw Error(file.string(), fmt::format("holds {} rigs", root.size()), "keep one");
   }
-  const Node cameras = root.at(0).at("cameras");
-  if (cameras.array().size() != ids.size()) {
-    throw Error(cameras.place(),
-                fmt::format("holds {} cameras, cameras.txt {}", cameras.size(), ids.size()),
+  const Node entries = root.at(0).at("cameras");
+  if (entries.array().size() != cameras.count()) {
+    throw Error(entries.place(),
+                fmt::format("holds {} cameras, cameras.txt {}", entries.size(), cameras.count()),
                 "give the files of one rig");
+  }
+  std::vector<int> ids =
+      ids_said(entries, cameras, cameras_of_prefixes(file.parent_path() / "images.txt", entries));
+  if (ids.empty()) {
+    for (std::size_t i = 0; i < cameras.count(); ++i) ids.push_back(cameras.id(i));
+    if (cameras.count() > 1)
+      notes.push_back(file.string() +
+                      ": its cameras are matched by order with those of cameras.txt: neither "
+                      "parameters nor images.txt tell which is which");
   }
   std::vector<PlacedId> placed;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    placed.push_back(from_entry(cameras.at(i), ids[i], unit_m));
+    placed.push_back(from_entry(entries.at(i), ids[i], cameras.unit_m));
   }
   return placed;
 }
 
 std::vector<PlacedId> from_images(const std::filesystem::path& file,
-                                  const std::vector<int>& ids,
-                                  double unit_m) {
+                                  const Cameras& cameras,
+                                  std::vector<std::string>&) {
   std::vector<PlacedId> placed;
   for (const Line& line : read_lines(file, true)) {
     line.check_count(10);
@@ -125,32 +197,33 @@ std::vector<PlacedId> from_images(const std::filesystem::path& file,
     const std::string name = slash == std::string::npos
                                  ? std::filesystem::path(image).stem().string()
                                  : name_of_prefix(image.substr(0, slash));
-    placed.push_back({line.whole(8), name, pose(line, 1, unit_m)});
+    placed.push_back({line.whole(8), name, pose(line, 1, cameras.unit_m)});
   }
-  if (placed.size() != ids.size()) {
-    if (ids.size() == 1) return {{ids[0], "", Pose{}}};
+  if (placed.size() != cameras.count()) {
+    if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
     throw Error(file.string(),
                 fmt::format("holds {} images of {} cameras, so it does not say where the cameras "
                             "are on the rig",
-                            placed.size(), ids.size()),
+                            placed.size(), cameras.count()),
                 "keep one frame of the rig, or give rigs.txt or rig_config.json");
   }
   return placed;
 }
 
-std::vector<PlacedId> from_beside(const std::filesystem::path& cameras,
-                                  const std::vector<int>& ids,
-                                  double unit_m) {
-  const std::filesystem::path folder = cameras.parent_path();
+std::vector<PlacedId> from_beside(const std::filesystem::path& file,
+                                  const Cameras& cameras,
+                                  std::vector<std::string>& notes) {
+  const std::filesystem::path folder = file.parent_path();
   for (const auto& [name, reader] :
        {std::pair{"rigs.txt", &from_rigs}, std::pair{"rig_config.json", &from_rig_config},
         std::pair{"images.txt", &from_images}}) {
-    if (std::filesystem::exists(folder / name)) return reader(folder / name, ids, unit_m);
+    if (std::filesystem::exists(folder / name)) return reader(folder / name, cameras, notes);
   }
-  if (ids.size() == 1) return {{ids[0], "", Pose{}}};
-  throw Error(cameras.string(),
-              fmt::format("holds {} cameras and nothing beside it says where they are", ids.size()),
-              "put rigs.txt, rig_config.json or images.txt beside it");
+  if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
+  throw Error(
+      file.string(),
+      fmt::format("holds {} cameras and nothing beside it says where they are", cameras.count()),
+      "put rigs.txt, rig_config.json or images.txt beside it");
 }
 
 }  // namespace
@@ -201,10 +274,12 @@ std::vector<Line> read_lines(const std::filesystem::path& file, bool skip_every_
 }
 
 std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
-                                 const std::vector<int>& ids,
-                                 double unit_m) {
-  const std::vector<PlacedId> placed = from_beside(cameras, ids, unit_m);
-  std::vector<int> found;
+                                 const std::vector<Line>& lines,
+                                 double unit_m,
+                                 std::vector<std::string>& notes) {
+  std::vector<int> ids, found;
+  for (const Line& line : lines) ids.push_back(line.whole(0));
+  const std::vector<PlacedId> placed = from_beside(cameras, {lines, unit_m}, notes);
   for (const PlacedId& p : placed) {
     check_camera(p.id, ids, cameras.string());
     found.push_back(p.id);

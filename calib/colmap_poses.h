@@ -38,10 +38,13 @@ struct PlacedId {
   Pose T_camera_reference;
 };
 
-/// Poses of the cameras `ids` (ascending), which are those of the file `cameras`, out of what lies
-/// beside it; one camera needs none.
+/// Poses of the cameras of the file `cameras`, whose lines are `lines` by ascending CAMERA_ID, out
+/// of what lies beside it; one camera needs none. An entry of rig_config.json names no CAMERA_ID:
+/// it is the camera that has its model and parameters, else the one that took the images under its
+/// prefix, else the one at its place, which `notes` then says.
 std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
-                                 const std::vector<int>& ids,
-                                 double unit_m);
+                                 const std::vector<Line>& lines,
+                                 double unit_m,
+                                 std::vector<std::string>& notes);
 
 }  // namespace vernier::colmap

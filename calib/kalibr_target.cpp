@@ -72,6 +72,8 @@ class FlatYaml {
     return value;
   }
 
+  bool has(const std::string& key) const { return entries_.count(key) > 0; }
+
   Entry take(const std::string& key) {
     const auto at = entries_.find(key);
     if (at == entries_.end()) {
@@ -117,6 +119,12 @@ AprilTagGrid april_grid(FlatYaml& yaml) {
   grid.rows = yaml.number<int>("tagRows");
   grid.tag_m = yaml.number<double>("tagSize");
   grid.spacing = yaml.number<double>("tagSpacing");
+  if (!yaml.has("codeOffset")) return grid;
+  const FlatYaml::Entry offset = yaml.take("codeOffset");
+  if (offset.value != "0") {
+    throw Error(yaml.place(offset.line), "codeOffset is \"" + offset.value + "\"",
+                "Vernier counts tags from 0: give a board that does");
+  }
   return grid;
 }
 

@@ -10,7 +10,8 @@ namespace vernier {
 
 /// Reads Kalibr's target file: flat YAML, `key: value` a line, `#` begins a comment. Known are
 ///
-///     target_type: 'aprilgrid'      tagCols, tagRows, tagSize (m), tagSpacing (over tagSize)
+///     target_type: 'aprilgrid'      tagCols, tagRows, tagSize (m), tagSpacing (over tagSize),
+///                                   codeOffset: 0 (may be left out)
 ///     target_type: 'checkerboard'   targetCols, targetRows (inner corners),
 ///                                   rowSpacingMeters, colSpacingMeters
 ///

@@ -67,6 +67,7 @@ std::vector<double> numbers(const PythonLiteral& value,
 std::size_t coefficient_count(const PythonLiteral& value, const std::string& file) {
   std::string name = value.text;
   if (name.rfind("DISTORTION_", 0) == 0) name.replace(0, 10, "LENSMODEL");  // before mrcal 1.0
+  if (name == "LENSMODEL_NONE") name = "LENSMODEL_PINHOLE";                 // likewise
   for (const LensModel& model : lens_models) {
     if (name == model.name) return model.coefficients;
   }

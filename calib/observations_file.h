@@ -24,7 +24,7 @@ void write_observations(const BoardObservations& observations, const std::filesy
 /// in order of first appearance (left01.jpg and right01.jpg: frame 1 of cameras 0 and 1). A level
 /// below 0 means as much as "-". Level k > 0 says that the corner was found in an image reduced 2^k
 /// times; such corners weigh here as much as others, which count_coarse_corners lets you find out.
-/// Throws Error with file and line.
+/// Throws Error with file and line, and for a target that cannot be.
 BoardObservations read_corners(const std::filesystem::path& file,
                                const BoardTarget& target,
                                const std::vector<Eigen::Vector2i>& size_px);

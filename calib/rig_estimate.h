@@ -65,4 +65,8 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
 /// has no covariance. A rig file lists these.
 std::vector<Eigen::Index> free_parameters(const RigEstimate& estimate);
 
+/// Names the cameras otherwise, one name a camera, wherever the estimate says them: the covariance
+/// and the held parameters too. Throws Error where they are too few or many, or not different.
+void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names);
+
 }  // namespace vernier

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -186,6 +187,18 @@ CornerOutlier parse_outlier(const Node& node, const Rig& rig) {
   return outlier;
 }
 
+/// Names of parameters, each one of the rig's: an unknown one would be freed in silence.
+std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
+  std::vector<std::string> held = parse_texts(node, "held");
+  const std::vector<std::string> names = parameter_names(rig);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
+    throw Error(node.at("held").at(i).place(), "the rig has no parameter \"" + held[i] + "\"",
+                "name it as parameter_names does, after the camera");
+  }
+  return held;
+}
+
 CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   CalibrationSummary summary;
   summary.source = node.at("source").text();
@@ -196,7 +209,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   summary.views = node.at("views").integer();
   if (node.has("prior_chi2")) summary.prior_chi2 = node.at("prior_chi2").number();
   if (node.has("prior_dof")) summary.prior_dof = node.at("prior_dof").integer();
-  summary.held = parse_texts(node, "held");
+  summary.held = parse_held(node, rig);
   if (node.has("outliers")) {
     for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
       summary.outliers.push_back(parse_outlier(node.at("outliers").at(i), rig));
@@ -228,6 +241,23 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
   json["warnings"] = s.warnings;
   if (!s.doubts.empty()) json["doubts"] = s.doubts;
   return json;
+}
+
+/// JSON has no NaN: it would be written as null, which no rig file may hold but for the residual of
+/// an outlier whose frame went with it.
+void require_finite(const Json& json, const std::string& place) {
+  if (json.is_number_float() && !std::isfinite(json.get<double>())) {
+    throw Error(place, "is not a finite number", "a rig file cannot hold it");
+  }
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      if (key != "residual_px") require_finite(value, place + "." + key);
+    }
+  } else if (json.is_array()) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      require_finite(json[i], place + "[" + std::to_string(i) + "]");
+    }
+  }
 }
 
 int line_of(const std::string& text, std::size_t byte) {
@@ -324,6 +354,7 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
   }
+  require_finite(json, "rig");
   if (!estimate.other_keys.empty()) json.update(Json::parse(estimate.other_keys));
   // Names of images come from the file system, which does not promise UTF-8.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -25,14 +25,15 @@ RigKnowledge rig_knowledge(const RigFile& file, const std::string& place);
 
 /// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Needed are format,
 /// version and cameras; parameter_names, parameters and covariance come together and must agree
-/// with the cameras. Parameters that are not listed have no variance. Throws Error naming file and
-/// key, and the line for malformed JSON.
+/// with the cameras. Parameters that are not listed have no variance; what is held must be one of
+/// the rig's. Throws Error naming file and key, and the line for malformed JSON.
 RigFile read_rig(const std::filesystem::path& file);
 RigFile parse_rig(const std::string& text, const std::string& place);
 
 enum class KeepEvidence { yes, no };
 
-/// Text of a rig.json; numbers in the shortest form that reads back equal.
+/// Text of a rig.json; numbers in the shortest form that reads back equal. Throws Error naming the
+/// key where a number is not finite, which JSON cannot say.
 std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence = KeepEvidence::yes);
 void write_rig(const RigEstimate& estimate,
                const std::filesystem::path& file,

@@ -23,8 +23,10 @@ struct ViewLinearisation {
 /// Whether derivatives are wanted as well.
 enum class Linearise { residual_only, with_jacobian };
 
-/// The one piece of code behind the Ceres cost and the normal equations. `target_m` holds the
-/// board's warp already; `shapes` (calib/board_warp.h) asks for the derivative by it.
+/// Behind the normal equations, the refined minimum and the fit of a single board's pose, which
+/// want every row; the Ceres cost and the re-solver run the formulas of calib/corner_formulas.h on
+/// many views at once (calib/view_kernel.h) and keep their sums alone. `target_m` holds the board's
+/// warp already; `shapes` (calib/board_warp.h) asks for the derivative by it.
 void linearise_view(const Camera& camera,
                     const Pose& T_camera_first,
                     const Pose& T_first_board,

@@ -7,6 +7,7 @@
 #include "calib/error.h"
 #include "calib/next_view.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 
@@ -37,7 +38,7 @@ std::string find_target(const Options& options,
     if (options.board.empty() || !(options.square_m > 0)) {
       throw Error("advise", "half of the board is given", "give both --board and --square-m");
     }
-    const auto [columns, rows] = parse_size(options.board, "--board");
+    const auto [columns, rows] = parse_grid(options.board, "--board");
     target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }
@@ -197,7 +198,7 @@ void add_advise(CLI::App& app, Session& session) {
                    "depth, projection, rectification, baseline or a parameter such as left.f_px")
       ->capture_default_str();
   verb->add_option("--at-m", o->at_m, "distance of the points meant")
-      ->check(CLI::PositiveNumber)
+      ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--views", o->views, "how many views, each given those before it")
       ->check(CLI::Range(1, 100))
@@ -208,10 +209,10 @@ void add_advise(CLI::App& app, Session& session) {
   verb->add_option("--board", o->board,
                    "inner corners, such as 9x6 (else the calibration's board)");
   verb->add_option("--square-m", o->square_m, "side of a square, metres")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_and_positive);
   verb->add_option("--pixel-sigma", o->pixel_sigma_px,
                    "noise of a pixel coordinate (else the calibration's)")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_and_positive);
   verb->add_option("--covariance", o->covariance,
                    "plan on mvb (minimum variance bound, its deviations then scaled) or honest")
       ->check(CLI::IsMember({"mvb", "honest"}))

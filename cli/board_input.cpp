@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/board_input.h"
 
+#include <array>
+
 #include "calib/error.h"
 #include "calib/kalibr_target.h"
+#include "calib/observation_checks.h"
 #include "calib/observations_file.h"
+#include "cli/option_checks.h"
 
 namespace vernier::cli {
 namespace {
@@ -28,16 +32,71 @@ double length(const BoardInput& input, double metres, const std::string& option)
   return metres;
 }
 
+// Options that belong to one kind of board: with another kind nothing would come of them.
+constexpr std::array of_charuco{"--marker-m", "--dictionary", "--legacy"};
+constexpr std::array of_tags{"--tag-m", "--tag-spacing"};
+constexpr std::array of_tags_found{"--family", "--border-bits", "--top-row-first"};
+
+void refuse(const BoardInput& input, std::span<const char* const> options, const std::string& why) {
+  refuse_options(*input.app, options, why);
+}
+
 void add_tag_options(const BoardInput& input, AprilTagGrid& grid) {
   grid.border_bits = input.border_bits;
   grid.family = input.family;
   grid.top_row_first = input.top_row_first;
 }
 
+BoardTarget kalibr_target(const BoardInput& input) {
+  if (!input.board.empty()) throw Error(input.verb, "--target stands beside --board", "give one");
+  refuse(input, std::array{"--square-m"}, "the file of --target says it");
+  refuse(input, of_tags, "the file of --target says it");
+  refuse(input, of_charuco, "the file of --target holds no charuco board");
+  BoardTarget target = read_kalibr_target(input.target);
+  if (auto* grid = std::get_if<AprilTagGrid>(&target)) {
+    add_tag_options(input, *grid);
+  } else {
+    refuse(input, of_tags_found, "the file of --target holds a chessboard, which has no tags");
+  }
+  return target;
+}
+
+/// What is wrong with corners from a file begins with its name.
+BoardObservations checked(const std::string& file, BoardObservations observations) {
+  try {
+    check_observations(observations);
+  } catch (const Error& error) {
+    throw Error(file, error.what(), "");
+  }
+  return observations;
+}
+
+BoardObservations from_observations(const BoardInput& input) {
+  const std::string why = "the file of --observations holds the board's points";
+  refuse(input, std::array{"--board", "--target", "--square-m"}, why);
+  refuse(input, of_charuco, why);
+  refuse(input, of_tags, why);
+  refuse(input, of_tags_found, why);
+  return checked(input.observations, read_observations(input.observations, size_of(input)));
+}
+
+BoardObservations from_corners(const BoardInput& input, Session& session) {
+  BoardObservations observations =
+      checked(input.corners, read_corners(input.corners, target_of(input), size_of(input)));
+  if (const int coarse = count_coarse_corners(input.corners)) {
+    session.warn(
+        fmt::format("{}: {} corners of level above 0 (found in a reduced image) weigh as "
+                    "much as the others",
+                    input.corners, coarse));
+  }
+  return observations;
+}
+
 }  // namespace
 
 void add_image_options(CLI::App* verb, BoardInput& input) {
   input.verb = verb->get_name();
+  input.app = verb;
   verb->add_option("--left", input.left, "left images (a quoted pattern); alone: one camera");
   verb->add_option("--right", input.right, "right images; the same number, the same frame");
   verb->add_option("--camera", input.cameras,
@@ -46,13 +105,17 @@ void add_image_options(CLI::App* verb, BoardInput& input) {
   verb->add_option("--board", input.board,
                    "9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 (tags)");
   verb->add_option("--target", input.target, "instead: target file of Kalibr (YAML)");
-  verb->add_option("--square-m", input.square_m, "side of a square, metres");
-  verb->add_option("--marker-m", input.marker_m, "side of a marker on a charuco board, metres");
+  verb->add_option("--square-m", input.square_m, "side of a square, metres")
+      ->check(finite_and_positive);
+  verb->add_option("--marker-m", input.marker_m, "side of a marker on a charuco board, metres")
+      ->check(finite_and_positive);
   verb->add_option("--dictionary", input.dictionary, "OpenCV's dictionary of a charuco board")
       ->capture_default_str();
   verb->add_flag("--legacy", input.legacy, "charuco board as OpenCV before 4.6 drew it");
-  verb->add_option("--tag-m", input.tag_m, "side of an AprilTag over its black border, metres");
+  verb->add_option("--tag-m", input.tag_m, "side of an AprilTag over its black border, metres")
+      ->check(finite_and_positive);
   verb->add_option("--tag-spacing", input.tag_spacing, "gap between AprilTags over their side")
+      ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--family", input.family, "AprilTag family: 16h5, 25h9, 36h10 or 36h11")
       ->capture_default_str();
@@ -86,13 +149,18 @@ std::vector<std::string> image_patterns(const BoardInput& input) {
   return {input.left, input.right};
 }
 
-BoardTarget target_of(const BoardInput& input) {
-  if (!input.target.empty()) {
-    if (!input.board.empty()) throw Error(input.verb, "--target stands beside --board", "give one");
-    BoardTarget target = read_kalibr_target(input.target);
-    if (auto* grid = std::get_if<AprilTagGrid>(&target)) add_tag_options(input, *grid);
-    return target;
+std::vector<std::filesystem::path> files_named(const BoardInput& input) {
+  std::vector<std::filesystem::path> files{input.corners, input.observations, input.target};
+  if (!has_images(input)) return files;
+  for (const std::string& pattern : image_patterns(input)) {
+    const std::vector<std::filesystem::path> images = matching_files(pattern);
+    files.insert(files.end(), images.begin(), images.end());
   }
+  return files;
+}
+
+BoardTarget target_of(const BoardInput& input) {
+  if (!input.target.empty()) return kalibr_target(input);
   if (input.board.empty()) {
     throw Error(input.verb, "the board is not given",
                 "give --board, such as 9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 "
@@ -100,7 +168,12 @@ BoardTarget target_of(const BoardInput& input) {
   }
   const auto colon = input.board.find(':');
   const std::string kind = colon == std::string::npos ? "" : input.board.substr(0, colon);
-  const auto [columns, rows] = parse_size(input.board.substr(colon + 1), "--board");
+  const auto [columns, rows] = parse_grid(input.board.substr(colon + 1), "--board");
+  if (kind != "charuco") refuse(input, of_charuco, "only a charuco board has it");
+  if (kind != "apriltag") {
+    refuse(input, of_tags, "only a grid of AprilTags has it");
+    refuse(input, of_tags_found, "only a grid of AprilTags has it");
+  }
   if (kind.empty()) return Chessboard{columns, rows, length(input, input.square_m, "--square-m")};
   if (kind == "charuco") {
     return CharucoBoard{columns,
@@ -111,6 +184,7 @@ BoardTarget target_of(const BoardInput& input) {
                         input.legacy};
   }
   if (kind == "apriltag") {
+    refuse(input, std::array{"--square-m"}, "a grid of AprilTags has no squares, but --tag-m");
     AprilTagGrid grid{columns, rows, length(input, input.tag_m, "--tag-m"), input.tag_spacing};
     add_tag_options(input, grid);
     return grid;
@@ -126,17 +200,9 @@ BoardObservations load(const BoardInput& input, Session& session) {
     throw Error(input.verb, "give exactly one kind of input",
                 "images (--left, --right, --camera), or --corners, or --observations");
   }
-  if (!input.observations.empty()) return read_observations(input.observations, size_of(input));
-  if (!input.corners.empty()) {
-    BoardObservations observations = read_corners(input.corners, target_of(input), size_of(input));
-    if (const int coarse = count_coarse_corners(input.corners)) {
-      session.warn(
-          fmt::format("{}: {} corners of level above 0 (found in a reduced image) weigh as "
-                      "much as the others",
-                      input.corners, coarse));
-    }
-    return observations;
-  }
+  if (!input.observations.empty()) return from_observations(input);
+  if (!input.corners.empty()) return from_corners(input, session);
+  refuse(input, std::array{"--size"}, "the images say how large they are");
   ImageDetections found = detect_images(image_patterns(input), target_of(input));
   for (const BoardDetection& image : found.refused) {
     session.warn(image.image.string() + ": " + image.reason);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace vernier::cli {
 /// or an observations file. The verbs that calibrate share it.
 struct BoardInput {
   std::string verb;                  ///< for messages
+  const CLI::App* app = nullptr;     ///< the verb, to tell what the command line gave
   std::string left, right;           ///< patterns of images; left alone is one camera
   std::vector<std::string> cameras;  ///< instead, a pattern a camera
   std::string corners, observations, size;
@@ -31,14 +33,25 @@ void add_image_options(CLI::App* verb, BoardInput& input);
 /// Adds all options that say where corners come from. `input` must outlive the parsing.
 void add_board_options(CLI::App* verb, BoardInput& input);
 
+/// The names of all these.
+inline constexpr std::array board_options{
+    "--left",         "--right",    "--camera",      "--board",         "--target",
+    "--square-m",     "--marker-m", "--dictionary",  "--legacy",        "--tag-m",
+    "--tag-spacing",  "--family",   "--border-bits", "--top-row-first", "--corners",
+    "--observations", "--size"};
+
 /// The patterns of the cameras' images, first camera first. Throws Error where they are said twice
 /// or not at all.
 std::vector<std::string> image_patterns(const BoardInput& input);
 
-/// The board. Throws Error where it is not given in full.
+/// The files that the input is read from, the images among them.
+std::vector<std::filesystem::path> files_named(const BoardInput& input);
+
+/// The board. Throws Error where it is not given in full, or more is given than it has.
 BoardTarget target_of(const BoardInput& input);
 
-/// Reads or detects the corners; images without a board are warned of.
+/// Reads or detects the corners; images without a board are warned of. Throws Error for options
+/// that this kind of input has no use for.
 BoardObservations load(const BoardInput& input, Session& session);
 
 }  // namespace vernier::cli

@@ -8,6 +8,7 @@
 #include "cli/rig_table.h"
 #include "cli/session.h"
 #include "cli/solver_input.h"
+#include "cli/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
@@ -58,6 +59,8 @@ void judge(const RigEstimate& estimate, Session& session) {
 }
 
 void run(const Options& options, Session& session) {
+  spare_inputs(files_named(options.board), options.output);
+  spare_inputs({options.solver.prior}, options.output);
   const CalibrationOptions calibration = calibration_options(options.solver, session);
   RigEstimate estimate = calibrate(load(options.board, session), calibration);
   ModelComparison comparison;

@@ -5,8 +5,10 @@
 #include "calib/model_nesting.h"
 #include "calib/rig_file.h"
 #include "cli/board_input.h"
+#include "cli/check_file.h"
 #include "cli/check_left_out.h"
 #include "cli/check_mrcal.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/solver_input.h"
@@ -23,56 +25,93 @@ struct Options {
   int splits = 100, training_frames = 0;
 };
 
+/// Options that nothing would come of.
+void refuse_idle_options(const Options& options) {
+  const CLI::App& app = *options.board.app;
+  if (!options.rig.empty()) {
+    const std::string remedy = "leave it out, or give the corners instead of the rig file";
+    refuse_options(app, board_options, "the rig file holds the corners", remedy);
+    refuse_options(app, solver_options, "the rig file says how it was solved", remedy);
+  }
+  if (!options.holdout) {
+    refuse_options(app, std::array{"--splits", "--training-frames"}, "it is of --holdout",
+                   "add --holdout or leave it out");
+  }
+}
+
+/// Before anything is solved: boards left out need a pair and some frames.
+void check_holdout(const Options& options, const BoardObservations& observations) {
+  constexpr int fewest_frames = 6, fewest_to_calibrate = 3;
+  if (!options.holdout) return;
+  const auto frames = static_cast<int>(frames_of(observations).size());
+  if (observations.size_px.size() < 2 || frames < fewest_frames) {
+    throw Error("--holdout",
+                fmt::format("needs a pair of cameras and at least six frames; here are {} of the "
+                            "one and {} of the other",
+                            observations.size_px.size(), frames),
+                "give more views, or leave it out");
+  }
+  const int training = options.training_frames;
+  if (training != 0 && (training < fewest_to_calibrate || training >= frames)) {
+    throw Error("--training-frames", fmt::format("{} of {} frames", training, frames),
+                "give at least 3, and fewer than there are");
+  }
+}
+
+/// A calibration to check: how it was solved, and its answer.
+struct Solved {
+  CalibrationOptions how;
+  RigEstimate estimate;
+  std::optional<RigEstimate> stated;  ///< what the rig file says
+};
+
 /// The calibration that a rig file's evidence is of, solved again from its corners.
-RigEstimate solve_again(const Options& options, CalibrationOptions& how, Session& session) {
+Solved solve_again(const Options& options, Session& session) {
   RigFile file = read_rig(find_rig(options.rig));
   for (const std::string& warning : file.warnings) session.warn(warning);
-  const RigEstimate& estimate = file.estimate;
-  if (!estimate.evidence || !estimate.calibration) {
+  if (!file.estimate.evidence || !file.estimate.calibration) {
     throw Error(options.rig, "it holds no evidence to solve again",
                 "calibrate without --no-evidence, or give the corners");
   }
-  how.models = models_of(estimate.rig);
-  how.pixel_sigma_px = estimate.calibration->pixel_sigma_px;
-  how.reject_outliers = false;  // they are not in the evidence
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  const Eigen::VectorXd values = parameters(estimate.rig);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& held = estimate.calibration->held;
-    if (std::find(held.begin(), held.end(), names[i]) == held.end()) continue;
-    how.held.push_back({names[i], values[static_cast<Eigen::Index>(i)]});
-  }
-  if (!estimate.evidence->warp_m.isZero(0)) how.warp = BoardWarp::free;
-  if (estimate.calibration->prior_dof > 0) {
-    session.warn("the calibration had a prior, which its file does not hold: checked without it");
-  }
-  return calibrate(estimate.evidence->observations, how);
+  Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
+  solved.how.check_input = true;
+  const BoardObservations& observations = solved.stated->evidence->observations;
+  check_holdout(options, observations);
+  solved.estimate = calibrate(observations, solved.how);
+  return solved;
 }
 
-CheckedProblem checked_problem(const Options& options, CalibrationOptions& how, Session& session) {
-  RigEstimate estimate;
-  if (!options.rig.empty()) {
-    estimate = solve_again(options, how, session);
-  } else {
-    how = calibration_options(options.solver, session);
-    estimate = calibrate(load(options.board, session), how);
-  }
+Solved solve(const Options& options, Session& session) {
+  refuse_idle_options(options);
+  if (!options.rig.empty()) return solve_again(options, session);
+  Solved solved{calibration_options(options.solver, session), {}, {}};
+  BoardObservations observations = load(options.board, session);
+  check_holdout(options, observations);
+  solved.estimate = calibrate(std::move(observations), solved.how);
+  return solved;
+}
+
+CheckedProblem problem_to_check(const Solved& solved) {
+  const RigEstimate& estimate = solved.estimate;
   const CalibrationEvidence& evidence = *estimate.evidence;
   CheckedProblem p;
-  p.problem = problem_of(how, estimate.rig);
+  p.problem = problem_of(solved.how, estimate.rig);
   p.problem.pixel_sigma_px = estimate.calibration->pixel_sigma_px;
   p.state = {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   p.start = initial_state(evidence.observations, models_of(estimate.rig));
-  p.start.rig = with_held_values(p.start.rig, how.held);
-  if (how.warp == BoardWarp::known) p.start.warp_m = evidence.warp_m;
+  p.start.rig = with_held_values(p.start.rig, solved.how.held);
+  if (solved.how.warp == BoardWarp::known) p.start.warp_m = evidence.warp_m;
+  for (std::size_t i = 0; solved.stated && i < p.state.rig.cameras.size(); ++i) {
+    p.state.rig.cameras[i].name = p.start.rig.cameras[i].name = solved.stated->rig.cameras[i].name;
+  }
   p.observations = evidence.observations;
   p.bound = *estimate.covariance_mvb;
   return p;
 }
 
 void run(const Options& options, Session& session) {
-  CalibrationOptions how;
-  const CheckedProblem problem = checked_problem(options, how, session);
+  const Solved solved = solve(options, session);
+  const CheckedProblem problem = problem_to_check(solved);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
             {"cameras", problem.state.rig.cameras.size()},
             {"frames", problem.state.frames.size()},
@@ -88,6 +127,7 @@ void run(const Options& options, Session& session) {
     }
     for (const std::string& failure : part.failures) session.doubt(failure);
   };
+  if (solved.stated) add("file", check_file(*solved.stated, solved.estimate));
   if (options.no_mrcal) {
     add("mrcal", {nullptr, "mrcal was left out", "--no-mrcal", {}});
   } else {
@@ -95,6 +135,7 @@ void run(const Options& options, Session& session) {
   }
   add("monte_carlo", check_by_noisy_copies(problem, options.copies));
   if (options.holdout) {
+    CalibrationOptions how = solved.how;
     how.reject_outliers = false;  // they are out already
     how.check_input = false;      // and so is what does not fit
     add("holdout", check_boards_left_out(problem.observations,
@@ -121,7 +162,9 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_option("--trials", o->copies.trials, "noisy copies to solve")
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str();
-  verb->add_option("--seed", o->copies.seed, "of the copies' noise")->capture_default_str();
+  verb->add_option("--seed", o->copies.seed, "of the copies' noise")
+      ->check(not_negative)
+      ->capture_default_str();
   verb->add_option("--threads", o->copies.threads, "0: all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
   verb->add_flag("--no-mrcal", o->no_mrcal, "leave mrcal out");

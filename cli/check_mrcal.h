@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "calib/minimise_reprojection.h"
 #include "calib/refined_minimum.h"
-#include "cli/session.h"
+#include "cli/check_part.h"
 
 namespace vernier::cli {
 
@@ -18,14 +15,6 @@ struct CheckedProblem {
   BoardState state;                ///< what was calibrated
   ReprojectionProblem problem;     ///< held parameters, priors, warp, σ
   Eigen::MatrixXd bound;           ///< its minimum variance bound, full size
-};
-
-/// One part of `vernier check`.
-struct CheckPart {
-  Json json;                          ///< null where it could not be done
-  std::string text;                   ///< its table, or the line that says why there is none
-  std::string reason;                 ///< why there is none, else empty
-  std::vector<std::string> failures;  ///< gates that do not hold
 };
 
 /// The same problem by mrcal: its parameters, covariance, projection and triangulation uncertainty

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include <set>
 #include <sstream>
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "cli/convert_formats.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
@@ -45,20 +47,31 @@ RigFormat format_of(const std::vector<std::filesystem::path>& inputs, const std:
   return format;
 }
 
-void rename(Rig& rig, const std::string& list) {
+/// "left,right".
+void rename(RigEstimate& estimate, const std::string& list) {
   if (list.empty()) return;
   std::vector<std::string> names;
   std::istringstream in(list);
   for (std::string name; std::getline(in, name, ',');) names.push_back(name);
-  if (names.size() != rig.cameras.size()) {
-    throw Error("--names", fmt::format("{} names for {} cameras", names.size(), rig.cameras.size()),
-                "give one a camera, separated by commas");
+  try {
+    rename_cameras(estimate, names);
+  } catch (const Error& error) {
+    throw Error("--names " + list, error.what(), "separate them by commas");
   }
-  const std::set<std::string> different(names.begin(), names.end());
-  if (different.size() != names.size() || different.count("")) {
-    throw Error("--names", "two cameras have one name, or one has none", "name each its own");
+}
+
+/// The inputs and what lies beside them and is read with them (COLMAP's files).
+std::vector<std::filesystem::path> files_read(RigFormat from,
+                                              std::vector<std::filesystem::path> inputs) {
+  if (from == RigFormat::vernier) inputs[0] = find_rig(inputs[0].string());
+  if (from != RigFormat::colmap) return inputs;
+  const bool folder = std::filesystem::is_directory(inputs[0]);
+  const std::filesystem::path beside = folder ? inputs[0] : inputs[0].parent_path();
+  inputs.clear();
+  for (const char* name : {"cameras.txt", "images.txt", "rigs.txt", "rig_config.json"}) {
+    inputs.push_back(beside / name);
   }
-  for (std::size_t i = 0; i < names.size(); ++i) rig.cameras[i].name = names[i];
+  return inputs;
 }
 
 /// Options that say what the input itself says.
@@ -126,9 +139,10 @@ void run(const Options& options, Session& session) {
       options.to.empty() ? output_format(options.output) : rig_format(options.to, "--to");
   check_options(options, from);
   ReadRig read = read_rig_as(from, inputs, import_options(options));
-  Rig& rig = read.estimate.rig;
-  rename(rig, options.names);
+  rename(read.estimate, options.names);
+  const Rig& rig = read.estimate.rig;
   const auto files = files_of(to, read.estimate, options.output);
+  for (const auto& [file, content] : files) spare_inputs(files_read(from, inputs), file);
   if (to == RigFormat::colmap) spare_reconstruction(files);
   write_all(files, options.output);
   const std::vector<std::string> losses = lost(to, read.estimate);
@@ -181,7 +195,7 @@ void add_convert(CLI::App& app, Session& session) {
   verb->add_option("--names", o->names, "of the cameras, like left,right");
   verb->add_option("--size", o->size, "of the images, like 640x480, where an OpenCV file lacks it");
   verb->add_option("--unit-m", o->unit_m, "the input's unit of length in metres (0.001: mm)")
-      ->check(CLI::PositiveNumber)
+      ->check(finite_and_positive)
       ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

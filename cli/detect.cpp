@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/board_input.h"
+#include "cli/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
@@ -31,6 +32,8 @@ BoardTarget shape_of(BoardInput input) {
 
 void run(const Options& options, Session& session) {
   const BoardTarget target = shape_of(options.input);
+  check_target(target);
+  spare_inputs(files_named(options.input), options.output);
   const ImageDetections found = detect_images(image_patterns(options.input), target);
   write_corners(found, target, options.output);
   Json used = Json::array(), refused = Json::array();

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +8,7 @@
 #include "calib/projection_difference.h"
 #include "calib/rig_difference.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 
@@ -32,22 +32,6 @@ struct Comparison {
   int shared_views = 0;
   std::vector<std::string> warnings;
 };
-
-std::vector<double> parse_distances(const std::string& text) {
-  std::vector<double> distances;
-  const char *at = text.data(), *end = at + text.size();
-  while (true) {
-    double value = 0;
-    const auto parsed = std::from_chars(at, end, value);  // reads inf too
-    if (parsed.ec != std::errc() || !(value > 0) || (parsed.ptr != end && *parsed.ptr != ',')) {
-      throw Error("--distances-m", "\"" + text + "\" is not a list of distances above 0",
-                  "separate metres by commas, such as 1,5,inf");
-    }
-    distances.push_back(value);
-    if (parsed.ptr == end) return distances;
-    at = parsed.ptr + 1;
-  }
-}
 
 RigEstimate load(const std::string& name, Comparison& found) {
   RigFile file = read_rig(find_rig(name));
@@ -100,13 +84,13 @@ Comparison compare(const Options& options) {
     found.parameters =
         rig_difference(found.a.rig, *found.covariance_a, found.b.rig, *found.covariance_b);
   }
-  const auto [columns, rows] = parse_size(options.grid, "--grid");
-  found.projection = projection_difference(found.a.rig, found.b.rig,
-                                           {.distances_m = parse_distances(options.distances),
-                                            .grid = {columns, rows},
-                                            .focus_share = options.focus_share},
-                                           both ? &*found.covariance_a : nullptr,
-                                           both ? &*found.covariance_b : nullptr);
+  const auto [columns, rows] = parse_grid(options.grid, "--grid");
+  found.projection = projection_difference(
+      found.a.rig, found.b.rig,
+      {.distances_m = parse_distances(options.distances, "--distances-m"),
+       .grid = {columns, rows},
+       .focus_share = options.focus_share},
+      both ? &*found.covariance_a : nullptr, both ? &*found.covariance_b : nullptr);
   judge(options, found);
   return found;
 }
@@ -273,6 +257,7 @@ void add_diff(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--focus", o->focus_share,
                    "fit the alignment within this share of half the image's diagonal")
+      ->check(finite_and_positive)
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
   verb->add_option("--covariance", o->covariance,

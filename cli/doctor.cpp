@@ -26,9 +26,9 @@ struct Finding {
   bool found = true;
 };
 
-Finding file_finding(const std::string& what, const fs::path& path, const std::string& remedy) {
-  const bool there = fs::exists(path);
-  return {what, there ? "found" : "missing: " + remedy, there};
+Finding shipped_finding(const std::string& what, const fs::path& name) {
+  const bool there = !shipped_file(name).empty();
+  return {what, there ? "found" : "missing: install again", there};
 }
 
 /// The sample images where Debian installs them, or unpacked below the current folder.
@@ -51,18 +51,34 @@ Finding library_finding() {
           there};
 }
 
-Finding python_finding(const fs::path& share) {
-  const std::string version = mrcal_python_version(share / "python" / "mrcal_uncertainty.py");
+Finding python_finding() {
+  const fs::path script = shipped_script("mrcal_uncertainty.py");
+  if (script.is_relative()) {
+    return {"mrcal, Python", "missing: share/vernier/python/" + script.string() + "; install again",
+            false};
+  }
+  const std::string version = mrcal_python_version(script);
   return {"mrcal, Python",
           version.empty() ? "missing: install Debian's python3-mrcal, for vernier check" : version,
           !version.empty()};
 }
 
+Finding share_finding() {
+  const std::vector<fs::path> folders = share_folders();
+  if (folders.empty()) return {"shipped data", "missing: set VERNIER_SHARE", false};
+  std::string names;
+  for (const fs::path& folder : folders) {
+    names += (names.empty() ? "" : ", then ") + folder.lexically_normal().string();
+  }
+  return {"shipped data", names};
+}
+
 std::vector<Finding> findings() {
-  const fs::path share = share_folder();
   const char* data = std::getenv("VERNIER_DATA");
-  const bool plotly = fs::exists(share / "page" / "plotly-cartesian.min.js") ||
-                      fs::exists(share / "page" / "node_modules" / "plotly.js-cartesian-dist-min");
+  const bool plotly =
+      !shipped_file("page/plotly-cartesian.min.js").empty() ||
+      !shipped_file("page/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js")
+           .empty();
   return {
       {"vernier", VERNIER_VERSION},
       {"compiler", __VERSION__},
@@ -74,16 +90,14 @@ std::vector<Finding> findings() {
       {"OpenCV", CV_VERSION},
       {"oneTBB", fmt::format("{}.{}", TBB_VERSION_MAJOR, TBB_VERSION_MINOR)},
       {"SQLite", sqlite3_libversion()},
-      {"shipped data",
-       share.empty() ? "missing: set VERNIER_SHARE" : share.lexically_normal().string(),
-       !share.empty()},
-      file_finding("world workshop", share / "worlds" / "workshop.world.toml", "install again"),
-      file_finding("rig nominal", share / "rigs" / "nominal.rig.json", "install again"),
-      file_finding("report page", share / "page" / "report.html", "install again"),
+      share_finding(),
+      shipped_finding("world workshop", "worlds/workshop.world.toml"),
+      shipped_finding("rig nominal", "rigs/nominal.rig.json"),
+      shipped_finding("report page", "page/report.html"),
       {"report plots (plotly)",
        plotly ? "found" : "missing: run npm ci in cli/page; pages hold tables only", plotly},
       library_finding(),
-      python_finding(share),
+      python_finding(),
       image_finding(),
       {"VERNIER_DATA",
        data ? (fs::is_directory(data) ? "found" : "names no folder")

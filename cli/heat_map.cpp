@@ -45,8 +45,9 @@ std::string escaped(const std::string& words) {
   return out;
 }
 
-/// 1, 2 or 5 times a power of ten, about a fifth of the extent.
+/// 1, 2 or 5 times a power of ten, about a fifth of the extent; 1 where there is none.
 double nice_step(double extent) {
+  if (!(extent > 0)) return 1;
   const double rough = extent / 5, power = std::pow(10, std::floor(std::log10(rough)));
   const double digit = rough / power;
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
@@ -103,7 +104,9 @@ std::string axes(const HeatMap& map, double height) {
   // A cell's middle is its pixel, so the outer pixels stand half a cell inside the frame.
   const auto place = [](const std::vector<double>& at, double value, double start, double length) {
     const double cell = length / at.size();
-    return start + cell / 2 + (length - cell) * (value - at.front()) / (at.back() - at.front());
+    const double extent = at.back() - at.front();
+    const double share = extent > 0 ? (value - at.front()) / extent : 0.5;
+    return start + cell / 2 + (length - cell) * share;
   };
   const double x_step = nice_step(map.x_px.back() - map.x_px.front());
   for (double x = 0; x <= map.x_px.back(); x += x_step) {

@@ -7,7 +7,9 @@
 #include "cli/report_data.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
 #include "localise/bhattacharyya.h"
+#include "sim/study_store.h"
 
 namespace vernier::cli {
 namespace {
@@ -62,6 +64,19 @@ struct NamedRig {
   RigEstimate estimate;
 };
 
+/// Every file that the page is made from.
+std::vector<fs::path> files_read(const Inputs& inputs) {
+  std::vector<fs::path> files;
+  if (!inputs.study.empty()) {
+    files = store_files(inputs.study);
+    for (const char* name : {"study.toml", "world.world.toml", "rig.json"}) {
+      files.push_back(fs::path(inputs.study) / name);
+    }
+  }
+  for (const std::string& rig : inputs.rigs) files.push_back(find_rig(rig));
+  return files;
+}
+
 /// All of them before any work is done, so that a bad file is told of at once.
 std::vector<NamedRig> read_rigs(const std::vector<std::string>& names, Session& session) {
   std::vector<NamedRig> rigs;
@@ -101,13 +116,14 @@ std::string command_of(const Inputs& inputs) {
 }
 
 void run(const Options& options, Session& session) {
-  const fs::path page_folder = share_folder() / "page";
-  if (!fs::is_regular_file(page_folder / "report.html")) {
+  const fs::path page_folder = shipped_file("page/report.html").parent_path();
+  if (page_folder.empty()) {
     throw Error("report", "the page's files are not installed beside the program",
                 "set VERNIER_SHARE to the folder share/vernier of an installation");
   }
   const Inputs inputs = inputs_of(options);
   const std::vector<NamedRig> rigs = read_rigs(inputs.rigs, session);
+  spare_inputs(files_read(inputs), options.output);
   const Proof proof = options.no_proof ? Proof::skip : Proof::make;
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},

@@ -162,7 +162,8 @@ Json report_view(const Study& study) {
 
 std::string assemble_page(const fs::path& folder, const Json& data) {
   std::string json;
-  for (const char c : data.dump()) {  // no "<" may end or open anything in the page
+  // a file name may hold any bytes, and no "<" may end or open anything in the page
+  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {
       json += "\\u003c";
     } else {

@@ -6,7 +6,7 @@
 #include "calib/error.h"
 #include "calib/left_out_boards.h"
 #include "calib/model_comparison.h"
-#include "calib/model_nesting.h"
+#include "cli/check_file.h"
 #include "cli/check_left_out.h"
 #include "cli/report_calibration.h"
 
@@ -15,28 +15,6 @@ namespace {
 
 constexpr int most_frames = 60;  // evenly spaced ones stand for more
 constexpr int splits = 30;
-
-/// The options that `estimate` was calibrated with, as far as its file tells; without priors, which
-/// it does not hold. Its outliers are out already.
-CalibrationOptions options_of(const RigEstimate& estimate) {
-  const CalibrationSummary& summary = *estimate.calibration;
-  CalibrationOptions options;
-  options.models = models_of(estimate.rig);
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  const Eigen::VectorXd values = parameters(estimate.rig);
-  for (const std::string& held : summary.held) {
-    const auto i = std::find(names.begin(), names.end(), held) - names.begin();
-    if (i < values.size()) options.held.push_back({held, values[i]});
-  }
-  // A noise estimated from the residuals makes χ² the degrees of freedom.
-  const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
-  options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
-  options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
-  options.reject_outliers = false;
-  options.check_input = false;
-  options.white_noise = estimate.covariance->kind == CovarianceKind::mvb;
-  return options;
-}
 
 Json models_json(const ModelComparison& comparison) {
   Json rows = Json::array();
@@ -130,14 +108,13 @@ Json report_proof(const RigEstimate& estimate, const std::string& file, const Se
         "knowledge that its rig file does not hold.");
     return json;
   }
-  const CalibrationOptions options = options_of(estimate);
   try {
-    add_models(estimate, options, json);
+    add_models(estimate, options_of_file(estimate), json);
   } catch (const Error& error) {
     note(fmt::format("Models were not compared: {}.", error.what()));
   }
   try {
-    add_left_out(estimate, options, file, session, json);
+    add_left_out(estimate, options_of_file(with_default_names(estimate)), file, session, json);
   } catch (const Error& error) {
     note(fmt::format("No boards were left out: {}.", error.what()));
   }

@@ -9,6 +9,7 @@
 #include "cli/rig_table.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
@@ -25,6 +26,7 @@ void run(const Options& options, Session& session) {
   const RigFile rig = read_rig(file);
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const RigSampler sampler(rig.estimate, file.string());
+  spare_inputs({file}, options.output);
 
   std::string csv;
   for (const std::string& name : rig.listed) csv += (csv.empty() ? "" : ",") + name;

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -94,6 +95,34 @@ std::pair<int, int> parse_size(const std::string& text, const std::string& optio
     throw Error(option, "\"" + text + "\" is not two whole numbers", "write it like 9x6");
   }
   return {a, b};
+}
+
+std::pair<int, int> parse_grid(const std::string& text, const std::string& option) {
+  constexpr int most = 1000;
+  const std::pair<int, int> size = parse_size(text, option);
+  if (size.first > most || size.second > most) {
+    throw Error(option, "\"" + text + "\" has more than 1000 on a side", "give fewer");
+  }
+  return size;
+}
+
+std::vector<double> parse_distances(const std::string& text, const std::string& option) {
+  std::vector<double> distances;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const char *word = text.data() + at, *end = text.data() + comma;
+    double value = 0;
+    const auto parsed = std::from_chars(word, end, value);  // reads inf too
+    if (parsed.ec != std::errc() || parsed.ptr != end || !(value > 0)) {
+      throw Error(option, "\"" + text + "\" is not a list of distances above 0",
+                  "separate metres by commas, such as 1,5,inf");
+    }
+    if (std::find(distances.begin(), distances.end(), value) == distances.end()) {
+      distances.push_back(value);
+    }
+    at = comma + 1;
+  }
+  return distances;
 }
 
 std::vector<double> parse_numbers(const std::string& text,

@@ -71,6 +71,12 @@ CLI::App* add_verb(CLI::App& app,
 /// "9x6" as two whole numbers. Throws Error naming the option.
 std::pair<int, int> parse_size(const std::string& text, const std::string& option);
 
+/// The same of a grid or a board: neither side above 1000.
+std::pair<int, int> parse_grid(const std::string& text, const std::string& option);
+
+/// "1,5,inf" as distances above 0, each once. Throws Error naming the option.
+std::vector<double> parse_distances(const std::string& text, const std::string& option);
+
 /// "10,7.5,0" as n numbers. Throws Error naming the option.
 std::vector<double> parse_numbers(const std::string& text,
                                   std::size_t n,

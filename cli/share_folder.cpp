@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/share_folder.h"
 
-#include <algorithm>
 #include <cstdlib>
-#include <vector>
+#include <set>
 
 #include "calib/error.h"
 
@@ -13,16 +12,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shipped_names(const fs::path& folder, const std::string& ending) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.size() > ending.size() && name.ends_with(ending)) {
-      names.push_back(name.substr(0, name.size() - ending.size()));
+std::string shipped_names(const std::string& kind, const std::string& ending) {
+  std::set<std::string> names;
+  for (const fs::path& share : share_folders()) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(share / (kind + "s"), ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (name.size() > ending.size() && name.ends_with(ending)) {
+        names.insert(name.substr(0, name.size() - ending.size()));
+      }
     }
   }
-  std::sort(names.begin(), names.end());
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list.empty() ? "none found" : list;
@@ -35,27 +35,44 @@ fs::path find(const std::string& name,
   std::vector<fs::path> tried;
   if (!beside.empty()) tried.push_back(beside / name);
   tried.emplace_back(name);
-  const fs::path folder = share_folder() / (kind + "s");
-  if (name.find('/') == std::string::npos) tried.push_back(folder / (name + ending));
+  if (name.find('/') == std::string::npos)
+    tried.push_back(shipped_file(kind + "s/" + name + ending));
   for (const fs::path& path : tried) {
     if (fs::is_regular_file(path)) return path;
   }
   throw Error(kind + " \"" + name + "\"", "there is no such file and no shipped one of this name",
-              "shipped: " + shipped_names(folder, ending));
+              "shipped: " + shipped_names(kind, ending));
 }
 
 }  // namespace
 
-fs::path share_folder() {
-  if (const char* folder = std::getenv("VERNIER_SHARE")) return folder;
+std::vector<fs::path> share_folders() {
+  std::vector<fs::path> candidates;
+  const char* named = std::getenv("VERNIER_SHARE");
+  if (named && *named) candidates.emplace_back(named);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  for (const fs::path& candidate : {program.parent_path() / "share" / "vernier",
-                                    program.parent_path() / ".." / "share" / "vernier"}) {
-    if (fs::is_directory(candidate)) return candidate;
+  if (!error) {
+    candidates.push_back(program.parent_path() / "share" / "vernier");
+    candidates.push_back(program.parent_path() / ".." / "share" / "vernier");
+  }
+  std::erase_if(candidates, [](const fs::path& folder) { return !fs::is_directory(folder); });
+  return candidates;
+}
+
+fs::path shipped_file(const fs::path& name) {
+  for (const fs::path& folder : share_folders()) {
+    if (fs::exists(folder / name)) return folder / name;
   }
   return {};
+}
+
+fs::path shipped_script(const std::string& name) {
+  for (const fs::path& folder : share_folders()) {
+    const fs::path script = folder / "python" / name;
+    if (script.is_absolute() && fs::is_regular_file(script)) return script;
+  }
+  return name;
 }
 
 fs::path find_world(const std::string& name, const fs::path& beside) {

@@ -4,6 +4,7 @@
 
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/sighting_json.h"
@@ -81,12 +82,16 @@ void add_simulate(CLI::App& app, Session& session) {
   verb->add_option("--world", o->world, "world file or shipped name")->capture_default_str();
   verb->add_option("--rig", o->rig, "rig file or shipped name")->capture_default_str();
   verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)")->required();
-  verb->add_option("--height-m", o->height_m, "of the camera")->capture_default_str();
-  verb->add_option("--pitch-deg", o->pitch_deg, "nose down")->capture_default_str();
+  verb->add_option("--height-m", o->height_m, "of the camera")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--pitch-deg", o->pitch_deg, "nose down")->check(finite)->capture_default_str();
   verb->add_option("--source", o->sources,
                    "a source's setting, such as edge_loss=0.2, or none (may be repeated)");
-  verb->add_option("--seed", o->seed, "of all draws")->capture_default_str();
-  verb->add_option("--trial", o->trial, "which draw under that seed")->capture_default_str();
+  verb->add_option("--seed", o->seed, "of all draws")->check(not_negative)->capture_default_str();
+  verb->add_option("--trial", o->trial, "which draw under that seed")
+      ->check(not_negative)
+      ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

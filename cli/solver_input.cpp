@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/solver_input.h"
 
+#include <cmath>
 #include <sstream>
 
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/option_checks.h"
 
 namespace vernier::cli {
 namespace {
@@ -17,8 +19,9 @@ double number(const std::string& text, const std::string& option) {
     value = std::stod(text, &used);
   } catch (const std::exception&) {
   }
-  if (used == 0 || used != text.size()) {
-    throw Error(option, fmt::format("\"{}\" is not a number", text), "write it like left.ax=1");
+  if (used == 0 || used != text.size() || !std::isfinite(value)) {
+    throw Error(option, fmt::format("\"{}\" is not a finite number", text),
+                "write it like left.ax=1");
   }
   return value;
 }
@@ -58,7 +61,7 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
       ->capture_default_str();
   verb->add_option("--pixel-sigma", input.pixel_sigma_px,
                    "noise of a pixel coordinate (else estimated from the residuals)")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_and_positive);
   verb->add_option("--hold", input.held,
                    "do not estimate this parameter: NAME keeps its start, NAME=VALUE (repeatable)")
       ->expected(1)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct SolverInput {
 
 /// `input` must outlive the parsing.
 void add_solver_options(CLI::App* verb, SolverInput& input);
+
+/// The names of all these.
+inline constexpr std::array solver_options{"--model", "--pixel-sigma", "--hold",         "--know",
+                                           "--prior", "--warp",        "--keep-outliers"};
 
 /// Throws Error naming the option that cannot be read.
 CalibrationOptions calibration_options(const SolverInput& input, Session& session);

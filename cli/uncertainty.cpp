@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
-#include <cmath>
-#include <limits>
-
 #include "calib/error.h"
 #include "calib/rig_file.h"
 #include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
 #include "cli/uncertainty_tables.h"
 
 namespace vernier::cli {
@@ -23,27 +20,6 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-/// "1,5,inf": distances above 0.
-std::vector<double> parse_distances(const std::string& text) {
-  const Error error("--distances-m", "\"" + text + "\" is not a list of distances above 0",
-                    "write it like 1,5,inf");
-  std::vector<double> distances;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    const std::string word = text.substr(at, comma - at);
-    at = comma + 1;
-    double value = std::numeric_limits<double>::infinity();
-    if (word != "inf") {
-      const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
-      const bool whole = parsed.ec == std::errc() && parsed.ptr == word.data() + word.size();
-      if (!whole || !std::isfinite(value) || !(value > 0)) throw error;
-    }
-    if (std::find(distances.begin(), distances.end(), value) != distances.end()) continue;
-    distances.push_back(value);
-  }
-  return distances;
-}
-
 /// The estimate with the wanted covariance as the one that is sampled.
 RigEstimate with_choice(RigEstimate estimate, const Options& options, const std::string& place) {
   if (options.covariance == "honest") return estimate;
@@ -54,8 +30,8 @@ RigEstimate with_choice(RigEstimate estimate, const Options& options, const std:
 
 UncertaintyRequest request_of(const Options& options, const RigEstimate& estimate) {
   UncertaintyRequest request;
-  request.distances_m = parse_distances(options.distances);
-  std::tie(request.columns, request.rows) = parse_size(options.grid, "--grid");
+  request.distances_m = parse_distances(options.distances, "--distances-m");
+  std::tie(request.columns, request.rows) = parse_grid(options.grid, "--grid");
   if (request.columns < 2 || request.rows < 2) {
     throw Error("--grid", "\"" + options.grid + "\" is smaller than 2x2", "write it like 60x45");
   }
@@ -72,6 +48,8 @@ void run(const Options& options, Session& session) {
   const RigFile rig = read_rig(file);
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const RigEstimate estimate = with_choice(rig.estimate, options, file.string());
+  if (!options.output.empty())
+    spare_inputs({file}, std::filesystem::path(options.output) / "uncertainty.json");
   UncertaintyReport report =
       uncertainty_report(estimate, request_of(options, estimate), file.string());
   if (options.pair_sigma_px < 0 && !estimate.calibration) {

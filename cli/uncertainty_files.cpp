@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "calib/atomic_file.h"
 #include "cli/heat_map.h"
@@ -28,12 +30,35 @@ class Folder {
   std::vector<std::string> names_;
 };
 
-/// A camera's name as part of a file's.
-std::string file_part(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(),
-      [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_' && c != '.'; }, '_');
-  return name;
+/// Cameras' names as parts of files', each another: foreign bytes are '_', and what is alike by
+/// that is numbered.
+class FileParts {
+ public:
+  const std::string& operator[](const std::string& camera) {
+    const auto [part, is_new] = parts_.try_emplace(camera);
+    if (!is_new) return part->second;
+    std::string plain = camera;
+    std::replace_if(
+        plain.begin(), plain.end(),
+        [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_' && c != '.'; }, '_');
+    part->second = plain;
+    for (int i = 2; !used_.insert(part->second).second; ++i) {
+      part->second = fmt::format("{}_{}", plain, i);
+    }
+    return part->second;
+  }
+
+ private:
+  std::map<std::string, std::string> parts_;
+  std::set<std::string> used_;
+};
+
+/// A text as a field of a CSV file (RFC 4180): in quotes where it has to be.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+  return field + "\"";
 }
 
 std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
@@ -45,7 +70,7 @@ std::string projection_csv(const UncertaintyReport& report) {
     for (const ProjectionFigure& f : r.figures) {
       if (!f.linear) continue;
       csv +=
-          fmt::format("{},{},{},{},{},{},{},{},{}\n", r.camera, fixed_to_label(r.fixed_to),
+          fmt::format("{},{},{},{},{},{},{},{},{}\n", quoted(r.camera), fixed_to_label(r.fixed_to),
                       r.fixed_to == PointFixedTo::camera ? "any" : cell(r.distance_m), f.place.name,
                       f.place.pixel_px.x(), f.place.pixel_px.y(), cell(worst_sd(*f.linear)),
                       cell(worst_sd(f.sampled.covariance)), f.sampled.non_physical_share);
@@ -63,7 +88,7 @@ std::string triangulation_csv(const UncertaintyReport& report) {
     const Eigen::Vector3d c = r.linear.calibration.diagonal().cwiseSqrt();
     const Eigen::Vector3d o = r.linear.observation.diagonal().cwiseSqrt();
     const auto& interval = r.sampled_total.depth_interval_95_m;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.camera,
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.camera),
                        frame_label(r.frame), r.distance_m, r.place.name, r.linear.x_m.x(),
                        r.linear.x_m.y(), r.linear.x_m.z(), c.x(), c.y(), c.z(),
                        cell(std::sqrt(r.sampled.covariance(2, 2))), o.x(), o.y(), o.z(),
@@ -77,7 +102,7 @@ std::string disparity_csv(const UncertaintyReport& report) {
       "camera,distance_m,where,u_px,v_px,sd_linear_px,sd_sampled_px,non_physical_share\n";
   for (const DisparityReport& r : report.vertical_disparity) {
     for (const DisparityFigure& f : r.figures) {
-      csv += fmt::format("{},{},{},{},{},{},{},{}\n", r.camera, r.distance_m, f.place.name,
+      csv += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(r.camera), r.distance_m, f.place.name,
                          f.place.pixel_px.x(), f.place.pixel_px.y(), f.linear_sd_px,
                          cell(f.sampled.sd_px), f.sampled.non_physical_share);
     }
@@ -90,7 +115,7 @@ std::string depth_csv(const UncertaintyReport& report) {
       "camera,range_m,sd_linear_m,sd_sampled_m,low_95_m,high_95_m,non_physical_share\n";
   for (const DepthReport& r : report.depth) {
     for (const DepthUncertainty& u : r.ranges) {
-      csv += fmt::format("{},{},{},{},{},{},{}\n", r.camera, u.range_m, u.sigma_linear_m,
+      csv += fmt::format("{},{},{},{},{},{},{}\n", quoted(r.camera), u.range_m, u.sigma_linear_m,
                          u.sigma_sampled_m, u.interval_95_m[0], u.interval_95_m[1],
                          u.non_physical_share);
     }
@@ -98,10 +123,10 @@ std::string depth_csv(const UncertaintyReport& report) {
   return csv;
 }
 
-void write_projection_map(const ProjectionReport& r, Folder& folder) {
+void write_projection_map(const ProjectionReport& r, FileParts& parts, Folder& folder) {
   const bool any = r.fixed_to == PointFixedTo::camera;
   const std::string name = fmt::format(
-      "projection_{}_{}{}", file_part(r.camera), any ? "any" : distance_label(r.distance_m),
+      "projection_{}_{}{}", parts[r.camera], any ? "any" : distance_label(r.distance_m),
       r.fixed_to == PointFixedTo::boards ? "" : fmt::format("_{}", fixed_to_label(r.fixed_to)));
   std::string csv = "u_px,v_px,sd_px,cov_uu_px2,cov_uv_px2,cov_vv_px2\n";
   HeatMap map{fmt::format("Projection uncertainty, {} camera, {}, point fixed to {}", r.camera,
@@ -126,9 +151,9 @@ void write_projection_map(const ProjectionReport& r, Folder& folder) {
   folder.write(name + ".svg", heat_map_svg(map));
 }
 
-void write_disparity_map(const DisparityReport& r, Folder& folder) {
+void write_disparity_map(const DisparityReport& r, FileParts& parts, Folder& folder) {
   const std::string name =
-      fmt::format("vertical_disparity_{}_{}", file_part(r.camera), distance_label(r.distance_m));
+      fmt::format("vertical_disparity_{}_{}", parts[r.camera], distance_label(r.distance_m));
   std::string csv = "u_px,v_px,sd_px\n";
   for (std::size_t i = 0; i < r.map.sd_px.size(); ++i) {
     csv += fmt::format("{},{},{}\n", r.map.x_px[i % r.map.columns], r.map.y_px[i / r.map.columns],
@@ -148,15 +173,18 @@ void write_disparity_map(const DisparityReport& r, Folder& folder) {
 std::vector<std::string> write_uncertainty(const UncertaintyReport& report,
                                            const std::filesystem::path& path) {
   Folder folder(path);
-  for (const ProjectionReport& r : report.projection) write_projection_map(r, folder);
-  for (const DisparityReport& r : report.vertical_disparity) write_disparity_map(r, folder);
+  FileParts parts;
+  for (const ProjectionReport& r : report.projection) write_projection_map(r, parts, folder);
+  for (const DisparityReport& r : report.vertical_disparity) write_disparity_map(r, parts, folder);
   folder.write("projection.csv", projection_csv(report));
   if (!report.triangulation.empty()) folder.write("triangulation.csv", triangulation_csv(report));
   if (!report.vertical_disparity.empty()) {
     folder.write("vertical_disparity.csv", disparity_csv(report));
   }
   if (!report.depth.empty()) folder.write("depth.csv", depth_csv(report));
-  folder.write("uncertainty.json", uncertainty_json(report, GridDetail::deviations).dump() + "\n");
+  folder.write("uncertainty.json", uncertainty_json(report, GridDetail::deviations)
+                                           .dump(-1, ' ', false, Json::error_handler_t::replace) +
+                                       "\n");
   return folder.names();
 }
 

@@ -3,6 +3,7 @@
 #include "sim/world.h"
 
 #include "calib/error.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "sim/office.h"
@@ -67,7 +68,9 @@ void add_world(CLI::App& app, Session& session) {
   auto o = std::make_shared<MakeOptions>();
   CLI::App* maker = add_verb(*verb, session, "make", "an office floor by seed",
                              "vernier world make --seed 7 --size-m 20,15,2.5 -o my.world.toml");
-  maker->add_option("--seed", o->seed, "of the arrangement")->capture_default_str();
+  maker->add_option("--seed", o->seed, "of the arrangement")
+      ->check(not_negative)
+      ->capture_default_str();
   maker->add_option("--size-m", o->size, "length, width, height")->capture_default_str();
   maker->add_option("--name", o->name, "name in the file");
   maker->add_option("-o,--output", o->output, "world file")->required();

@@ -11,7 +11,8 @@ include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(
   Mrcal
   REQUIRED_VARS Mrcal_LIBRARY Mrcal_INCLUDE_DIR Mrcal_CHOLMOD_INCLUDE_DIR
-  VERSION_VAR Mrcal_VERSION)
+  VERSION_VAR Mrcal_VERSION
+  HANDLE_VERSION_RANGE)
 if(Mrcal_FOUND AND NOT TARGET Mrcal::mrcal)
   add_library(Mrcal::mrcal UNKNOWN IMPORTED)
   set_target_properties(

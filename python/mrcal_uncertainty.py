@@ -18,6 +18,7 @@ covariance of the smaller problem, or that of the same problem with fewer digits
 Exit codes: 0 done, 1 mrcal failed, 4 Python has no mrcal.
 """
 import json
+import math
 import re
 import sys
 
@@ -131,6 +132,15 @@ def triangulations(problem, models):
     return answers
 
 
+def numbers_or_null(answer):
+    """JSON has no NaN and no infinity: null stands for them."""
+    if isinstance(answer, dict):
+        return {key: numbers_or_null(value) for key, value in answer.items()}
+    if isinstance(answer, list):
+        return [numbers_or_null(value) for value in answer]
+    return answer if not isinstance(answer, float) or math.isfinite(answer) else None
+
+
 def main():
     if sys.argv[1:] == ['--version']:
         print(version())
@@ -147,7 +157,7 @@ def main():
     answer = dict(version=version(), projection=projections(problem, models),
                   triangulation=triangulations(problem, models))
     with open(sys.argv[2], 'w') as file:
-        json.dump(answer, file)
+        json.dump(numbers_or_null(answer), file, allow_nan=False)
 
 
 if __name__ == '__main__':

@@ -34,11 +34,10 @@ CovarianceDifference normalised_difference(const Eigen::MatrixXd& A, const Eigen
   CovarianceDifference worst;
   for (Eigen::Index i = 0; i < B.rows(); ++i) {
     for (Eigen::Index j = 0; j < B.cols(); ++j) {
-      const double scale = std::sqrt(B(i, i) * B(j, j));
-      if (!(scale > 0)) continue;
-      const double difference = std::abs(A(i, j) - B(i, j)) / scale;
-      if (!(difference <= worst.largest)) {  // not a number is the worst of all
-        worst = {difference, static_cast<int>(i), static_cast<int>(j)};
+      const double apart = std::abs(A(i, j) - B(i, j)), scale = std::sqrt(B(i, i) * B(j, j));
+      if (scale == 0 && !std::isnan(apart)) continue;
+      if (is_worse(apart / scale, worst.largest)) {
+        worst = {apart / scale, static_cast<int>(i), static_cast<int>(j)};
       }
     }
   }
@@ -54,9 +53,9 @@ MrcalComparison compare(const RefinedMinimum& ours,
   const Eigen::VectorXd sigma = pixel_sigma_px * mrcals.unit_covariance.diagonal().cwiseSqrt();
   MrcalComparison result;
   for (Eigen::Index i = 0; i < sigma.size(); ++i) {
-    if (!(sigma[i] > 0)) continue;
+    if (sigma[i] == 0 && !std::isnan(difference[i])) continue;
     const double in_sigma = std::abs(difference[i]) / sigma[i];
-    if (!(in_sigma <= result.max_parameter_diff_sigma)) {
+    if (is_worse(in_sigma, result.max_parameter_diff_sigma)) {
       result.max_parameter_diff_sigma = in_sigma;
       result.worst_parameter = names[i];
     }

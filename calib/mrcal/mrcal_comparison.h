@@ -3,12 +3,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 
 #include "calib/mrcal/mrcal_solver.h"
 #include "calib/refined_minimum.h"
 
 namespace vernier {
+
+/// Whether a difference is worse than the worst so far: one that is not a number is the worst of
+/// all, and stays.
+inline bool is_worse(double difference, double worst) {
+  return !std::isnan(worst) && !(difference <= worst);
+}
+inline double worse(double a, double b) { return is_worse(a, b) ? a : b; }
 
 /// How far two solutions of one problem are apart, in mrcal's parameters.
 struct MrcalComparison {
@@ -48,6 +56,7 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
                                const std::vector<bool>& held = {});
 
 /// max |A_ij − B_ij| / √(B_ii B_jj) over the rows whose B_ii is not zero; the two rows where it is.
+/// Not a number where an entry of either is none.
 struct CovarianceDifference {
   double largest = 0;
   int row = 0, column = 0;

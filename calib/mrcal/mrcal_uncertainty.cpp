@@ -3,6 +3,7 @@
 #include "calib/mrcal/mrcal_uncertainty.h"
 
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "calib/error.h"
@@ -109,11 +110,16 @@ Json problem_json(const MrcalUncertaintyProblem& problem) {
   return json;
 }
 
+/// The script writes null for what is not a number.
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
 template <int N>
 Eigen::Matrix<double, N, N> square(const Json& json) {
   Eigen::Matrix<double, N, N> M;
   for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) M(i, j) = json.at(i).at(j).get<double>();
+    for (int j = 0; j < N; ++j) M(i, j) = number(json.at(i).at(j));
   }
   return M;
 }
@@ -127,23 +133,54 @@ MrcalUncertaintyAnswer answer_of(const Json& json) {
   }
   for (const Json& query : json.at("triangulation")) {
     MrcalTriangulationAnswer& to = answer.triangulation.emplace_back();
-    for (const Json& p : query.at("points")) to.points_m.emplace_back(p[0], p[1], p[2]);
+    for (const Json& p : query.at("points")) {
+      to.points_m.emplace_back(number(p.at(0)), number(p.at(1)), number(p.at(2)));
+    }
     for (const Json& matrix : query.at("calibration")) to.calibration.push_back(square<3>(matrix));
     for (const Json& matrix : query.at("observation")) to.observation.push_back(square<3>(matrix));
   }
   return answer;
 }
 
-/// Runs the script by the first Python that has mrcal. Exit code -1 or no_mrcal where none has.
+/// Whether every query has an answer of its size.
+bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProblem& problem) {
+  bool all = answer.projection.size() == problem.projection.size() &&
+             answer.triangulation.size() == problem.triangulation.size();
+  for (std::size_t q = 0; all && q < answer.projection.size(); ++q) {
+    all = answer.projection[q].size() == problem.projection[q].points.size();
+  }
+  for (std::size_t q = 0; all && q < answer.triangulation.size(); ++q) {
+    const std::size_t pairs = problem.triangulation[q].pairs.size();
+    all = answer.triangulation[q].calibration.size() == pairs &&
+          answer.triangulation[q].observation.size() == pairs;
+  }
+  return all;
+}
+
+MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertaintyProblem& problem) {
+  const Error broken("mrcal", "its Python's answer is not what was asked for", "leave mrcal out");
+  try {
+    std::ifstream in(reply);
+    MrcalUncertaintyAnswer answer = answer_of(Json::parse(in));
+    if (complete(answer, problem)) return answer;
+  } catch (const Json::exception&) {
+    throw broken;
+  }
+  throw broken;
+}
+
+/// Runs the script by the first Python that has mrcal. Where none has, what the first one said that
+/// could be run, with exit code no_mrcal; -1 where none can be run.
 ProgramRun run_script(const fs::path& script, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"", script.string()});
-  ProgramRun run;
+  ProgramRun answer;
   for (const char* python : {"/usr/bin/python3", "python3"}) {
     arguments[0] = python;
-    run = run_program(arguments);
+    ProgramRun run = run_program(arguments);
     if (run.exit_code != -1 && run.exit_code != no_mrcal) return run;
+    if (answer.exit_code == -1) answer = std::move(run);
   }
-  return run;
+  return answer;
 }
 
 std::string last_line(const std::string& text) {
@@ -156,19 +193,22 @@ std::string last_line(const std::string& text) {
 }  // namespace
 
 MrcalUncertaintyAnswer ask_mrcal(const fs::path& script, const MrcalUncertaintyProblem& problem) {
+  MrcalUncertaintyAnswer none;
+  if (!script.is_absolute() || !fs::is_regular_file(script)) {
+    none.absent = "the script " + script.string() + " is missing: install Vernier again";
+    return none;
+  }
   const TemporaryFolder folder;
   const fs::path question = folder.path() / "problem.json", reply = folder.path() / "answer.json";
   std::ofstream(question) << problem_json(problem);
   const ProgramRun run = run_script(script, {question.string(), reply.string()});
-  MrcalUncertaintyAnswer none;
   if (run.exit_code == -1) none.absent = "no Python can be run";
   if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + last_line(run.complaint);
   if (!none.absent.empty()) return none;
   if (run.exit_code != 0) {
     throw Error("mrcal", "its Python failed: " + last_line(run.complaint), "leave mrcal out");
   }
-  std::ifstream in(reply);
-  return answer_of(Json::parse(in));
+  return read_answer(reply, problem);
 }
 
 std::string mrcal_python_version(const fs::path& script) {

@@ -35,7 +35,7 @@ struct MrcalTriangulationAnswer {
 
 /// One answer a query, in their order.
 struct MrcalUncertaintyAnswer {
-  std::string absent;  ///< why there is no answer: no Python, or a Python without mrcal
+  std::string absent;  ///< why there is no answer: no script, no Python, or one without mrcal
   std::string version;
   std::vector<std::vector<Eigen::Matrix2d>> projection;
   std::vector<MrcalTriangulationAnswer> triangulation;
@@ -55,7 +55,8 @@ struct MrcalUncertaintyProblem {
 
 /// Asks mrcal's projection_uncertainty and triangulate by the script `python/mrcal_uncertainty.py`,
 /// run by /usr/bin/python3 (whose packages are Debian's), else by the first python3 of the path.
-/// Throws Error where mrcal cannot express the problem or fails at it.
+/// The script is named by its absolute path. What mrcal has no number for is NaN. Throws Error
+/// where mrcal cannot express the problem or fails at it.
 MrcalUncertaintyAnswer ask_mrcal(const std::filesystem::path& script,
                                  const MrcalUncertaintyProblem& problem);
 

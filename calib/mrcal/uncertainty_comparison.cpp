@@ -106,7 +106,7 @@ void compare_projection(const MrcalProjectionQuery& query,
     const double difference =
         normalised_difference(ours.covariance_of_point(x, query.at_infinity), mrcals[i]).largest;
     ++result.projections;
-    if (difference <= result.max_projection_covariance_diff) continue;
+    if (!is_worse(difference, result.max_projection_covariance_diff)) continue;
     result.max_projection_covariance_diff = difference;
     const Eigen::Vector2d pixel = project(ours.camera(), x);
     result.worst_projection = fmt::format(
@@ -121,7 +121,7 @@ void compare_triangulation(const MrcalTriangulationQuery& query,
                            double pixel_sigma_px,
                            UncertaintyComparison& result) {
   const auto keep_largest = [](double difference, double& largest) {
-    if (!(difference <= largest)) largest = difference;
+    largest = worse(difference, largest);
   };
   for (std::size_t i = 0; i < query.pairs.size(); ++i) {
     const auto point = ours.at(query.pairs[i], pixel_sigma_px);

@@ -8,19 +8,14 @@
 #include <filesystem>
 
 #include "calib/atomic_file.h"
-#include "calib/error.h"
 #include "calib/kalibr_target.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 namespace {
 
 std::string complaint_of(const BoardTarget& target) {
-  try {
-    check_target(target);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_message([&] { check_target(target); });
 }
 
 TEST(BoardTarget, PointsFollowTheDocumentedOrder) {
@@ -53,6 +48,12 @@ TEST(BoardTarget, ImpossibleOnesAreNamed) {
   EXPECT_NE(complaint_of(CharucoBoard{12, 12}).find("it has 72 markers, 4x4_50 has 50"),
             std::string::npos);
   EXPECT_NE(complaint_of(AprilTagGrid{30, 20}).find("it has 600 markers"), std::string::npos);
+  EXPECT_EQ(complaint_of(Chessboard{100000, 100000}),
+            "100000x100000 board: more than 1000 along a side; check its size");
+  for (const BoardTarget& target :
+       {BoardTarget(CharucoBoard{8, 1001}), BoardTarget(AprilTagGrid{1 << 20, 1 << 20})}) {
+    EXPECT_NE(complaint_of(target).find("more than 1000 along a side"), std::string::npos);
+  }
   EXPECT_NE(complaint_of(AprilTagGrid{6, 6, 0.08, 0}).find("spacing"), std::string::npos);
 }
 
@@ -69,13 +70,8 @@ class KalibrTarget : public testing::Test {
     return read_kalibr_target(file_);
   }
   std::string complaint(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      const std::string what = error.what();
-      return what.rfind(file_.string(), 0) == 0 ? what.substr(file_.string().size()) : what;
-    }
-    return "";
+    const std::string what = test::error_message([&] { read(text); });
+    return what.rfind(file_.string(), 0) == 0 ? what.substr(file_.string().size()) : what;
   }
 
   std::filesystem::path file_;
@@ -98,6 +94,14 @@ TEST_F(KalibrTarget, ItsTwoExamplesAreRead) {
   EXPECT_EQ(board.rows, 7);
   EXPECT_EQ(board.square_m, 0.05);
   EXPECT_EQ(board.row_m, 0.06);
+}
+
+TEST_F(KalibrTarget, TagsMayBeSaidToCountFromZero) {
+  const std::string text =
+      "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\n";
+  EXPECT_EQ(std::get<AprilTagGrid>(read(text + "codeOffset: 0\n")).columns, 6);
+  EXPECT_EQ(complaint(text + "codeOffset: 12\n"),
+            ":6: codeOffset is \"12\"; Vernier counts tags from 0: give a board that does");
 }
 
 TEST_F(KalibrTarget, FaultsAreNamedWithTheirLine) {

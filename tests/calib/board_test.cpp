@@ -3,20 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "calib/board_observations.h"
-#include "calib/error.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
 
 std::string complaint_of(BoardObservations observations) {
-  try {
-    check_and_sort(observations);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_message([&] { check_and_sort(observations); });
 }
 
 class BadBoard : public testing::Test {

@@ -7,12 +7,13 @@
 #include "calib/mrcal_cameramodel.h"
 #include "calib/opencv_calibration_file.h"
 #include "calib/ros_camera_info.h"
+#include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
 namespace {
 
-using test::complaint_of;
+using test::error_message;
 using test::Folder;
 using test::rig_of_cameras;
 
@@ -34,10 +35,10 @@ void expect_complaints(const std::string& name,
                        const std::vector<Change>& changes,
                        const Read& read) {
   Folder folder;
-  EXPECT_EQ(complaint_of([&] { read(folder.write(name, good)); }), "");
+  EXPECT_EQ(error_message([&] { read(folder.write(name, good)); }), "");
   for (const Change& change : changes) {
     const std::string text = replaced(good, change.from, change.to);
-    const std::string said = complaint_of([&] { read(folder.write(name, text)); });
+    const std::string said = error_message([&] { read(folder.write(name, text)); });
     EXPECT_NE(said.find(change.complaint), std::string::npos) << change.to << "\n  said " << said;
     EXPECT_NE(said.find(name), std::string::npos) << said;
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
@@ -51,7 +52,7 @@ void expect_cuts_are_refused(const std::string& name, const std::string& good, c
   std::size_t refused = 0, tried = 0;
   for (std::size_t length = 0; length < good.size(); length += 7, ++tried) {
     const auto file = folder.write(name, good.substr(0, length));
-    refused += !complaint_of([&] { read(file); }).empty();
+    refused += !error_message([&] { read(file); }).empty();
   }
   EXPECT_GT(refused, tried * 3 / 4);  // the rest lacks only what may be left out
 }
@@ -99,10 +100,7 @@ TEST(ConvertBadFiles, MrcalKeysOfOldAndNewVersions) {
         "# note\n{ \"lens_model\": \"LENSMODEL_PINHOLE\", 'q': # c ]}\n b'a{\\'}', 'n': None, " +
             core + "'extrinsics': " + pose + "} # end",
         "{'lensmodel': 'LENSMODEL_' 'PINHOLE', " + core + "'rt_cam_ref': " + pose + "}"}) {
-    const std::string with_name = text.find("NONE") == std::string::npos
-                                      ? text
-                                      : replaced(text, "DISTORTION_NONE", "DISTORTION_PINHOLE");
-    const PlacedCamera read = parse(with_name);
+    const PlacedCamera read = parse(text);
     EXPECT_EQ(read.camera.size_px, Eigen::Vector2i(110, 400));
     EXPECT_EQ(read.camera.f_px(), 3);
     EXPECT_EQ(read.camera.oy_px(), 5.5);
@@ -163,11 +161,11 @@ TEST(ConvertBadFiles, OpenCvSizesAndFisheyeMayBeSaidBesides) {
   EXPECT_NE(brown.notes[0].find("if cv::fisheye made them, ask for fisheye4"), std::string::npos);
 
   const auto sized = folder.write(opencv_calibration(rig));
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(error_message([&] {
               read_opencv_calibration(sized, {.size_px = Eigen::Vector2i(320, 240)});
             }).find("its images are 640x480 by the file and 320x240 as given"),
             std::string::npos);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(error_message([&] {
               read_opencv_calibration({sized[0], sized[0]});
             }).find("is in another of the files too"),
             std::string::npos);
@@ -235,7 +233,7 @@ TEST(ConvertBadFiles, RosPairsWithoutABaselineAndMessages) {
   RosCameraInfo info;
   info.camera = one_camera().cameras[0];
   const auto file = folder.write("left.yaml", format_ros_camera_info(info).text);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(error_message([&] {
               read_ros_camera_info({file, file});
             }).find("has no baseline"),
             std::string::npos);
@@ -273,31 +271,31 @@ TEST(ConvertBadFiles, Colmap) {
                      {"1 OPENCV", "#1 OPENCV", "holds no camera"}},
                     read);
   const auto cameras = folder.write("cameras.txt", files[0].text);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(error_message([&] {
               read(cameras);
             }).find("holds 2 cameras and nothing beside it says where they are"),
             std::string::npos);
   folder.write("images.txt", files[1].text + files[1].text);
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("images.txt: holds 4 images of 2 cameras"),
+  EXPECT_NE(error_message([&] { read(cameras); }).find("images.txt: holds 4 images of 2 cameras"),
             std::string::npos);
   folder.write("rig_config.json", replaced(files[3].text, "\"image_prefix\"", "\"prefix\""));
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("has no \"image_prefix\""),
+  EXPECT_NE(error_message([&] { read(cameras); }).find("has no \"image_prefix\""),
             std::string::npos);
   folder.write("rig_config.json", replaced(files[3].text, "cam_from_rig_rotation\": [",
                                            "cam_from_rig_rotation\": [2, "));
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("is not a quaternion of 4"),
+  EXPECT_NE(error_message([&] { read(cameras); }).find("is not a quaternion of 4"),
             std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 1 0.5 0 0 0 1 2 3\n");
   EXPECT_NE(
-      complaint_of([&] { read(cameras); }).find("rigs.txt:1: its quaternion has the length 0.5"),
+      error_message([&] { read(cameras); }).find("rigs.txt:1: its quaternion has the length 0.5"),
       std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 2 0\n");
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("camera 2 has no pose"), std::string::npos);
+  EXPECT_NE(error_message([&] { read(cameras); }).find("camera 2 has no pose"), std::string::npos);
   folder.write("rigs.txt", "1 2 CAMERA 1 CAMERA 3 1 1 0 0 0 1 2 3\n");
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("cameras.txt has no camera 3"),
+  EXPECT_NE(error_message([&] { read(cameras); }).find("cameras.txt has no camera 3"),
             std::string::npos);
   folder.write("rigs.txt", "1 1 CAMERA 1\n2 1 CAMERA 2\n");
-  EXPECT_NE(complaint_of([&] { read(cameras); }).find("holds 2 rigs"), std::string::npos);
+  EXPECT_NE(error_message([&] { read(cameras); }).find("holds 2 rigs"), std::string::npos);
 }
 
 TEST(ConvertBadFiles, ColmapRigsSayWhichCameraIsFirst) {
@@ -314,6 +312,80 @@ TEST(ConvertBadFiles, ColmapRigsSayWhichCameraIsFirst) {
   EXPECT_EQ(rig.T_camera_first[1].t, Eigen::Vector3d(1, 2, 3));
   EXPECT_NEAR(rig.T_camera_first[1].R(2, 1), 0.96, 1e-15);  // 2 w x: Hamilton's order
   EXPECT_EQ(rig.cameras[1].name, "right");
+}
+
+/// Two cameras whose poses and lenses differ, and rig_config.json with its entries exchanged.
+class ColmapRigConfig : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("cameras.txt", files_[0].text);
+    exchange("");
+  }
+  /// Without the keys that begin like this.
+  void exchange(const std::string& without) {
+    std::string text = files_[3].text;
+    const std::size_t first = text.find("      {"), comma = text.find(",\n      {", first);
+    const std::size_t end = text.find("\n    ]", comma);
+    text = text.substr(0, first) + text.substr(comma + 2, end - comma - 2) + ",\n" +
+           text.substr(first, comma - first) + text.substr(end);
+    for (std::size_t at; !without.empty() && (at = text.find("\"" + without)) < text.size();) {
+      text.replace(at + 1, 1, "_");  // unknown keys are passed over
+    }
+    folder_.write("rig_config.json", text);
+  }
+  ImportedRig read() { return read_colmap_cameras(folder_.path() / "cameras.txt"); }
+
+  /// Each pose with its lens, whichever camera is first.
+  void expect_right(const ImportedRig& read) {
+    ASSERT_EQ(read.rig.cameras.size(), 2u);
+    EXPECT_EQ(read.rig.cameras[0].name, "right");
+    EXPECT_EQ(read.rig.cameras[0].f_px(), rig_.cameras[1].f_px());
+    EXPECT_EQ(read.rig.cameras[1].f_px(), rig_.cameras[0].f_px());
+    const Pose expected = rig_.T_camera_first[1].inverse();
+    EXPECT_LT((read.rig.T_camera_first[1].t - expected.t).norm(), 1e-12);
+    EXPECT_TRUE(read.notes.empty());
+  }
+
+  const Rig rig_ = rig_of_cameras(OpenCv4{}, 2);
+  const std::vector<ForeignFile> files_ = colmap_cameras(rig_);
+  Folder folder_;
+};
+
+TEST_F(ColmapRigConfig, EntriesAreMatchedByTheirParameters) {
+  ASSERT_NE(rig_.cameras[0].f_px(), rig_.cameras[1].f_px());
+  expect_right(read());
+}
+
+TEST_F(ColmapRigConfig, ElseByTheImagesUnderTheirPrefix) {
+  exchange("camera_params");
+  folder_.write("images.txt", files_[1].text);
+  expect_right(read());
+}
+
+TEST_F(ColmapRigConfig, ElseByOrderWhichIsSaid) {
+  exchange("camera_params");
+  const ImportedRig read = this->read();
+  EXPECT_EQ(read.rig.cameras[0].name, "right");
+  EXPECT_EQ(read.rig.cameras[0].f_px(), rig_.cameras[0].f_px());
+  ASSERT_EQ(read.notes.size(), 1u);
+  EXPECT_NE(read.notes[0].find("rig_config.json: its cameras are matched by order"),
+            std::string::npos);
+}
+
+TEST_F(ColmapRigConfig, CamerasAlikeAreToldByTheirImages) {
+  Rig rig = rig_;
+  rig.cameras[1] = rig.cameras[0];
+  rig.cameras[1].name = "right";
+  for (const ForeignFile& file : colmap_cameras(rig)) folder_.write(file.name.string(), file.text);
+  EXPECT_TRUE(read().notes.empty());
+}
+
+TEST(ConvertBadFiles, ColmapNamesAreEscaped) {
+  Folder folder;
+  Rig rig = rig_of_cameras(OpenCv4{}, 2);
+  rig.cameras[1].name = "the\"right\"one";
+  for (const ForeignFile& file : colmap_cameras(rig)) folder.write(file.name.string(), file.text);
+  EXPECT_EQ(read_colmap_cameras(folder.path()).rig.cameras[1].name, rig.cameras[1].name);
 }
 
 }  // namespace

@@ -12,12 +12,13 @@
 #include "calib/opencv_intrinsics.h"
 #include "calib/rig_file.h"
 #include "stereo/rectified_camera_info.h"
+#include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
 namespace {
 
-using test::complaint_of;
+using test::error_message;
 using test::Folder;
 using test::rig_of_cameras;
 
@@ -74,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Convert, EveryModel, testing::ValuesIn(round_trips()), 
 
 TEST_P(EveryModel, Mrcal) {
   if (model_is("fisheye4")) {
-    EXPECT_EQ(complaint_of([&] { mrcal_cameramodels(rig()); }),
+    EXPECT_EQ(error_message([&] { mrcal_cameramodels(rig()); }),
               "camera \"left\": mrcal has no lens model like fisheye4; calibrate with opencv8, or "
               "choose another format");
     return;
@@ -96,7 +97,7 @@ TEST_P(EveryModel, OpenCv) {
 
 TEST_P(EveryModel, Kalibr) {
   if (model_is("opencv5") || model_is("opencv8")) {
-    EXPECT_NE(complaint_of([&] {
+    EXPECT_NE(error_message([&] {
                 kalibr_camchain(rig());
               }).find("camera \"left\": Kalibr's radtan has no place for k3 = -0.01 of the model"),
               std::string::npos);
@@ -108,7 +109,7 @@ TEST_P(EveryModel, Kalibr) {
 TEST_P(EveryModel, Ros) {
   const auto files = folder_.write(ros_files(rig()));
   if (GetParam().cameras == 3) {
-    EXPECT_NE(complaint_of([&] { read_ros_camera_info(files); }).find("holds no pose"),
+    EXPECT_NE(error_message([&] { read_ros_camera_info(files); }).find("holds no pose"),
               std::string::npos);
     return;
   }
@@ -142,11 +143,11 @@ TEST(Convert, SmallestModelThatHoldsTheCoefficients) {
   EXPECT_EQ(model_of({0, 0, 0, 0, 1e-9}), "opencv5");
   EXPECT_EQ(model_of({0, 0, 0, 0, 0, 0, 0, 1e-9}), "opencv8");
   EXPECT_EQ(model_of({0, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, 0, 0, 0, 0}), "opencv8");
-  EXPECT_EQ(complaint_of([&] {
+  EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0});
             }),
             "f: s3 = 2 is not in the model opencv8; Vernier has no model that holds it");
-  EXPECT_EQ(complaint_of([&] {
+  EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.5});
             }),
             "f: ty = -0.5 is not in the model opencv8; Vernier has no model that holds it");
@@ -157,11 +158,11 @@ TEST(Convert, AModelAskedForMustHoldTheCoefficients) {
   const Camera camera = camera_from_opencv(in, {640, 480}, "f", OpenCv8{});
   EXPECT_EQ(camera.parameters.size(), 12);
   EXPECT_EQ(camera.parameters[6], 1e-3);
-  EXPECT_EQ(complaint_of([&] {
+  EXPECT_EQ(error_message([&] {
               camera_from_opencv(in, {640, 480}, "f", Radial1{});
             }),
             "f: p1 = 0.001 is not in the model radial1; choose a larger model or none");
-  EXPECT_EQ(complaint_of([&] {
+  EXPECT_EQ(error_message([&] {
               camera_from_opencv(in, {640, 480}, "f", Fisheye4{});
             }),
             "f: is not a fisheye camera, which the model fisheye4 does not hold; choose another "
@@ -184,12 +185,12 @@ TEST(Convert, NearestRotation) {
   const Eigen::Matrix3d nearest = nearest_rotation(rounded, "f");
   EXPECT_LT((nearest.transpose() * nearest - Eigen::Matrix3d::Identity()).norm(), 1e-14);
   EXPECT_LT((nearest - R).norm(), 3e-7);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(error_message([&] {
               nearest_rotation(1.00001 * R, "f");
             }).find("f: is no rotation: it is off orthonormal by 2e-05"),
             std::string::npos);
-  EXPECT_NE(complaint_of([&] { nearest_rotation(-R, "f"); }).find("a mirror"), std::string::npos);
-  EXPECT_NE(complaint_of([&] { nearest_rotation(R * NAN, "f"); }).find("no rotation"),
+  EXPECT_NE(error_message([&] { nearest_rotation(-R, "f"); }).find("a mirror"), std::string::npos);
+  EXPECT_NE(error_message([&] { nearest_rotation(R * NAN, "f"); }).find("no rotation"),
             std::string::npos);
 }
 
@@ -200,12 +201,12 @@ TEST(Convert, NamesThatAreNoFiles) {
     for (const auto& format : std::vector<std::function<void()>>{[&] { mrcal_cameramodels(rig); },
                                                                  [&] { ros_files(rig); },
                                                                  [&] { colmap_cameras(rig); }}) {
-      EXPECT_NE(complaint_of(format).find("its name cannot be that of a file"), std::string::npos)
+      EXPECT_NE(error_message(format).find("its name cannot be that of a file"), std::string::npos)
           << name;
     }
   }
   rig.cameras[1].name = "the right";
-  EXPECT_NE(complaint_of([&] { colmap_cameras(rig); }).find("no blanks"), std::string::npos);
+  EXPECT_NE(error_message([&] { colmap_cameras(rig); }).find("no blanks"), std::string::npos);
 }
 
 TEST(Convert, LengthsInMillimetres) {

@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+
 #include "calib/error.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/python_run.h"
 #include "calib/mrcal/uncertainty_comparison.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
@@ -214,15 +220,122 @@ TEST(Mrcal, ComplainsOfWhatItCannotDo) {
   }
 }
 
-TEST(Mrcal, ScriptThatFailsIsSaid) {
-  const SimulatedBoard board = board_of(Pinhole{}, 1, 1);
-  const RefinedMinimum ours = refine_minimum(board.observations, board.truth);
-  try {
-    compare_uncertainty("/nowhere/script.py", board.observations, ours, sigma_px);
-    FAIL() << "no complaint";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("its Python failed"), std::string::npos);
+TEST(Mrcal, ADifferenceThatIsNoNumberIsTheWorstAndStays) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::MatrixXd good = Eigen::MatrixXd::Identity(4, 4);
+  const auto with_nan = [&](int row, int column) {
+    Eigen::MatrixXd bad = good;
+    bad(row, column) = nan;
+    return bad;
+  };
+  for (const auto& [row, column] : {std::pair(0, 0), {1, 2}, {3, 3}}) {
+    for (const CovarianceDifference& found : {normalised_difference(with_nan(row, column), good),
+                                              normalised_difference(good, with_nan(row, column))}) {
+      EXPECT_TRUE(std::isnan(found.largest));
+      EXPECT_TRUE(found.row == row || found.column == column);
+    }
   }
+  Eigen::MatrixXd held = good, no_number = good;
+  held(1, 1) = 0;  // no variance there, so no scale
+  no_number(1, 1) = nan;
+  EXPECT_EQ(normalised_difference(good, held).largest, 0);
+  EXPECT_TRUE(std::isnan(normalised_difference(no_number, held).largest));
+  EXPECT_FALSE(is_worse(1e9, nan));
+  EXPECT_TRUE(is_worse(nan, 1e9));
+}
+
+TEST(Mrcal, AParameterThatIsNoNumberIsTheWorst) {
+  const SimulatedBoard board = board_of(Radial1{}, 2, 1);
+  const RefinedMinimum ours = refine_minimum(board.observations, board.truth);
+  MrcalSolution theirs;
+  theirs.state = ours.state;
+  const Eigen::MatrixXd G = mrcal_by_tangent(ours.state.rig);
+  theirs.unit_covariance = G * ours.unit_bound * G.transpose();
+  theirs.cost_px2 = ours.cost_px2;
+  EXPECT_LT(compare(ours, theirs, sigma_px).max_parameter_diff_sigma, parameter_gate_sigma);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  theirs.state.rig.cameras[0].parameters[2] = nan;
+  MrcalComparison found = compare(ours, theirs, sigma_px);
+  EXPECT_TRUE(std::isnan(found.max_parameter_diff_sigma));
+  EXPECT_EQ(found.worst_parameter, "left.cx");
+  theirs.state = ours.state;
+  theirs.unit_covariance(3, 3) = nan;
+  found = compare(ours, theirs, sigma_px);
+  EXPECT_TRUE(std::isnan(found.max_parameter_diff_sigma));
+  EXPECT_TRUE(std::isnan(found.max_covariance_diff));
+}
+
+/// compare_uncertainty by a script that answers like this.
+class Answer : public testing::Test {
+ protected:
+  UncertaintyComparison compared(const std::string& lines) {
+    const std::filesystem::path file = folder_.path() / "script.py";
+    std::ofstream(file) << "import json, math, runpy, sys\n" << lines;
+    const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
+    return compare_uncertainty(file, board_.observations, ours, sigma_px);
+  }
+  std::string complaint(const std::string& lines) {
+    return test::error_message([&] { compared(lines); });
+  }
+
+  void TearDown() override { ::setenv("PATH", path_.c_str(), 1); }
+
+  const std::string path_ = std::getenv("PATH");
+  TemporaryFolder folder_;
+  SimulatedBoard board_ = board_of(Pinhole{}, 2, 1);
+  /// Matrices of ones in answer to everything; `change` is done to the answer.
+  std::string ones(const std::string& change) {
+    return "p = json.load(open(sys.argv[1]))\n"
+           "square = lambda n: [[1.0] * n] * n\n"
+           "a = dict(version='x', projection=[[square(2) for _ in q['points']]"
+           " for q in p['projection']], triangulation=[dict(points=[[0, 0, 1] for _ in"
+           " q['pixels']], calibration=[square(3) for _ in q['pixels']],"
+           " observation=[square(3) for _ in q['pixels']]) for q in p['triangulation']])\n" +
+           change + "\njson.dump(a, open(sys.argv[2], 'w'))\n";
+  }
+};
+
+TEST_F(Answer, NullsAreNoNumbersAndTheWorst) {
+  EXPECT_TRUE(std::isfinite(compared(ones("")).max_projection_covariance_diff));
+  const UncertaintyComparison projection =
+      compared(ones("a['projection'][0][3] = [[1, None], [None, 1]]"));
+  EXPECT_TRUE(std::isnan(projection.max_projection_covariance_diff));
+  EXPECT_NE(projection.worst_projection.find("left, 0.5 m"), std::string::npos);
+  EXPECT_TRUE(std::isfinite(projection.max_triangulation_covariance_diff));
+  const UncertaintyComparison calibration =
+      compared(ones("a['triangulation'][0]['calibration'][0] = [[None] * 3] * 3"));
+  EXPECT_TRUE(std::isnan(calibration.max_triangulation_covariance_diff));
+  const UncertaintyComparison observation =
+      compared(ones("a['triangulation'][0]['observation'][0] = [[None] * 3] * 3"));
+  EXPECT_TRUE(std::isnan(observation.max_observation_covariance_diff));
+}
+
+TEST_F(Answer, WhatIsNoJsonOrTooLittleIsAnError) {
+  const std::string said = "mrcal: its Python's answer is not what was asked for";
+  EXPECT_NE(complaint(ones("a['projection'][0][0][0][0] = math.nan")).find(said),
+            std::string::npos);
+  EXPECT_NE(complaint(ones("del a['projection'][0][0]")).find(said), std::string::npos);
+  EXPECT_NE(complaint(ones("del a['version']")).find(said), std::string::npos);
+  EXPECT_NE(complaint("").find(said), std::string::npos);
+}
+
+TEST_F(Answer, AScriptThatFailsIsSaidAndAMissingOneIsAbsent) {
+  EXPECT_NE(complaint("sys.exit('no such lens')\n").find("its Python failed: no such lens"),
+            std::string::npos);
+  const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
+  for (const char* missing : {"/nowhere/script.py", "script.py"}) {
+    EXPECT_NE(compare_uncertainty(missing, board_.observations, ours, sigma_px)
+                  .absent.find(std::string("the script ") + missing + " is missing"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Answer, APythonThatIsMissingDoesNotHideWhatTheFirstSaid) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "no /usr/bin/python3";
+  ASSERT_EQ(::setenv("PATH", folder_.path().c_str(), 1), 0);  // no python3 there
+  EXPECT_NE(compared("print('No module named mrcal', file=sys.stderr)\nsys.exit(4)\n")
+                .absent.find("no Python has mrcal: No module named mrcal"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 
 #include "calib/board_detection.h"
 #include "calib/calibrate.h"
-#include "calib/error.h"
 #include "calib/observations_file.h"
 #include "calib/view_checks.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/data_folder.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 namespace {
@@ -53,13 +53,10 @@ TEST_P(RealPairs, StartByThemselvesWithEveryModel) {
 }
 
 TEST_P(RealPairs, ATurnedViewAndASwappedFrameAreNamed) {
-  const auto complaint_of = [](const BoardObservations& observations) -> std::string {
-    try {
+  const auto complaint_of = [](const BoardObservations& observations) {
+    return test::error_message([&] {
       check_views(observations, initial_state(observations, {Radial1{}, Radial1{}}));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   BoardObservations turned = observations_;
   test::half_turn(test::view_of(turned, 5, 1));

@@ -7,22 +7,19 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/error.h"
 #include "calib/random.h"
 #include "tests/support/board_defects.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
 
 std::string complaint_of(BoardObservations observations) {
-  try {
+  return test::error_message([&] {
     check_and_sort(observations);
     check_observations(observations);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 ObservationDiagnosis diagnosis_of(BoardObservations observations) {

@@ -9,6 +9,7 @@
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -25,12 +26,9 @@ class ObservationsFile : public testing::Test {
 
   std::string complaint_of(const std::string& text) {
     write_atomically(folder_ / "bad.csv", text);
-    try {
+    return test::error_message([&] {
       read_observations(folder_ / "bad.csv", {{640, 480}, {640, 480}});
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    });
   }
 
   std::filesystem::path folder_;
@@ -90,6 +88,41 @@ TEST_F(ObservationsFile, FramesCamerasAndRepeatsAreChecked) {
             std::string::npos);
 }
 
+TEST_F(ObservationsFile, PixelsOutsideTheImageAreNamedByLineRowAndColumn) {
+  const std::string header = "frame,camera,row,col,X,Y,Z,qx,qy\n";
+  const std::string good = "0,1,0,2,0,0,0,639.5,-0.5\n";
+  EXPECT_NE(
+      complaint_of(header + good + "0,1,4,7,1,0,0,640,9\n")
+          .find("bad.csv:3: frame 0, camera 1, corner (row 4, col 7): its pixel (640, 9) lies "
+                "outside the image of 640x480; check the image size"),
+      std::string::npos);
+  // what no line says alone begins with the file
+  EXPECT_NE(complaint_of(header + good).find("bad.csv: frame 0, camera 1: fewer than four corners"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(header + "0,2,0,2,0,0,0,9,9\n")
+                .find("bad.csv: frame 0, camera 2: no image size is known"),
+            std::string::npos);
+}
+
+TEST_F(ObservationsFile, CornersOutsideTheImageAreNamedByLineRowAndColumn) {
+  const auto complaint = [&](const std::string& text, const BoardTarget& target) {
+    write_atomically(folder_ / "c.vnl", text);
+    return test::error_message([&] { read_corners(folder_ / "c.vnl", target, {{640, 480}}); });
+  };
+  std::string text = "# filename x y level\n";
+  for (int i = 0; i < 8; ++i) text += "left3.png 10 10 0\n";
+  EXPECT_NE(
+      complaint(text + "left3.png 10 480 0\n", Chessboard{4, 3})
+          .find("c.vnl:10: left3.png, corner (row 2, col 0): its pixel (10, 480) lies outside"),
+      std::string::npos);
+  EXPECT_NE(complaint(text + "left3.png nan 48 0\n", Chessboard{4, 3})
+                .find("c.vnl:10: left3.png, corner (row 2, col 0): its pixel is not a finite"),
+            std::string::npos);
+  EXPECT_EQ(complaint(text, CharucoBoard{8, 6, 0.022, 0.03}),
+            "8x6 ChArUco board: its markers are not smaller than its squares; give the side of a "
+            "square and the smaller one of a marker");
+}
+
 TEST_F(ObservationsFile, CamerasOfCornersKeepTheirPlaceWhereTheFirstBoardIsMissing) {
   auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
   for (auto& view : before.views) {
@@ -113,12 +146,7 @@ TEST_F(ObservationsFile, ImagesThatWouldNotReadBackAreRefused) {
     for (auto& view : observations.views) {
       view.image = (view.camera == 0 ? left : right) + std::to_string(view.frame) + ".png";
     }
-    try {
-      write_corners(observations, {}, folder_ / "corners.vnl");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return test::error_message([&] { write_corners(observations, {}, folder_ / "corners.vnl"); });
   };
   EXPECT_EQ(complaint("L/", "R/"), "");
   EXPECT_NE(complaint("my board/left", "right").find("my board/left0.png: a corners file cannot"),

@@ -116,7 +116,9 @@ TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
         }
         worst_calibration = std::max(worst_calibration,
                                      relative_difference(*ours.between(pair(i), pair(j)), between));
-        if (i == j) EXPECT_LT(relative_difference(point->calibration, between), 1e-6);
+        if (i == j) {
+          EXPECT_LT(relative_difference(point->calibration, between), 1e-6);
+        }
       }
     }
     const std::string name = key;

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "calib/calibrate.h"
-#include "calib/error.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -19,12 +21,7 @@ const RigEstimate& estimate() {
 }
 
 std::string complaint_of(const std::string& text) {
-  try {
-    parse_rig(text, "rig.json");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_message([&] { parse_rig(text, "rig.json"); });
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -130,6 +127,51 @@ TEST(RigFile, AnImageNameNeedNotBeUtf8) {
   e.evidence->observations.views[0].image = "caf\xe9/left01.png";
   const RigFile file = parse_rig(format_rig(e), "rig.json");
   EXPECT_EQ(file.estimate.evidence->observations.views[0].image, "caf\xef\xbf\xbd/left01.png");
+}
+
+TEST(RigFile, WhatIsHeldIsOneOfTheRigsParameters) {
+  RigEstimate e = estimate();
+  e.calibration->held = {"left.ax", "port.ax"};
+  EXPECT_EQ(complaint_of(format_rig(e)),
+            "rig.json: calibration.held[1]: the rig has no parameter \"port.ax\"; name it as "
+            "parameter_names does, after the camera");
+}
+
+TEST(RigFile, NewNamesOfCamerasStandEverywhere) {
+  RigEstimate e = estimate();
+  e.calibration->held = {"right.ax"};
+  rename_cameras(e, {"right", "star.board"});  // one of them is a former name
+  EXPECT_EQ(e.calibration->held, std::vector<std::string>{"star.board.ax"});
+  EXPECT_EQ(e.covariance->names, parameter_names(e.rig));
+  EXPECT_EQ(e.covariance->names[0], "right.f_px");
+  EXPECT_EQ(complaint_of(format_rig(e)), "");
+  EXPECT_NE(test::error_message([&] { rename_cameras(e, {"a"}); }).find("1 names for 2 cameras"),
+            std::string::npos);
+  for (const std::vector<std::string>& names : {std::vector<std::string>{"a", "a"}, {"a", ""}}) {
+    EXPECT_NE(test::error_message([&] { rename_cameras(e, names); }).find("two cameras have one"),
+              std::string::npos);
+  }
+}
+
+TEST(RigFile, NumbersThatAreNotFiniteAreNotWritten) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto complaint = [](const RigEstimate& e) {
+    return test::error_message([&] { format_rig(e); });
+  };
+  RigEstimate e = estimate();
+  e.rig.T_camera_first[1].t.y() = nan;
+  EXPECT_EQ(complaint(e),
+            "rig.cameras[1].from_first.translation_m[1]: is not a finite number; a "
+            "rig file cannot hold it");
+  e = estimate();
+  e.covariance_mvb->coeffRef(2, 3) = std::numeric_limits<double>::infinity();
+  EXPECT_NE(complaint(e).find("rig.covariance_mvb.matrix[2][3]"), std::string::npos);
+  e = estimate();
+  e.calibration->chi2 = nan;
+  EXPECT_NE(complaint(e).find("rig.calibration.chi2"), std::string::npos);
+  e = estimate();
+  e.calibration->outliers.push_back({0, 0, 1, "", {3, 4}, nan});  // its frame went with it
+  EXPECT_EQ(complaint(e), "");
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 #include "calib/board_warp.h"
 #include "calib/calibrate.h"
-#include "calib/error.h"
 #include "calib/model_nesting.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -18,16 +18,6 @@ namespace {
 Eigen::Index index_of(const Rig& rig, const std::string& name) {
   const auto names = parameter_names(rig);
   return std::find(names.begin(), names.end(), name) - names.begin();
-}
-
-template <typename Action>
-std::string complaint_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 double worst_sigmas(const Rig& a, const Rig& b, const Eigen::MatrixXd& C) {
@@ -85,13 +75,13 @@ TEST(HeldParameters, ARotationMayBeHeldInPart) {
 TEST(HeldParameters, AreNamedWhereTheyAreWrong) {
   const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
   const auto complaint = [&](const HeldParameter& held) {
-    return complaint_of([&] { calibrate(observations, {.held = {held}}); });
+    return test::error_message([&] { calibrate(observations, {.held = {held}}); });
   };
   EXPECT_NE(complaint({"left.k7", {}}).find("held parameter left.k7: the rig has no such"),
             std::string::npos);
   EXPECT_NE(complaint({"left.ay", 1.0}).find("ay is 1 by definition"), std::string::npos);
   EXPECT_NE(complaint({"left.f_px", -3.0}).find("-3 is no value for it"), std::string::npos);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(test::error_message([&] {
               calibrate(observations, {.held = {{"left.ax", {}}, {"left.ax", {}}}});
             }).find("is held twice"),
             std::string::npos);
@@ -147,7 +137,7 @@ TEST(Prior, HalfTheViewsAsPriorOfTheOtherHalf) {
 TEST(Prior, IsRefusedWithItsDirection) {
   const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
   const auto complaint = [&](const Eigen::Matrix2d& C) {
-    return complaint_of([&] {
+    return test::error_message([&] {
       calibrate(observations,
                 {.prior = RigKnowledge{test::stereo_rig(),
                                        {CovarianceKind::prior, {"left.f_px", "left.ox_px"}, C}}});
@@ -163,11 +153,11 @@ TEST(Prior, IsRefusedWithItsDirection) {
             std::string::npos);
   EXPECT_NE(complaint(singular).find("singular: no variance where"), std::string::npos);
   EXPECT_NE(complaint(zero).find("prior of left.ox_px: its variance is 0"), std::string::npos);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(test::error_message([&] {
               calibrate(observations, {.known = {{"left.f_px", 525, 0}}});
             }).find("0 is no standard deviation"),
             std::string::npos);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(test::error_message([&] {
               calibrate(observations, {.known = {{"left.p1", 0, 1}}});
             }).find("prior of left.p1: the rig has no such parameter"),
             std::string::npos);
@@ -267,7 +257,7 @@ TEST(MixedModels, OneACamera) {
       calibrate(board.observations, {.models = {OpenCv4{}, Pinhole{}}, .pixel_sigma_px = 1e-3});
   EXPECT_LT(worst_sigmas(e.rig, truth, *e.covariance_mvb), 1e-3);
   EXPECT_EQ(parameter_names(e.rig).size(), 8u + 4u + 6u);
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(test::error_message([&] {
               calibrate(board.observations, {.models = {Pinhole{}, Pinhole{}, Pinhole{}}});
             }).find("3 models for 2 cameras"),
             std::string::npos);
@@ -279,7 +269,7 @@ TEST(ModelNesting, KeepsWhatBothHaveAndLosesNothing) {
   const Eigen::Vector3d x(0.3, -0.2, 1.1);
   EXPECT_EQ(project(rig.cameras[1], x), project(richer.cameras[1], x));
   EXPECT_EQ(parameters(in_models(richer, {Radial1{}, Radial1{}})), parameters(rig));
-  EXPECT_NE(complaint_of([&] {
+  EXPECT_NE(test::error_message([&] {
               in_models(rig, {Pinhole{}, Radial1{}});
             }).find("left.k1: the model pinhole has no such coefficient"),
             std::string::npos);

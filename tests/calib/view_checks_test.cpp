@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/error.h"
 #include "tests/support/board_defects.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -18,12 +18,7 @@ ObservationDiagnosis diagnosis_of(BoardObservations observations) {
 }
 
 std::string complaint_of(const BoardObservations& observations) {
-  try {
-    diagnosis_of(observations);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_message([&] { diagnosis_of(observations); });
 }
 
 /// Every defect on sets of two sizes of noise and several seeds.

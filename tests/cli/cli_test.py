@@ -11,6 +11,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -186,6 +187,17 @@ class RealPairs(Case):
         self.assertLess(sum(v['leverage'] for v in rig['view_influence']), 15)
         self.assertIn('does not hold', rig['proof']['notes'][0])
 
+    def test_report_of_held_parameters_and_other_names(self):
+        self.calibrate('--hold', 'left.ax=1')
+        self.works('convert', self.folder / 'rig.json', '--names', 'port,starboard', '-o',
+                   self.folder / 'named.json')
+        first, named = (self.page_data(self.folder / name)[0]['rigs'][0]
+                        for name in ('rig.json', 'named.json'))
+        self.assertEqual(named['proof']['notes'], [])
+        self.assertEqual(named['proof']['left_out'], first['proof']['left_out'])
+        for a, b in zip(first['proof']['models']['rows'], named['proof']['models']['rows']):
+            self.assertAlmostEqual(a['held_out_rms_px'], b['held_out_rms_px'], places=9)
+
     def test_wrong_board_size(self):
         self.complains('calibrate', '--left', IMAGES / 'left0[12].jpg', '--right',
                        IMAGES / 'right0[12].jpg', '--board', '11x8', '--square-m', '0.025', '-o',
@@ -330,6 +342,110 @@ class BadBoards(Case):
                       done.stderr)
 
 
+class IdleOptions(Case):
+    """Options that nothing would come of are refused, not passed over."""
+
+    def images(self):
+        for name in ('left1.png', 'right1.png'):
+            (self.folder / name).touch()
+        return ('calibrate', '--left', self.folder / 'l*.png', '--right', self.folder / 'r*.png',
+                '-o', self.folder / 'rig.json')
+
+    def test_beside_a_rig_file(self):
+        for option, *value in (
+                ['--left', 'l*'], ['--right', 'r*'], ['--camera', 'c*'], ['--board', '9x6'],
+                ['--target', 't'], ['--square-m', '1'], ['--marker-m', '1'],
+                ['--dictionary', '4x4_50'], ['--legacy'], ['--tag-m', '1'], ['--tag-spacing', '1'],
+                ['--family', '36h11'], ['--border-bits', '1'], ['--top-row-first'],
+                ['--corners', 'c'], ['--observations', 'o'], ['--size', '640x480']):
+            self.complains('check', 'nominal', option, *value,
+                           of=option + ': the rig file holds the corners; leave it out, or give')
+        for option, *value in (
+                ['--model', 'radial1'], ['--pixel-sigma', '1'], ['--hold', 'left.ax'],
+                ['--know', 'left.ax=1,1'], ['--prior', 'p'], ['--warp'], ['--keep-outliers']):
+            self.complains('check', 'nominal', option, *value,
+                           of=option + ': the rig file says how it was solved; leave it out, or')
+
+    def test_of_the_holdout(self):
+        for option in ('--splits', '--training-frames'):
+            self.complains('check', 'nominal', option, '9',
+                           of=option + ': it is of --holdout; add --holdout or leave it out')
+
+    def test_beside_images(self):
+        self.complains(*self.images(), '--board', '9x6', '--square-m', '1', '--size', '640x480',
+                       of='--size: the images say how large they are; leave it out')
+
+    def test_beside_observations(self):
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines()))
+        for option, *value in (['--board', '9x6'], ['--square-m', '1'], ['--target', 't'],
+                               ['--legacy'], ['--tag-spacing', '0.3'], ['--family', '36h11']):
+            self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size',
+                           '640x480', '-o', self.folder / 'rig.json', option, *value,
+                           of=option + ": the file of --observations holds the board's points")
+
+    def test_of_another_board(self):
+        chess, tags = ('--board', '9x6'), ('--board', 'apriltag:6x6', '--tag-m', '1')
+        charuco = ('--board', 'charuco:8x6', '--square-m', '3', '--marker-m', '2')
+        for board, option, *value in (
+                [chess, '--marker-m', '1'], [chess, '--dictionary', '4x4_50'], [chess, '--legacy'],
+                [tags, '--marker-m', '1'], [tags, '--legacy']):
+            self.complains(*self.images(), *board, option, *value,
+                           of=option + ': only a charuco board has it; leave it out')
+        for board, option, *value in (
+                [chess, '--tag-m', '1'], [chess, '--tag-spacing', '1'], [chess, '--family', '16h5'],
+                [charuco, '--border-bits', '1'], [charuco, '--top-row-first']):
+            self.complains(*self.images(), *board, option, *value,
+                           of=option + ': only a grid of AprilTags has it; leave it out')
+        self.complains(*self.images(), *tags, '--square-m', '1',
+                       of='--square-m: a grid of AprilTags has no squares, but --tag-m')
+
+    def test_beside_a_target_file(self):
+        target = self.folder / 'target.yaml'
+        target.write_text('target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\n'
+                          'tagSpacing: 0.3\ncodeOffset: 0\n')
+        for option in ('--square-m', '--tag-m', '--tag-spacing'):
+            self.complains(*self.images(), '--target', target, option, '1',
+                           of=option + ': the file of --target says it; leave it out')
+        self.complains(*self.images(), '--target', target, '--legacy',
+                       of='--legacy: the file of --target holds no charuco board')
+        target.write_text('target_type: checkerboard\ntargetCols: 9\ntargetRows: 6\n'
+                          'rowSpacingMeters: 0.025\ncolSpacingMeters: 0.025\n')
+        self.complains(*self.images(), '--target', target, '--family', '36h11',
+                       of='--family: the file of --target holds a chessboard, which has no tags')
+
+
+class SparedInputs(Case):
+    """No verb replaces what it reads."""
+
+    def spares(self, *words, file):
+        before = file.read_bytes()
+        self.complains(*words, of='is an input, which the output would replace; name another')
+        self.assertEqual(file.read_bytes(), before)
+
+    def test_rig_files(self):
+        rig = self.folder / 'rig.json'
+        rig.write_bytes((ROOT / 'datasets/rigs/nominal.rig.json').read_bytes())
+        self.spares('sample', rig, '-n', '2', '-o', rig, file=rig)
+        self.spares('report', rig, '-o', self.folder / '.' / 'rig.json', file=rig)
+        (self.folder / 'link').symlink_to(rig)
+        self.spares('sample', rig, '-n', '2', '-o', self.folder / 'link', file=rig)
+        os.link(rig, self.folder / 'uncertainty.json')
+        self.spares('uncertainty', rig, '--grid', '4x3', '-o', self.folder, file=rig)
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines()))
+        self.spares('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                    '--prior', rig, '-o', rig, file=rig)
+
+    def test_corners_and_images(self):
+        file = self.folder / 'o.csv'
+        file.write_text('\n'.join(board_lines()))
+        self.spares('calibrate', '--observations', file, '--size', '640x480', '-o', file, file=file)
+        self.spares('calibrate', '--corners', file, '--size', '640x480', '-o', file, file=file)
+        image = self.folder / 'left1.png'
+        image.write_bytes(b'kept')
+        self.spares('detect', '--left', self.folder / 'left*.png', '--board', '9x6', '-o', image,
+                    file=image)
+
+
 class BadInput(Case):
     def test_boards_that_are_not_given(self):
         for board, of in (('', 'the board is not given'), ('hexagons:3x3', 'no kind of board'),
@@ -416,6 +532,58 @@ class BadInput(Case):
                        of='whole number')
         self.complains('simulate', '--pose', '1,2,3,', of='is not 3 numbers')
 
+    def test_numbers_that_are_not_finite(self):
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines()))
+        calibrate = ('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                     '-o', self.folder / 'rig.json')
+        for words in ((*calibrate, '--pixel-sigma'), (*calibrate, '--square-m'),
+                      (*calibrate, '--tag-spacing'), ('advise', 'nominal', '--pixel-sigma'),
+                      ('advise', 'nominal', '--square-m'), ('advise', 'nominal', '--at-m'),
+                      ('convert', 'nominal', '-o', self.folder / 'r.json', '--unit-m'),
+                      ('diff', 'nominal', 'nominal', '--focus'),
+                      ('simulate', '--pose', '1,2,3', '--height-m')):
+            for number in ('nan', 'inf', '-1', '0'):
+                self.complains(*words, number,
+                               of=f'{words[-1]}: "{number}" is not a finite number above 0',
+                               leaves=[self.folder / 'rig.json', self.folder / 'r.json'])
+        self.complains('simulate', '--pose', '1,2,3', '--pitch-deg', 'nan',
+                       of='--pitch-deg: "nan" is not a finite number')
+        self.complains(*calibrate, '--hold', 'left.ax=nan', of='"nan" is not a finite number')
+        self.complains(*calibrate, '--know', 'left.ax=1,inf', of='"inf" is not a finite number')
+
+    def test_seeds_that_would_wrap(self):
+        for words in (('check', 'nominal', '--seed'),
+                      ('world', 'make', '-o', self.folder / 'w.toml', '--seed'),
+                      ('simulate', '--pose', '1,2,3', '--seed'),
+                      ('simulate', '--pose', '1,2,3', '--trial')):
+            self.complains(*words, '-1', of=words[-1] + ': "-1" is not a whole number of 0 or more')
+
+    def test_sizes_that_are_slips_of_the_pen(self):
+        for words in (('uncertainty', 'nominal', '--grid'),
+                      ('diff', 'nominal', 'nominal', '--grid'),
+                      ('detect', '--left', 'l*.png', '-o', self.folder / 'c.vnl', '--board'),
+                      ('advise', 'nominal', '--square-m', '0.1', '--board')):
+            for size in ('100000x100000', '3x1001', '1001x3'):
+                self.complains(*words, size,
+                               of=f'{words[-1]}: "{size}" has more than 1000 on a side; give fewer')
+
+    def test_markers_larger_than_their_squares(self):
+        (self.folder / 'c.vnl').write_text('# filename x y level\nleft1.png - - -\n')
+        self.complains('calibrate', '--corners', self.folder / 'c.vnl', '--board', 'charuco:8x6',
+                       '--square-m', '0.022', '--marker-m', '0.03', '--size', '640x480', '-o',
+                       self.folder / 'rig.json', of='its markers are not smaller than its squares')
+
+    def test_what_is_wrong_with_corners_begins_with_their_file(self):
+        lines = board_lines()
+        o = self.folder / 'o.csv'
+        words = ('calibrate', '--observations', o, '--size', '640x480', '-o',
+                 self.folder / 'r.json')
+        o.write_text('\n'.join(lines[:3] + [lines[3].rsplit(',', 2)[0] + ',700,3'] + lines[4:]))
+        self.complains(*words, of='o.csv:4: frame 0, camera 0, corner (row 0, col 2): its pixel '
+                                  '(700, 3) lies outside the image of 640x480')
+        o.write_text('\n'.join(lines + [f'99,{line[2:]}' for line in lines[1:109]]))
+        self.complains(*words, of='o.csv: frame 99, camera 0: it is the same view as frame 0')
+
     def test_a_file_where_a_folder_is_wanted(self):
         (self.folder / 'file').write_text('kept')
         (self.folder / 's.toml').write_text('[study]\ntrials = 5\n')
@@ -433,6 +601,15 @@ class BadInput(Case):
     def test_output_that_cannot_be_written(self):
         self.complains('world', 'make', '-o', self.folder / 'no' / 'such' / 'w.toml',
                        of='cannot be written')
+
+
+class OddNames(Case):
+    def test_a_page_of_a_file_whose_name_is_not_utf8(self):
+        name = os.fsdecode(b'caf\xe9.json')
+        (self.folder / name).write_bytes((ROOT / 'datasets/rigs/nominal.rig.json').read_bytes())
+        self.works('report', self.folder / name, '--no-proof', '-o', self.folder / 'page.html',
+                   errors='replace')
+        self.assertIn('caf\ufffd.json', (self.folder / 'page.html').read_text())
 
 
 class WrongRigs(Case):
@@ -512,22 +689,100 @@ class Check(Case):
         self.assertIsNone(found['mrcal']['max_projection_covariance_diff'])
         self.assertIn('no Python has mrcal', found['mrcal']['projection_reason'])
 
-    def test_a_gate_that_fails_is_exit_code_3(self):
+    def check_with(self, change):
+        """The check where mrcal's answer is changed on its way."""
         script = ROOT / 'python/mrcal_uncertainty.py'
         environment = self.share(
             'import json, runpy, sys\n'
             f'sys.path.insert(0, {str(script.parent)!r})\n'
             f'runpy.run_path({str(script)!r}, run_name="__main__")\n'
             'answer = json.load(open(sys.argv[2]))\n'
-            'answer["projection"][0][0][0][0] *= 1 + 1e-4\n'
+            f'{change}\n'
             'json.dump(answer, open(sys.argv[2], "w"))\n')
         done = vernier('check', 'nominal', '--trials', '40', '--json', env=environment)
         found = json.loads(done.stdout)
-        if found['mrcal'] is None or found['mrcal']['max_projection_covariance_diff'] is None:
+        if found['mrcal'] is None or 'projection_reason' in found['mrcal']:
             self.skipTest('mrcal is not here')
         self.assertEqual(done.returncode, 3, done.stderr)
+        return found
+
+    def test_a_figure_that_is_no_number_holds_no_gate(self):
+        found = self.check_with('answer["projection"][0][0][0][0] = None')
+        self.assertIsNone(found['mrcal']['max_projection_covariance_diff'])
+        self.assertIn("projection covariance, normalised differ from mrcal's by nan",
+                      found['doubts'][0])
+
+    def test_a_gate_that_fails_is_exit_code_3(self):
+        found = self.check_with('answer["projection"][0][0][0][0] *= 1 + 1e-4')
         self.assertAlmostEqual(found['mrcal']['max_projection_covariance_diff'], 1e-4, delta=1e-6)
         self.assertIn('projection covariance', found['doubts'][0])
+
+    def test_a_share_folder_of_ones_own_leaves_the_rest_to_the_installed_one(self):
+        share = self.folder / 'share'
+        (share / 'worlds').mkdir(parents=True)
+        (share / 'worlds/mine.world.toml').write_text(
+            (ROOT / 'datasets/worlds/workshop.world.toml').read_text())
+        environment = dict(os.environ, VERNIER_SHARE=str(share))
+        for world in ('mine', 'workshop'):
+            self.works('world', 'info', world, env=environment)
+        here, plain = (json.loads(self.works('check', 'nominal', '--trials', '40', '--json',
+                                             env=env).stdout)['mrcal']
+                       for env in (environment, os.environ))
+        if plain is None:
+            self.skipTest('the build has no mrcal')
+        self.assertEqual(here.get('projection_reason'), plain.get('projection_reason'))
+        doctors = [self.works('doctor', env=env).stdout.splitlines()
+                   for env in (environment, os.environ)]
+        different = [b for a, b in zip(*doctors) if a != b]
+        self.assertEqual(len(different), 1)
+        self.assertIn('shipped data', different[0])
+
+    def test_a_missing_script_is_said_and_none_of_the_working_directory_is_run(self):
+        alone = self.folder / 'bin/vernier'  # no share folder beside it
+        alone.parent.mkdir()
+        shutil.copy(PROGRAM, alone)
+        (self.folder / 'python').mkdir()
+        (self.folder / 'python/mrcal_uncertainty.py').write_text('open("was_run", "w")\n')
+        rig = ROOT / 'datasets/rigs/nominal.rig.json'
+        for share in (None, '', '.'):
+            environment = {k: v for k, v in os.environ.items() if k != 'VERNIER_SHARE'}
+            if share is not None:
+                environment['VERNIER_SHARE'] = share
+            run = dict(capture_output=True, text=True, cwd=self.folder, env=environment)
+            done = subprocess.run([alone, 'doctor'], **run)
+            self.assertIn('missing: share/vernier/python/mrcal_uncertainty.py', done.stdout)
+            done = subprocess.run([alone, 'check', rig, '--trials', '40', '--json'], **run)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            mrcal = json.loads(done.stdout)['mrcal']
+            self.assertFalse((self.folder / 'was_run').exists())
+            if mrcal is None:
+                self.skipTest('the build has no mrcal')
+            self.assertIn('mrcal_uncertainty.py is missing', mrcal['projection_reason'])
+            self.assertLessEqual(mrcal['max_parameter_diff_sigma'], 1e-6)
+
+    def test_a_python_that_fails_leaves_the_solutions_compared(self):
+        environment = self.share('import sys\nsys.exit("no such lens")\n')
+        done = vernier('check', 'nominal', '--trials', '40', '--json', env=environment)
+        found = json.loads(done.stdout)
+        if found['mrcal'] is None:
+            self.skipTest('the build has no mrcal')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('its Python failed: no such lens', found['doubts'][0])
+        self.assertLessEqual(found['mrcal']['max_parameter_diff_sigma'], 1e-6)
+
+    def test_holdout_is_refused_before_anything_is_solved(self):
+        def refuses(*more, of, **changed):
+            lines = board_lines(frames=changed.get('frames', 12))
+            if changed.get('cameras') == 1:
+                lines = lines[:1] + [line for line in lines[1:] if line.split(',')[1] == '0']
+            (self.folder / 'o.csv').write_text('\n'.join(lines))
+            self.complains('check', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                           '--trials', '10000000', '--holdout', *more, of=of)
+        refuses(cameras=1, of='--holdout: needs a pair of cameras and at least six frames; here '
+                              'are 1 of the one and 12 of the other')
+        refuses(frames=5, of='here are 2 of the one and 5 of the other')
+        for frames in ('2', '12'):
+            refuses('--training-frames', frames, of=f'--training-frames: {frames} of 12 frames')
 
     def test_bad_input(self):
         rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
@@ -536,6 +791,94 @@ class Check(Case):
         self.complains('check', self.folder / 'bare.json', of='no evidence to solve again')
         self.complains('check', of='exactly one kind of input')
         self.complains('check', 'nominal', '--trials', '0', of='trials')
+
+
+class CheckedFile(Case):
+    """What a rig file states against solving its evidence again."""
+
+    def calibrate(self, *more, lines=None):
+        (self.folder / 'o.csv').write_text('\n'.join(lines or board_lines()))
+        self.works('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                   '--no-model-check', '-o', self.folder / 'rig.json', *more)
+        return json.loads((self.folder / 'rig.json').read_text())
+
+    def check(self, code=0, name='rig.json'):
+        done = vernier('check', self.folder / name, '--no-mrcal', '--trials', '40', '--json')
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout), done.stderr
+
+    def holds(self, name='rig.json'):
+        found = self.check(name=name)[0]['file']
+        self.assertLess(found['max_parameter_diff_sigma'], 1e-4)
+        self.assertLess(found['max_covariance_diff'], 1e-4)
+
+    def test_files_of_this_program_hold(self):
+        wrong = board_lines()
+        for i in (100, 700, 1100):
+            fields = wrong[i].split(',')
+            wrong[i] = ','.join(fields[:7] + [str(float(fields[7]) + 9), fields[8]])
+        for more in ((), ('--pixel-sigma', '0.3'), ('--hold', 'left.ax=1'), ('--warp',),
+                     ('--hold', 'right.wx_rad', '--hold', 'right.tx_m=-0.06'),
+                     ('--model', 'opencv5,radial1')):
+            with self.subTest(more):
+                self.calibrate(*more)
+                self.holds()
+        rig = self.calibrate(lines=wrong)
+        self.assertEqual(len(rig['calibration']['outliers']), 3)
+        self.holds()
+
+    def test_a_changed_parameter_is_found(self):
+        rig = self.calibrate()
+        sigma = math.sqrt(rig['covariance_mvb']['matrix'][2][2])
+        rig['cameras'][0]['parameters']['ox_px'] += 0.01 * sigma
+        rig['parameters'][2] += 0.01 * sigma
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        found, said = self.check(3)
+        self.assertAlmostEqual(found['file']['max_parameter_diff_sigma'], 0.01, places=4)
+        self.assertLess(found['file']['max_covariance_diff'], 1e-4)
+        self.assertIn('parameters, in standard deviations differ from solving again by 1.0e-02 '
+                      '(left.ox_px; gate 1e-04)', said)
+
+    def test_a_changed_covariance_is_found(self):
+        rig = self.calibrate()
+        rig['covariance_mvb']['matrix'] = [[1.1 * x for x in row]
+                                           for row in rig['covariance_mvb']['matrix']]
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        found, said = self.check(3)
+        self.assertAlmostEqual(found['file']['max_covariance_diff'], 0.1, places=4)
+        self.assertIn('covariance_mvb, normalised differ from solving again', said)
+
+    def test_a_freed_hold_is_found(self):
+        rig = self.calibrate('--hold', 'left.ax=1')
+        rig['calibration']['held'] = []
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        found, _ = self.check(3)
+        self.assertAlmostEqual(found['file']['max_covariance_diff'], 1, places=9)
+
+    def test_a_hold_in_name_only_is_found(self):
+        rig = self.calibrate()
+        rig['calibration']['held'] = ['left.ax']
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        self.assertIsNone(self.check(3)[0]['file']['max_covariance_diff'])  # infinite
+
+    def test_holds_go_with_the_names_of_cameras(self):
+        self.calibrate('--hold', 'left.ax=1')
+        self.works('convert', self.folder / 'rig.json', '--names', 'port,starboard', '-o',
+                   self.folder / 'renamed.json')
+        self.holds('renamed.json')
+        rig = json.loads((self.folder / 'renamed.json').read_text())
+        self.assertEqual(rig['calibration']['held'], ['port.ax'])
+        rig['calibration']['held'] = ['left.ax']
+        (self.folder / 'renamed.json').write_text(json.dumps(rig))
+        self.complains('check', self.folder / 'renamed.json',
+                       of='calibration.held[0]: the rig has no parameter "left.ax"')
+
+    def test_a_prior_is_not_in_the_file(self):
+        self.calibrate('--know', 'left.f_px=500,1')
+        found, said = self.check()
+        self.assertIsNone(found['file'])
+        self.assertIn('the file holds no prior, so what it states is not compared', said)
+        self.assertIn('the file holds no prior', found['file_reason'])
 
 
 class Simulation(Case):
@@ -613,6 +956,9 @@ class Study(Case):
         self.works('study', self.study(20), '-o', self.folder / 'out', '-q')
         page = self.folder / 'report.html'
         self.works('report', self.folder / 'out', '-o', page)
+        for name in ('study.toml', 'rig.json', 'results.sqlite'):
+            self.complains('report', self.folder / 'out', '-o', self.folder / 'out' / name,
+                           of='is an input, which the output would replace')
         text = page.read_text()
         self.assertFalse('<!--VERNIER' in text, 'a mark of the template is left')
         self.assertIsNone(re.search(r'<(script|link|img)[^>]+(src|href)="?(http|//|[.\w]+/)', text))

@@ -126,6 +126,23 @@ class Convert(Case):
                        of='holds a reconstruction, whose files would be replaced')
         self.assertEqual(self.out('images.txt').read_bytes(), before)
 
+    def test_inputs_are_spared(self):
+        def spares(*words, file):
+            before = file.read_bytes()
+            self.complains('convert', *words, of='is an input, which the output would replace')
+            self.assertEqual(file.read_bytes(), before)
+        self.works('convert', 'nominal', '-o', self.out('rig.json'))
+        spares(self.out('rig.json'), '-o', self.out('rig.json'), file=self.out('rig.json'))
+        for to in ('mrcal', 'opencv', 'kalibr', 'ros', 'colmap'):
+            folder = self.out(to)
+            self.works('convert', 'nominal', '--to', to, '-o', f'{folder}/')
+            inputs = [folder] if to == 'colmap' else sorted(folder.iterdir())
+            spares(*inputs, '--from', to, '--to', to, '-o', folder,
+                   file=sorted(folder.iterdir())[0])
+        self.works('convert', self.out('mrcal', 'left.cameramodel'),
+                   self.out('mrcal', 'right.cameramodel'), '--names', 'a,b', '--to', 'mrcal', '-o',
+                   self.out('mrcal'))
+
     def test_millimetres(self):
         self.works('convert', 'nominal', '--to', 'kalibr', '-o', self.out('k.yaml'))
         text = self.out('k.yaml').read_text()

@@ -5,6 +5,7 @@
 
     uncertainty_test.py PROGRAM [unittest's options]
 """
+import csv
 import json
 import math
 import os
@@ -92,6 +93,45 @@ class Uncertainty(cli_test.Case):
             self.assertEqual({line.count(',') for line in lines}, {lines[0].count(',')})
         small = json.loads((folder / 'uncertainty.json').read_text())
         self.assertNotIn('covariance_px2', small['projection'][0]['grid'])
+
+    def named(self, left, right):
+        """The shipped rig with cameras of these names."""
+        rig = json.loads((cli_test.ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        names = {'left': left, 'right': right}
+        for camera in rig['cameras']:
+            camera['name'] = names[camera['name']]
+        rig['parameter_names'] = [names[n.split('.')[0]] + '.' + n.split('.')[1]
+                                  for n in rig['parameter_names']]
+        for view in rig['evidence']['observations']:
+            view['camera'] = names[view['camera']]
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        return self.folder / 'rig.json'
+
+    def test_names_that_files_cannot_have(self):
+        names = 'a, "b"', 'a/ /b/'
+        self.works('uncertainty', self.named(*names), '--grid', '4x3', '--samples', '50', '-o',
+                   self.folder / 'out')
+        for part in ('a___b_', 'a___b__2'):
+            self.assertTrue((self.folder / f'out/projection_{part}_1m.csv').is_file())
+            self.assertTrue((self.folder / f'out/projection_{part}_1m.svg').is_file())
+        for name, cameras in (('projection', set(names)), ('triangulation', {names[1]}),
+                              ('vertical_disparity', {names[1]}), ('depth', {names[1]})):
+            with open(self.folder / f'out/{name}.csv', newline='') as file:
+                rows = list(csv.reader(file))
+            self.assertEqual({len(row) for row in rows}, {len(rows[0])})
+            self.assertEqual({row[0] for row in rows[1:]}, cameras)
+
+    def test_an_image_of_one_column(self):
+        rig = json.loads((cli_test.ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        del rig['evidence']
+        for camera in rig['cameras']:
+            camera['size_px'][0] = 1
+        (self.folder / 'thin.json').write_text(json.dumps(rig))
+        self.works('uncertainty', self.folder / 'thin.json', '--grid', '2x9', '--samples', '50',
+                   '-o', self.folder / 'out', timeout=60)
+        text = (self.folder / 'out/projection_left_any_camera.svg').read_text()
+        self.assertNotIn('nan', text)
+        self.assertEqual(text.count('v5"'), 1)  # one tick along u
 
     def test_one_camera_has_no_pair(self):
         rig = json.loads(self.calibrate('--no-evidence').read_text())

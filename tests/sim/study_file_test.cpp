@@ -4,18 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/error.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 namespace {
 
 std::string complaint_of(const std::string& text) {
-  try {
-    parse_study(text, "s.toml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_message([&] { parse_study(text, "s.toml"); });
 }
 
 TEST(StudyFile, DefaultsAreTheMemos) {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "calib/error.h"
 #include "calib/imported_rig.h"
 #include "tests/support/scenes.h"
 
@@ -46,17 +45,6 @@ class Folder {
  private:
   std::filesystem::path path_;
 };
-
-/// What an Error says; empty where there is none.
-template <typename Action>
-std::string complaint_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// One to three cameras with names, sizes and poses of their own, none of them round numbers.
 inline Rig rig_of_cameras(const CameraModel& model, int count) {

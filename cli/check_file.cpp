@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/check_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/imported_rig.h"
+#include "calib/model_nesting.h"
+#include "calib/mrcal/mrcal_comparison.h"
+
+namespace vernier::cli {
+namespace {
+
+/// A minimum that Ceres alone finds (a free warp) is some 1e-6 standard deviations off; opencv8's
+/// bound has five digits.
+constexpr double gate = 1e-4;
+
+Gate parameter_gate(const Rig& stated, const RigEstimate& again) {
+  Gate worst{"parameters, in standard deviations", "max_parameter_diff_sigma", "", 0, gate};
+  const std::vector<std::string> names = parameter_names(stated);
+  const Eigen::VectorXd delta = difference(stated, again.rig);
+  const Eigen::VectorXd sd = again.covariance_mvb->diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < delta.size(); ++i) {
+    if (sd[i] == 0) continue;  // held where the file has it
+    const double in_sigma = std::abs(delta[i]) / sd[i];
+    if (!is_worse(in_sigma, worst.value)) continue;
+    worst.value = in_sigma;
+    worst.where = names[static_cast<std::size_t>(i)];
+  }
+  return worst;
+}
+
+Gate covariance_gate_of(const RigEstimate& stated, const RigEstimate& again) {
+  const Eigen::MatrixXd &A = *stated.covariance_mvb, &B = *again.covariance_mvb;
+  CovarianceDifference worst = normalised_difference(A, B);
+  for (int i = 0; i < static_cast<int>(B.rows()); ++i) {  // what is held has no variance
+    if (B(i, i) == 0 && A(i, i) != 0) worst = {std::numeric_limits<double>::infinity(), i, i};
+  }
+  const std::vector<std::string> names = parameter_names(stated.rig);
+  return {"covariance_mvb, normalised", "max_covariance_diff",
+          names[worst.row] + ", " + names[worst.column], worst.largest, gate};
+}
+
+}  // namespace
+
+CalibrationOptions options_of_file(const RigEstimate& estimate) {
+  const CalibrationSummary& summary = *estimate.calibration;
+  CalibrationOptions options;
+  options.models = models_of(estimate.rig);
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  const Eigen::VectorXd values = parameters(estimate.rig);
+  for (const std::string& held : summary.held) {
+    const auto i = std::find(names.begin(), names.end(), held) - names.begin();
+    if (i < values.size()) options.held.push_back({held, values[i]});
+  }
+  // A noise estimated from the residuals makes χ² the degrees of freedom.
+  const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
+  options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
+  options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
+  options.reject_outliers = false;
+  options.check_input = false;
+  options.white_noise = estimate.covariance && estimate.covariance->kind == CovarianceKind::mvb;
+  return options;
+}
+
+RigEstimate with_default_names(RigEstimate estimate) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < estimate.rig.cameras.size(); ++i) {
+    names.push_back(default_camera_name(i));
+  }
+  rename_cameras(estimate, names);
+  return estimate;
+}
+
+CheckPart check_file(const RigEstimate& stated, const RigEstimate& again) {
+  CheckPart part;
+  if (stated.calibration->prior_dof > 0) {
+    part.reason =
+        "the file holds no prior, so what it states is not compared with solving again; the rest "
+        "is checked without the prior that the calibration had";
+    part.text = part.reason + "\n";
+    return part;
+  }
+  std::vector<Gate> gates{parameter_gate(stated.rig, again)};
+  if (stated.covariance_mvb) gates.push_back(covariance_gate_of(stated, again));
+  add_gates("file against solving again", "solving again", gates, part);
+  if (!stated.covariance_mvb) part.text += "  the file has no covariance_mvb to compare\n";
+  return part;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace vernier::cli {
+
+/// Throws Error where writing `output` would replace one of the files that were read, by whatever
+/// name or link. Inputs that are not there are passed over.
+void spare_inputs(const std::vector<std::filesystem::path>& inputs,
+                  const std::filesystem::path& output);
+
+}  // namespace vernier::cli

@@ -104,16 +104,17 @@ struct PackLoss {
   Pack cost, weight;
 };
 HWY_INLINE PackLoss loss_of(const Loss& loss, Weighting weighting, Pack r) {
-  const Pack one(1.0), c(loss.limit), r2 = r * r, zero(0.0);
-  if (loss.shape == LossShape::square) return {r2, one};
+  const Pack one(1.0), c(loss.limit), gain(loss.gain), r2 = r * r, zero(0.0);
+  if (loss.shape == LossShape::square) return {gain * r2, gain};
   if (loss.shape == LossShape::huber) {
     const Pack a = magnitude(r), inside = at_most(a, c), w = at_most(one, c / a);
     const Pack curvature(hn::IfThenElseZero(hn::Lt(a.lanes, c.lanes), one.lanes));
-    return {inside * (a + a - inside), weighting == Weighting::weight ? w : curvature};
+    return {gain * inside * (a + a - inside),
+            gain * (weighting == Weighting::weight ? w : curvature)};
   }
   const Pack share = r2 / (c * c), t = at_least(zero, one - share);
   const Pack cost = c * c * Pack(1.0 / 3.0) * (one - t * t * t);
-  return {cost, weighting == Weighting::weight ? t * t : t * (one - Pack(5.0) * share)};
+  return {gain * cost, gain * t * (weighting == Weighting::weight ? t : one - Pack(5.0) * share)};
 }
 
 constexpr int tile = 4;           // columns of a square of sums

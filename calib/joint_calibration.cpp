@@ -69,10 +69,10 @@ void minimise_robustly(Joint& joint, double fixed_scale) {
   joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
   for (int round = 0; round < huber_rounds; ++round) {
     joint.cost.pair_sigma_scale = scale(true);
-    if (reweigh(joint, {LossShape::huber, huber_limit}) < 1e-2) break;
+    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2) break;
     minimise(joint);
   }
-  joint.loss = {LossShape::tukey, tukey_limit};
+  joint.loss = balanced(LossShape::tukey, tukey_limit);
   for (int round = 0; round < tukey_rounds; ++round) {
     joint.cost.pair_sigma_scale = scale(false);
     if (reweigh(joint, joint.loss) < 1e-7) break;

@@ -20,7 +20,7 @@ struct ReprojectionProblem {
   /// One weight in [0, 1] a corner of every view, in the order of the observations; empty: all 1.
   std::vector<std::vector<double>> corner_weights;
   PairObservations pairs;            ///< matched corners of any scene; none: a board alone
-  std::vector<double> pair_weights;  ///< one in [0, 1] a row; empty: all 1
+  std::vector<double> pair_weights;  ///< one a row, 0 or above; empty: all 1
   double pair_sigma_scale = 1;       ///< multiplies the noise that the pairs state
   int max_iterations = 200;
   bool must_converge = true;  ///< else the state after the last iteration will do

@@ -169,5 +169,19 @@ TEST(Epipolar, ResolverEndsWhereCeresDoes) {
   EXPECT_LT(std::sqrt(d.dot(system.information * d)), 1e-6);
 }
 
+TEST(Epipolar, BalancedLossesHaveTheMeanCurvatureOfTheSquare) {
+  for (const Loss& loss : {balanced(LossShape::huber, 1.345), balanced(LossShape::tukey, 5),
+                           balanced(LossShape::tukey, 3)}) {
+    double mean = 0;  // of ρ''/2 by the trapezium rule over the normal density
+    const double h = 1e-3;
+    for (double z = -9; z < 9; z += h) {
+      const double bend =
+          (weight_of(loss, z + h / 2) * (z + h / 2) - weight_of(loss, z - h / 2) * (z - h / 2)) / h;
+      mean += h * bend * std::exp(-z * z / 2) / std::sqrt(2 * std::acos(-1.0));
+    }
+    EXPECT_NEAR(mean, 1, 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace vernier

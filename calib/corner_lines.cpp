@@ -2,35 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/corner_lines.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
-#include "calib/atomic_file.h"
+#include "calib/error.h"
 
 namespace vernier::corner_lines {
-
-Lines::Lines(const std::filesystem::path& file) : file_(file), text_(read_whole(file)) {}
-
-bool Lines::next(std::string_view& line) {
-  if (begin_ >= text_.size()) return false;
-  const std::size_t end = std::min(text_.find('\n', begin_), text_.size());
-  line = std::string_view(text_).substr(begin_, end - begin_);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  begin_ = end + 1;
-  ++number_;
-  return true;
-}
-
-std::vector<std::string_view> split(std::string_view line, std::string_view separators) {
-  std::vector<std::string_view> fields;
-  std::size_t begin = 0;
-  const bool blanks = separators.find(' ') != std::string_view::npos;
-  while (begin <= line.size()) {
-    const std::size_t end = std::min(line.find_first_of(separators, begin), line.size());
-    if (!blanks || end > begin) fields.push_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return fields;
-}
 
 void check_pixel(const Eigen::Vector2d& pixel_px,
                  std::size_t camera,

@@ -10,14 +10,12 @@
 #include "calib/corner_lines.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
+#include "calib/text_lines.h"
 
 namespace vernier {
 namespace {
 
 using corner_lines::check_pixel;
-using corner_lines::Lines;
-using corner_lines::parse_number;
-using corner_lines::split;
 
 /// The images' cameras in order of first appearance, which is how a corners file numbers them.
 class CameraOrder {
@@ -57,7 +55,7 @@ void check_image_name(const BoardView& view, CameraOrder& cameras) {
 /// The fourth column, 0 where there is none; below 0, as "-", it says that there is no corner.
 int level_of(const std::vector<std::string_view>& fields, const std::string& place) {
   if (fields.size() < 4) return 0;
-  return fields[3] == "-" ? -1 : parse_number<int>(fields[3], place, "level");
+  return fields[3] == "-" ? -1 : parse_whole(fields[3], place, "level");
 }
 
 /// What a corners file has said so far.
@@ -78,8 +76,8 @@ class CornerReader {
                   fmt::format("the board is said to be a {}", name_of(target_)));
     }
     if (fields[1] == "-" || level_of(fields, place) < 0) return;
-    const Eigen::Vector2d pixel_px(parse_number<double>(fields[1], place, "x"),
-                                   parse_number<double>(fields[2], place, "y"));
+    const Eigen::Vector2d pixel_px(parse_real(fields[1], place, "x"),
+                                   parse_real(fields[2], place, "y"));
     check_pixel(pixel_px, view.camera, size_px_, place,
                 fmt::format("{}, corner (row {}, col {})", image, id / grid_.x(), id % grid_.x()));
     view.ids.push_back(id);
@@ -148,21 +146,21 @@ BoardObservations read_corners(const std::filesystem::path& file,
                                const std::vector<Eigen::Vector2i>& size_px) {
   check_target(target);
   CornerReader reader(target, size_px);
-  Lines lines(file);
+  TextLines lines(file);
   std::string_view line;
   while (lines.next(line)) {
-    if (!line.empty() && line.front() != '#') reader.add(split(line, " \t"), lines.place());
+    if (!line.empty() && line.front() != '#') reader.add(split_fields(line, " \t"), lines.place());
   }
   return reader.take(file);
 }
 
 int count_coarse_corners(const std::filesystem::path& file) {
-  Lines lines(file);
+  TextLines lines(file);
   std::string_view line;
   int count = 0;
   while (lines.next(line)) {
     if (line.empty() || line.front() == '#') continue;
-    const auto fields = split(line, " \t");
+    const auto fields = split_fields(line, " \t");
     count += fields.size() > 3 && fields[1] != "-" && level_of(fields, lines.place()) > 0;
   }
   return count;

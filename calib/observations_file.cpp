@@ -12,14 +12,12 @@
 #include "calib/atomic_file.h"
 #include "calib/corner_lines.h"
 #include "calib/error.h"
+#include "calib/text_lines.h"
 
 namespace vernier {
 namespace {
 
 using corner_lines::check_pixel;
-using corner_lines::Lines;
-using corner_lines::parse_number;
-using corner_lines::split;
 
 constexpr int camera_limit = 1024;  // a wrong column read as the camera must not reserve memory
 constexpr std::string_view observation_header = "frame,camera,row,col,X,Y,Z,qx,qy";
@@ -31,18 +29,18 @@ struct CornerRow {
 };
 
 CornerRow parse_row(std::string_view line, const std::string& place) {
-  const auto fields = split(line, ",");
+  const auto fields = split_fields(line, ",");
   if (fields.size() < 9) {
     throw Error(place, fmt::format("{} columns where at least 9 are needed", fields.size()),
                 fmt::format("the columns are {}", observation_header));
   }
   CornerRow r{};
-  r.frame = parse_number<int>(fields[0], place, "frame");
-  r.camera = parse_number<int>(fields[1], place, "camera");
-  r.row = parse_number<int>(fields[2], place, "row");
-  r.col = parse_number<int>(fields[3], place, "col");
-  for (int i = 0; i < 3; ++i) r.target_m[i] = parse_number<double>(fields[4 + i], place, "X, Y, Z");
-  for (int i = 0; i < 2; ++i) r.pixel_px[i] = parse_number<double>(fields[7 + i], place, "qx, qy");
+  r.frame = parse_whole(fields[0], place, "frame");
+  r.camera = parse_whole(fields[1], place, "camera");
+  r.row = parse_whole(fields[2], place, "row");
+  r.col = parse_whole(fields[3], place, "col");
+  for (int i = 0; i < 3; ++i) r.target_m[i] = parse_real(fields[4 + i], place, "X, Y, Z");
+  for (int i = 0; i < 2; ++i) r.pixel_px[i] = parse_real(fields[7 + i], place, "qx, qy");
   if (!r.target_m.allFinite() || !r.pixel_px.allFinite()) {
     throw Error(place, "a coordinate is not finite", "correct or remove the line");
   }
@@ -116,7 +114,7 @@ class ObservationRows {
 
 BoardObservations read_observations(const std::filesystem::path& file,
                                     const std::vector<Eigen::Vector2i>& size_px) {
-  Lines lines(file);
+  TextLines lines(file);
   std::string_view line;
   if (!lines.next(line) || line.substr(0, observation_header.size()) != observation_header) {
     throw Error(file.string() + ":1", "the first line is not the header of an observations file",

@@ -38,7 +38,7 @@ void grid_from_evidence(benchmark::State& state) {
   const BoardState solved{estimate().rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   const auto names = parameter_names(estimate().rig);
   for (auto _ : state) {
-    RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::bound);
+    RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
     joint.rig_covariance = minimum_variance_bound(
         reduced_normal_equations(evidence.observations, solved, joint.board_sigma_px), names);
     const ProjectionUncertainty u(joint, 1, PointFixedTo::boards);
@@ -47,7 +47,7 @@ void grid_from_evidence(benchmark::State& state) {
 }
 
 void grid_prepared(benchmark::State& state) {
-  const ProjectionUncertainty u(rig_and_boards(estimate(), CovarianceChoice::bound), 1,
+  const ProjectionUncertainty u(rig_and_boards(estimate(), CovarianceChoice::mvb), 1,
                                 PointFixedTo::boards);
   for (auto _ : state) benchmark::DoNotOptimize(projection_grid(u, 60, 45, 1));
 }

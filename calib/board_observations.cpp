@@ -39,6 +39,12 @@ void check_view(const BoardView& view, const BoardObservations& observations) {
                   "check the image size, or that the corners belong to these images");
     }
   }
+  if (!fixes_pose(observations.target_m, view.ids)) {
+    throw Error(place,
+                "its corners, all but one at most, lie on one line of the board, which fixes no "
+                "pose of it",
+                "leave the view out");
+  }
 }
 
 }  // namespace
@@ -49,6 +55,37 @@ std::vector<int> frames_of(const BoardObservations& observations) {
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames;
+}
+
+bool fixes_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids) {
+  if (ids.size() < 4) return false;
+  // A line that all but one are on holds two of the first three, whichever that one is.
+  for (int without = 0; without < 3; ++without) {
+    const Eigen::Vector3d& a = target_m[ids[(without + 1) % 3]];
+    const Eigen::Vector3d along = target_m[ids[(without + 2) % 3]] - a;
+    const auto beside = [&](int id) {
+      const Eigen::Vector3d d = target_m[id] - a;
+      return d.cross(along).norm() > 1e-6 * d.norm() * along.norm();
+    };
+    if (std::count_if(ids.begin(), ids.end(), beside) < 2) return false;
+  }
+  return true;
+}
+
+std::vector<int> evenly_spaced(const std::vector<int>& frames, int most) {
+  const std::size_t n = frames.size(), count = static_cast<std::size_t>(std::max(0, most));
+  if (n <= count) return frames;
+  std::vector<int> some;
+  for (std::size_t k = 0; k < count; ++k) some.push_back(frames[k * n / count]);
+  return some;
+}
+
+BoardObservations at_frames(const BoardObservations& observations, const std::vector<int>& frames) {
+  BoardObservations part = observations;
+  std::erase_if(part.views, [&](const BoardView& view) {
+    return !std::binary_search(frames.begin(), frames.end(), view.frame);
+  });
+  return part;
 }
 
 void check_and_sort(BoardObservations& observations) {

@@ -29,9 +29,20 @@ struct BoardObservations {
 /// The distinct frame numbers, ascending.
 std::vector<int> frames_of(const BoardObservations& observations);
 
+/// Whether these corners of the target fix its pose: four or more, and two at least beside any line
+/// of the board. Corners in a row leave it free to turn about them.
+bool fixes_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids);
+
+/// Evenly spaced ones of `frames`, so many at most.
+std::vector<int> evenly_spaced(const std::vector<int>& frames, int most);
+
+/// The views of some frames, ascending.
+BoardObservations at_frames(const BoardObservations& observations, const std::vector<int>& frames);
+
 /// Sorts the views by frame, then camera, and checks that the observations can be calibrated from:
 /// sizes given, camera and corner indices in range, no camera twice in a frame, pixels finite and
-/// inside the image, at least four corners a view. Throws Error naming frame, camera, corner.
+/// inside the image, corners of a view that fix the board's pose. Throws Error naming frame,
+/// camera, corner.
 void check_and_sort(BoardObservations& observations);
 
 }  // namespace vernier

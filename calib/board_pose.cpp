@@ -75,14 +75,18 @@ Pose board_pose(const std::vector<Eigen::Vector3d>& target_m,
     target.emplace_back(X.x(), X.y(), X.z());
     rays.push_back(undistorted(camera, view.pixels_px[i]));
   }
+  const Error misfit(
+      "frame " + std::to_string(view.frame) + ", camera " + std::to_string(view.camera),
+      "no pose fits its corners", "leave the view out");
   cv::Vec3d r, t;
-  cv::solvePnP(target, rays, cv::Matx33d::eye(), cv::noArray(), r, t, false,
-               cv::SOLVEPNP_ITERATIVE);
-  Pose pose{rotation_from_vector({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
-  if (!pose.t.allFinite() || !pose.R.allFinite()) {
-    throw Error("frame " + std::to_string(view.frame) + ", camera " + std::to_string(view.camera),
-                "no pose fits its corners", "leave the view out");
+  try {
+    cv::solvePnP(target, rays, cv::Matx33d::eye(), cv::noArray(), r, t, false,
+                 cv::SOLVEPNP_ITERATIVE);
+  } catch (const cv::Exception&) {
+    throw misfit;
   }
+  Pose pose{rotation_from_vector({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
+  if (!pose.t.allFinite() || !pose.R.allFinite()) throw misfit;
   return pose;
 }
 

@@ -11,6 +11,7 @@
 #include "calib/board_warp.h"
 #include "calib/error.h"
 #include "calib/honest_covariance.h"
+#include "calib/linearised_cost.h"
 #include "calib/minimise_reprojection.h"
 #include "calib/model_nesting.h"
 #include "calib/observation_checks.h"
@@ -29,12 +30,10 @@ struct Solution {
   BoardState state;
   std::vector<CornerOutlier> outliers;
   ReprojectionProblem problem;
-  ObservationDiagnosis said;         // of the observations, before they were solved
-  ReducedNormalEquations equations;  // over the free directions, priors included, σ as in problem
-  Eigen::MatrixXd free;              // those directions
-  std::vector<std::string> names;    // of what is free
-  Eigen::MatrixXd bound;             // of what is free
-  double data_parameters = 0;        // how many of them the corners determine, tr(C S_data)
+  ObservationDiagnosis said;   // of the observations, before they were solved
+  LinearisedCost cost;         // at the state
+  Eigen::MatrixXd bound;       // of what is free
+  double data_parameters = 0;  // how many of that the corners determine, tr(C S_data)
 };
 
 /// The normal equations and the bound at the solution's state.
@@ -44,31 +43,21 @@ void linearise(Solution& s) {
     refined = refine_minimum(s.observations, s.state, s.problem.held);
     if (refined.converged) s.state = refined.state;
   }
-  const BoardState& state = s.state;
-  s.free = free_directions(state.rig, s.problem.held);
-  s.names = free_names(state.rig, s.problem.held);
-  if (s.names.empty()) throw Error("calibration", "every parameter is held", "free one");
-  s.equations = restricted(
-      reduced_normal_equations(s.observations, state, s.problem.pixel_sigma_px, s.problem.warp),
-      s.free);
-  for (const RigPrior& prior : s.problem.priors) {
-    const Eigen::MatrixXd J = prior_offset(prior, state.rig).by_rig * s.free;
-    add_prior(s.equations, J.transpose() * prior.information * J);
-  }
-  s.bound = minimum_variance_bound(s.equations, s.names);
+  s.cost = linearised_cost(s.observations, s.state, s.problem);
+  s.bound = minimum_variance_bound(s.cost.equations, s.cost.names);
   if (refined.converged) {  // the same with more digits
     s.bound = s.problem.pixel_sigma_px * s.problem.pixel_sigma_px * refined.free_bound;
   }
-  s.data_parameters = static_cast<double>(s.names.size());
+  s.data_parameters = static_cast<double>(s.cost.names.size());
   if (!s.problem.priors.empty()) {
-    s.data_parameters -= (s.bound * s.equations.prior_information).trace();
+    s.data_parameters -= (s.bound * s.cost.equations.prior_information).trace();
   }
 }
 
 double degrees_of_freedom(const Solution& s) {
   const double nuisance =
       6 * static_cast<double>(s.state.frames.size()) + (s.problem.warp == BoardWarp::free ? 2 : 0);
-  return s.equations.residuals - s.data_parameters - nuisance;
+  return s.cost.equations.residuals - s.data_parameters - nuisance;
 }
 
 /// σ from the residuals, with their degrees of freedom.
@@ -77,7 +66,7 @@ double estimated_sigma(const Solution& s) {
   if (!(dof > 0)) {
     throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
   }
-  return s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / dof);
+  return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / dof);
 }
 
 /// The rig with opencv5 in place of poorer models, or nothing where there is none.
@@ -101,34 +90,42 @@ std::vector<BoardView> views_of(const BoardObservations& observations, int frame
   return views;
 }
 
-/// What a lens model rich enough takes for outliers, once it is fitted to what `fit` left in;
-/// frames that are out whole get a pose by that lens first. Nothing where the views do not
-/// determine it.
+/// Puts the boards where `other` has them, at the frames that both have.
+void replace_poses(BoardState& state, const BoardState& other) {
+  for (std::size_t f = 0; f < state.frames.size(); ++f) {
+    const auto at = std::lower_bound(other.frames.begin(), other.frames.end(), state.frames[f]);
+    if (at == other.frames.end() || *at != state.frames[f]) continue;
+    state.T_first_board[f] = other.T_first_board[at - other.frames.begin()];
+  }
+}
+
+/// What a lens model rich enough takes for outliers, once it is fitted to what `fit` left in, and
+/// where its boards stand; frames that are out whole get a pose by that lens first, from `robust`.
+/// Nothing where there is no such lens or the views do not determine it.
 std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
+                                                 const BoardState& robust,
                                                  const RobustFit& fit,
                                                  const CalibrationOptions& options) {
-  const std::optional<Rig> rig = with_richer_lenses(s.state.rig);
+  const std::optional<Rig> rig = with_richer_lenses(robust.rig);
   if (!rig) return {};
-  ReprojectionProblem problem = problem_of(options, *rig);
-  problem.must_converge = false;
-  BoardState inside = fit.state;
-  inside.rig = in_models(inside.rig, models_of(*rig));
+  BoardState whole = robust;
   try {
+    ReprojectionProblem problem = problem_of(options, *rig);
+    problem.must_converge = false;
+    BoardState inside = fit.state;
+    inside.rig = *rig;
     inside = minimise_reprojection(fit.inliers, inside, problem);
+    whole.rig = inside.rig;
+    whole.warp_m = inside.warp_m;
+    replace_poses(whole, inside);
   } catch (const Error&) {
     return {};
   }
-  BoardState whole = s.state;
-  whole.rig = inside.rig;
-  whole.warp_m = inside.warp_m;
-  const auto target_m = warped_target(s.observations.target_m, inside.warp_m);
-  for (std::size_t f = 0, k = 0; f < whole.frames.size(); ++f) {
-    while (k < inside.frames.size() && inside.frames[k] < whole.frames[f]) ++k;
-    if (k < inside.frames.size() && inside.frames[k] == whole.frames[f]) {
-      whole.T_first_board[f] = inside.T_first_board[k];
-      continue;
-    }
-    const std::vector<BoardView> views = views_of(s.observations, whole.frames[f]);
+  const auto target_m = warped_target(s.observations.target_m, whole.warp_m);
+  for (std::size_t f = 0; f < whole.frames.size(); ++f) {
+    const int frame = whole.frames[f];
+    if (std::binary_search(fit.state.frames.begin(), fit.state.frames.end(), frame)) continue;
+    const std::vector<BoardView> views = views_of(s.observations, frame);
     whole.T_first_board[f] =
         fit_board_pose(target_m, views, whole.rig, whole.T_first_board[f], 50).T_first_board;
   }
@@ -136,18 +133,25 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
 }
 
 /// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
-/// cannot fit is not taken for wrong corners.
+/// cannot fit is not taken for wrong corners. The wanted one's own robust minimum is where least
+/// squares begins then: without outliers, plain least squares may be in another valley.
 void reject_outliers(Solution& s, const CalibrationOptions& options) {
-  RobustFit fit = without_outliers(s.observations, s.state, s.problem);
+  const std::optional<BoardState> robust = robust_minimum(s.observations, s.state, s.problem);
+  if (!robust) return;
+  RobustFit fit = outliers_at(s.observations, *robust);
   if (fit.outliers.empty()) return;
-  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, fit, options)) {
-    if (judged->outliers.empty()) return;
-    judged->state = at_frames(s.state, judged->state.frames);
+  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, *robust, fit, options)) {
+    judged->state.rig = fit.state.rig;
+    judged->state.warp_m = fit.state.warp_m;
+    replace_poses(judged->state, fit.state);
     fit = std::move(*judged);
-    fit.state = minimise_reprojection(fit.inliers, fit.state, s.problem);
   }
+  if (fit.outliers.empty()) return;
+  const auto cameras = cameras_left_out(s.observations, fit.inliers, s.state.rig);
+  s.said.doubts.insert(s.said.doubts.end(), cameras.begin(), cameras.end());
+  if (!cameras.empty()) return;
+  s.state = minimise_reprojection(fit.inliers, fit.state, s.problem);
   s.observations = std::move(fit.inliers);
-  s.state = std::move(fit.state);
   s.outliers = std::move(fit.outliers);
 }
 
@@ -197,7 +201,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   if (s.problem.priors.empty()) {  // σ does not move the solution
     const double sigma = estimated_sigma(s);
     s.problem.pixel_sigma_px = sigma;
-    s.equations = rescaled(std::move(s.equations), sigma);
+    s.cost.equations = rescaled(std::move(s.cost.equations), sigma);
     s.bound *= sigma * sigma;
     return s;
   }
@@ -230,14 +234,16 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   CalibrationSummary summary;
   summary.views = static_cast<int>(s.state.frames.size());
   summary.pixel_sigma_px = s.problem.pixel_sigma_px;
-  summary.rms_px = s.problem.pixel_sigma_px * std::sqrt(s.equations.chi2 / s.equations.residuals);
-  summary.chi2 = s.equations.chi2;
+  summary.rms_px =
+      s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / s.cost.equations.residuals);
+  summary.chi2 = s.cost.equations.chi2;
   const double dof = degrees_of_freedom(s);
   if (!(dof > 0)) {
     throw Error("calibration", "fewer corner coordinates than unknowns", "add views");
   }
   summary.dof = static_cast<int>(std::lround(dof));
   summary.outliers = s.outliers;
+  measure_outliers(s.observations.target_m, s.state, summary.outliers);
   summary.warnings = s.said.warnings;
   summary.doubts = s.said.doubts;
   if (summary.rms_px > largest_corner_noise_px) {
@@ -246,8 +252,10 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {
     summary.prior_chi2 += prior_chi2(prior, s.state.rig);
-    summary.prior_dof += static_cast<int>((prior.information.diagonal().array() > 0).count());
   }
+  const auto known =
+      options.known.size() + (options.prior ? options.prior->covariance.names.size() : 0);
+  summary.prior_dof = static_cast<int>(known);
   return summary;
 }
 
@@ -265,7 +273,7 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
         typical));
   }
   const auto out = summary.outliers.size();
-  const auto all = out + static_cast<std::size_t>(s.equations.residuals) / 2;
+  const auto all = out + static_cast<std::size_t>(s.cost.equations.residuals) / 2;
   if (out > 0) {
     warnings.push_back(fmt::format("{} of {} corners were left out as outliers{}", out, all,
                                    100 * out > 2 * all
@@ -296,11 +304,12 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   estimate.rig = s.state.rig;
   const std::vector<std::string> names = parameter_names(s.state.rig);
   const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
-    return s.free * C * s.free.transpose();
+    return s.cost.free * C * s.cost.free.transpose();
   };
   estimate.covariance_mvb = expand(s.bound);
-  const Covariance honest = options.white_noise ? Covariance{CovarianceKind::mvb, s.names, s.bound}
-                                                : honest_covariance(s.equations, s.bound, s.names);
+  const Covariance honest = options.white_noise
+                                ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
+                                : honest_covariance(s.cost.equations, s.bound, s.cost.names);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
   estimate.calibration = summary_of(s, options);
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);

@@ -6,10 +6,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "calib/error.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
@@ -130,7 +132,6 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
   if (n == 0 || C.cols() != n || static_cast<Eigen::Index>(covariance.names.size()) != n) {
     throw Error("covariance", "it is not square, or its names do not match", "check the rig file");
   }
-  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!(C(i, i) >= 0) || !C.row(i).allFinite()) {
       throw Error("covariance", "the variance of " + covariance.names[i] + " is not a number >= 0",
@@ -138,25 +139,20 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
     }
   }
   // A parameter without variance is held: it takes no part in any direction.
-  const Eigen::VectorXd inverse_sd = sd.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
-  const Eigen::MatrixXd R = inverse_sd.asDiagonal() * C * inverse_sd.asDiagonal();
-  if (!((R - R.transpose()).cwiseAbs().maxCoeff() < 1e-9)) {
+  const ScaledEigen eigen(C);
+  const Eigen::VectorXd& sd = eigen.deviations;
+  const Eigen::MatrixXd unit = (sd * sd.transpose()).cwiseMax(std::numeric_limits<double>::min());
+  if (!((C - C.transpose()).cwiseQuotient(unit).cwiseAbs().maxCoeff() < 1e-9)) {
     throw Error("covariance", "it is not symmetric", "check the rig file");
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> check(R);
-  const double largest = check.eigenvalues()[n - 1];
-  if (check.eigenvalues()[0] < -1e-9 * std::max(largest, 1.0)) {
+  if (eigen.values[n - 1] < -1e-9 * std::max(eigen.values[0], 1.0)) {
     throw Error("covariance",
                 "it is not positive semi-definite: negative variance where " +
-                    describe_direction(check.eigenvectors().col(0), covariance.names),
+                    describe_direction(eigen.directions.col(n - 1), covariance.names),
                 "give a covariance in which no direction has a negative variance");
   }
-
-  // R is symmetric and positive semi-definite: R = U diag(s) Uᵀ with V = U.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(0.5 * (R + R.transpose()),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::VectorXd s = svd.singularValues();
-  Eigen::MatrixXd U = svd.matrixU();
+  const Eigen::VectorXd s = eigen.values.cwiseMax(0);
+  Eigen::MatrixXd U = eigen.directions;
   for (Eigen::Index k = 0; k < n; ++k) {  // sign by the largest component: one answer for all
     Eigen::Index largest_row;
     U.col(k).cwiseAbs().maxCoeff(&largest_row);

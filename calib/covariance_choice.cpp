@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/covariance_choice.h"
 
+#include "calib/error.h"
+
 namespace vernier {
 
 std::optional<Covariance> chosen_covariance(const RigEstimate& estimate, CovarianceChoice choice) {
@@ -13,6 +15,17 @@ std::optional<Covariance> chosen_covariance(const RigEstimate& estimate, Covaria
     return estimate.covariance;
   }
   return std::nullopt;
+}
+
+Covariance required_covariance(const RigEstimate& estimate,
+                               CovarianceChoice choice,
+                               const std::string& place) {
+  if (choice == CovarianceChoice::honest) return required_covariance(estimate, place);
+  const std::optional<Covariance> chosen = chosen_covariance(estimate, choice);
+  if (!chosen) {
+    throw Error(place, "it has no minimum variance bound", "use the covariance it has");
+  }
+  return *chosen;
 }
 
 }  // namespace vernier

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/frame_kernel.h"
 
+#include "calib/pose_factor.h"
+
 // As in view_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -96,9 +98,6 @@ void add_camera(const CameraPlace& place,
   }
 }
 
-/// A pivot below this share of its diagonal is rounding: the corners do not fix the board's pose.
-constexpr double least_pivot = 1e-13;
-
 /// C = L Lᵀ, then y and Z; all of it into the factor.
 void factor_frame(Frame& frame, int parameters, int lane, Lanes* factor) {
   Pack L[6][6];
@@ -106,7 +105,8 @@ void factor_frame(Frame& frame, int parameters, int lane, Lanes* factor) {
     for (int i = j; i < 6; ++i) {
       Pack s = frame.C[j][i];
       for (int k = 0; k < j; ++k) s = minus_mul(L[i][k], L[j][k], s);
-      L[i][j] = i == j ? inverse_root_or_nan(s, frame.C[j][j] * Pack(least_pivot)) : s * L[j][j];
+      L[i][j] =
+          i == j ? inverse_root_or_nan(s, frame.C[j][j] * Pack(least_pose_pivot)) : s * L[j][j];
     }
   }
   const auto forward = [&](Pack(&x)[6]) HWY_ATTR {

@@ -31,6 +31,17 @@ Rig with_held_values(const Rig& rig, const std::vector<HeldParameter>& held);
 /// belong to the free components of its rotation vector r.
 Eigen::MatrixXd free_directions(const Rig& rig, const std::vector<bool>& held);
 
+/// The derivative of the parameters' values by the rig's tangent where a rotation that is held in
+/// part counts by its rotation vector, J_l⁻¹, and all else as it stands in the tangent: parameters
+/// x parameters. Its rows of free parameters are the left inverse of the free directions.
+Eigen::MatrixXd values_by_tangent(const Rig& rig, const std::vector<bool>& held);
+
+/// A covariance C of the tangent, zero along what is held, as one of the free parameters' values:
+/// C_z with C = E C_z Eᵀ, E the free directions.
+Eigen::MatrixXd covariance_of_free(const Eigen::MatrixXd& C,
+                                   const Rig& rig,
+                                   const std::vector<bool>& held);
+
 /// Names of the parameters that are not held.
 std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held);
 

@@ -3,10 +3,9 @@
 #include "calib/joint_information.h"
 
 #include <Eigen/Cholesky>
-#include <string>
 
 #include "calib/board_warp.h"
-#include "calib/error.h"
+#include "calib/pose_factor.h"
 #include "calib/view_linearisation.h"
 
 namespace vernier {
@@ -67,11 +66,7 @@ BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
                      target_m, *view, Linearise::with_jacobian, J, &shapes);
       add_view(J, intrinsics_index(state.rig, c), c == 0 ? -1 : pose_index(state.rig, c), p);
     }
-    const Eigen::LLT<Matrix6> C(p.BB);
-    if (C.info() != Eigen::Success) {
-      throw Error("frame " + std::to_string(state.frames[f]),
-                  "its corners do not fix the pose of the board", "leave the frame out");
-    }
+    const Eigen::LLT<Matrix6> C = pose_factor(p.BB, state.frames[f]);
     result.frames.push_back({-C.solve(p.BA), -C.solve(p.BW), inverse_factor<6>(C)});
     S_wa += p.WA + p.BW.transpose() * result.frames.back().by_rig;
     S_ww += p.WW + p.BW.transpose() * result.frames.back().by_warp;

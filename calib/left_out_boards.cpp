@@ -45,7 +45,7 @@ std::vector<SeenPair> seen_pairs(const BoardObservations& observations,
 
 /// The longest pairs of corners in each row, each column and along both diagonals of the board.
 std::vector<std::pair<int, int>> edges_of(const std::vector<Eigen::Vector3d>& target_m,
-                                          const SeenPair& seen) {
+                                          const std::map<int, PointTriangulation>& points) {
   std::map<long, std::pair<int, int>> rows, columns;  // by position in micrometres: first, last
   std::pair<int, int> down{-1, -1}, up{-1, -1};
   const auto widen = [&](std::pair<int, int>& ends, int id, auto along) {
@@ -54,7 +54,7 @@ std::vector<std::pair<int, int>> edges_of(const std::vector<Eigen::Vector3d>& ta
   };
   const auto x = [](const Eigen::Vector3d& X) { return X.x(); };
   const auto y = [](const Eigen::Vector3d& X) { return X.y(); };
-  for (const auto& [id, pixels] : seen) {
+  for (const auto& [id, point] : points) {
     const Eigen::Vector3d& X = target_m[id];
     widen(rows.try_emplace(std::lround(1e6 * X.y()), -1, -1).first->second, id, x);
     widen(columns.try_emplace(std::lround(1e6 * X.x()), -1, -1).first->second, id, y);
@@ -122,21 +122,24 @@ Measured length(const PointTriangulation& a, const PointTriangulation& b, std::p
   return m;
 }
 
-/// Adds one left-out board to the tallies; false where its corners have no 3-D point.
-bool judge_board(const RigEstimate& estimate,
-                 const std::vector<Eigen::Vector3d>& target_m,
-                 const SeenPair& seen,
-                 Tally& edges,
-                 Tally& scale) {
+/// The corners that have a point in space, by id.
+std::map<int, PointTriangulation> points_of(const Rig& rig, const SeenPair& seen) {
   std::map<int, PointTriangulation> points;
   for (const auto& [id, pixels] : seen) {
-    const auto point = triangulate_point_with_jacobian(estimate.rig, pixels);
-    if (!point) return false;
-    points.emplace(id, *point);
+    if (const auto point = triangulate_point_with_jacobian(rig, pixels)) points.emplace(id, *point);
   }
+  return points;
+}
+
+/// Adds one left-out board, by those of its corners that have a point, to the tallies.
+void judge_board(const RigEstimate& estimate,
+                 const std::vector<Eigen::Vector3d>& target_m,
+                 const std::map<int, PointTriangulation>& points,
+                 Tally& edges,
+                 Tally& scale) {
   const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
   const double sigma = estimate.calibration->pixel_sigma_px;
-  const auto pairs = edges_of(target_m, seen);
+  const auto pairs = edges_of(target_m, points);
   Measured mean{0, Eigen::RowVectorXd::Zero(honest.rows()), {}};
   for (const auto& ends : pairs) {
     const double truth = (target_m[ends.first] - target_m[ends.second]).norm();
@@ -150,7 +153,6 @@ bool judge_board(const RigEstimate& estimate,
     }
   }
   scale.add(mean.value - 1, mean.variance(honest, sigma), mean.variance(mvb, sigma));
-  return true;
 }
 
 /// Which frames a split trains on: the first of a random order.
@@ -193,16 +195,16 @@ LeftOutBoardsResult measure_left_out_boards(
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
     const std::vector<int> kept = training_frames(frames, training, options.seed, split);
-    BoardObservations part = observations;
-    std::erase_if(part.views, [&](const BoardView& view) {
-      return !std::binary_search(kept.begin(), kept.end(), view.frame);
-    });
     try {
-      const RigEstimate estimate = calibrate(std::move(part), options.calibration);
+      const RigEstimate estimate = calibrate(at_frames(observations, kept), options.calibration);
       ++result.splits;
       for (int f = 0; f < n; ++f) {
         if (seen[f].size() < 4 || std::binary_search(kept.begin(), kept.end(), frames[f])) continue;
-        result.boards += judge_board(estimate, observations.target_m, seen[f], edges, scale);
+        const auto points = points_of(estimate.rig, seen[f]);
+        result.corners_left_out += static_cast<int>(seen[f].size() - points.size());
+        ++(points.size() < 4 ? result.boards_left_out : result.boards);
+        if (points.size() < 4) continue;
+        judge_board(estimate, observations.target_m, points, edges, scale);
       }
     } catch (const Error&) {
       ++result.failed;  // these frames alone do not determine the rig

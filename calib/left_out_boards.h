@@ -29,17 +29,20 @@ struct LengthCoverage {
 };
 
 struct LeftOutBoardsResult {
-  LengthCoverage edges;     ///< board rows, columns and diagonals end to end, one by one
-  LengthCoverage scale;     ///< the board's overall size, all lengths of a board together
-  int training_frames = 0;  ///< of each split
-  int splits = 0;           ///< that could be calibrated
-  int failed = 0;           ///< that could not
-  int boards = 0;           ///< predictions of a whole board
+  LengthCoverage edges;      ///< board rows, columns and diagonals end to end, one by one
+  LengthCoverage scale;      ///< the board's overall size, all lengths of a board together
+  int training_frames = 0;   ///< of each split
+  int splits = 0;            ///< that could be calibrated
+  int failed = 0;            ///< that could not
+  int boards = 0;            ///< predictions of a board
+  int boards_left_out = 0;   ///< of which fewer than four corners have a point
+  int corners_left_out = 0;  ///< without a point: their rays part, or a pixel has none
 };
 
 /// Proof on boards left out: calibrates on some frames, triangulates the corners of the others
 /// (calib/triangulation.h) and compares lengths on the board with what they are, over many
-/// splits drawn from `seed`. A length L(q, a) has the stated variance
+/// splits drawn from `seed`. Corners without a point are left out, and counted. A length L(q, a)
+/// has the stated variance
 ///
 ///     J_a C_a J_aᵀ + σ² J_q J_qᵀ
 ///

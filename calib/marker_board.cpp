@@ -49,8 +49,8 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
                     ", at least " + std::to_string(least_corners) + " are needed";
     if (!result.refused_corners.empty())
       result.reason += "; not used: " + refused_corners_text(result);
-  } else if (!span_plane(result.ids, target_m)) {
-    result.reason = "all good corners of the " + name + " lie on one line";
+  } else if (!span_plane(result.ids, target_m) || !fixes_pose(target_m, result.ids)) {
+    result.reason = "all good corners of the " + name + ", or all but one, lie on one line";
   } else {
     return;
   }

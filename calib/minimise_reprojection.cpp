@@ -3,11 +3,13 @@
 #include "calib/minimise_reprojection.h"
 
 #include <ceres/ceres.h>
+#include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calib/error.h"
 #include "calib/pair_cost.h"
@@ -83,6 +85,37 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in one order: the same bits every time
   return options;
+}
+
+/// Indices of a camera's parameters among the rig's.
+std::vector<int> parameters_of(const Rig& rig, int camera) {
+  std::vector<int> own(static_cast<std::size_t>(rig.cameras[camera].parameters.size()));
+  std::iota(own.begin(), own.end(), intrinsics_index(rig, camera));
+  for (int k = 0; camera > 0 && k < 6; ++k) own.push_back(pose_index(rig, camera) + k);
+  return own;
+}
+
+/// Throws Error for a camera that nothing in the problem says anything about.
+void check_cameras(const BoardObservations& observations,
+                   const Rig& rig,
+                   const ReprojectionProblem& problem) {
+  const auto known = [&](int i) {
+    return (!problem.held.empty() && problem.held[i]) ||
+           std::any_of(problem.priors.begin(), problem.priors.end(),
+                       [&](const RigPrior& prior) { return prior.information(i, i) > 0; });
+  };
+  for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
+    const auto sees = [&](const BoardView& view) { return view.camera == c; };
+    if (std::any_of(observations.views.begin(), observations.views.end(), sees)) continue;
+    const std::vector<int> own = parameters_of(rig, c);
+    const auto unknown = std::find_if_not(own.begin(), own.end(), known);
+    if (unknown == own.end()) continue;
+    const std::string name = parameter_names(rig)[static_cast<std::size_t>(*unknown)];
+    throw Error(fmt::format("camera {} (\"{}\")", c, rig.cameras[c].name),
+                "no view of the board is left of it, and nothing else is known of its " +
+                    name.substr(rig.cameras[c].name.size() + 1),
+                "give views of it, or hold or know all of its parameters");
+  }
 }
 
 /// Whether the last twenty iterations brought nothing but rounding.
@@ -188,6 +221,7 @@ class Minimisation {
     for (int c = 1; c < cameras; ++c) blocks.push_back(buffer_.camera_pose(c));
     for (const RigPrior& prior : what_.priors) {
       problem_.AddResidualBlock(new PriorCost(prior, what_.pixel_sigma_px), nullptr, blocks);
+      for (double* block : blocks) ordering_->AddElementToGroup(block, 1);
     }
   }
 
@@ -206,7 +240,8 @@ class Minimisation {
     for (int i = 0; i < size; ++i) {
       if (what_.held[first + i]) held.push_back(i);
     }
-    if (held.empty()) return;
+    // Ceres does not know the block of a camera that is held whole and was not seen.
+    if (held.empty() || !problem_.HasParameterBlock(block)) return;
     if (static_cast<int>(held.size()) == size) {
       problem_.SetParameterBlockConstant(block);
     } else {
@@ -227,9 +262,36 @@ class Minimisation {
 
 }  // namespace
 
+void check_problem(const BoardObservations& observations,
+                   const Rig& rig,
+                   const ReprojectionProblem& problem) {
+  const int n = parameter_count(rig);
+  if (!problem.held.empty() && static_cast<int>(problem.held.size()) != n) {
+    throw Error("held parameters", "there is not one flag a parameter of the rig",
+                "make them with held_mask");
+  }
+  for (const RigPrior& prior : problem.priors) {
+    if (prior.information.rows() != n || prior.information.cols() != n ||
+        parameter_names(prior.mean) != parameter_names(rig)) {
+      throw Error("prior", "it is of other parameters than the rig's", "make it with rig_prior");
+    }
+  }
+  bool fits =
+      problem.corner_weights.empty() || problem.corner_weights.size() == observations.views.size();
+  for (std::size_t v = 0; fits && v < problem.corner_weights.size(); ++v) {
+    fits = problem.corner_weights[v].size() == observations.views[v].ids.size();
+  }
+  if (!fits) throw Error("corner weights", "there is not one a corner", "give one a corner");
+  if (!(problem.pixel_sigma_px > 0)) {
+    throw Error("pixel sigma", "it is not positive", "give a standard deviation in pixels");
+  }
+}
+
 BoardState minimise_reprojection(const BoardObservations& observations,
                                  BoardState start,
                                  const ReprojectionProblem& problem) {
+  check_problem(observations, start.rig, problem);
+  check_cameras(observations, start.rig, problem);
   return Minimisation(observations, start, problem).solve();
 }
 

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "calib/board_pose.h"
 #include "calib/board_warp.h"
 #include "calib/error.h"
+#include "calib/linearised_cost.h"
 #include "calib/model_nesting.h"
 
 namespace vernier {
@@ -19,23 +21,6 @@ constexpr int fewest_frames = 6;
 constexpr int most_groups = 8;
 constexpr double clear_gain_sigmas = 3;  // a false warning once in 700 models, were gains normal
 constexpr double clear_move_sigmas = 3;
-
-/// The frames that are compared: all, or evenly spaced ones.
-std::vector<int> compared_frames(const std::vector<int>& frames, int most) {
-  const auto n = static_cast<int>(frames.size());
-  if (n <= most) return frames;
-  std::vector<int> some;
-  for (int k = 0; k < most; ++k) some.push_back(frames[static_cast<std::size_t>(k) * n / most]);
-  return some;
-}
-
-BoardObservations at(const BoardObservations& observations, const std::vector<int>& frames) {
-  BoardObservations part = observations;
-  std::erase_if(part.views, [&](const BoardView& view) {
-    return !std::binary_search(frames.begin(), frames.end(), view.frame);
-  });
-  return part;
-}
 
 /// The problem of the options with the noise that was found.
 ReprojectionProblem problem_for(const CalibrationOptions& options,
@@ -52,22 +37,48 @@ struct HeldOut {
   std::vector<int> coordinates;
 };
 
+/// Frames by group: dealt like cards, those that the same cameras saw one after the other, so that
+/// no camera's frames leave together.
+std::vector<std::vector<int>> dealt(const BoardObservations& observations) {
+  std::map<int, std::vector<int>> cameras_of;  // by frame
+  for (const BoardView& view : observations.views) cameras_of[view.frame].push_back(view.camera);
+  std::map<std::vector<int>, std::vector<int>> seen_by;  // frames by cameras
+  for (const auto& [frame, cameras] : cameras_of) seen_by[cameras].push_back(frame);
+  std::vector<std::vector<int>> groups(std::min<std::size_t>(cameras_of.size(), most_groups));
+  std::size_t next = 0;
+  for (const auto& [cameras, frames] : seen_by) {
+    for (const int frame : frames) groups[next++ % groups.size()].push_back(frame);
+  }
+  return groups;
+}
+
+/// The minimum from `start`. Throws Error where the views do not determine it.
+BoardState determined_minimum(const BoardObservations& observations,
+                              const BoardState& start,
+                              const ReprojectionProblem& problem) {
+  const BoardState state = minimise_reprojection(observations, start, problem);
+  const LinearisedCost cost = linearised_cost(observations, state, problem);
+  minimum_variance_bound(cost.equations, cost.names);
+  return state;
+}
+
 HeldOut held_out_errors(const BoardObservations& observations,
                         const BoardState& state,
                         const ReprojectionProblem& problem) {
-  const auto frames = static_cast<int>(state.frames.size());
-  const int groups = std::min(frames, most_groups);
+  const std::size_t frames = state.frames.size();
   HeldOut errors{std::vector<double>(frames), std::vector<int>(frames)};
-  for (int group = 0; group < groups; ++group) {
-    std::vector<int> kept;
-    for (int f = 0; f < frames; ++f) {
-      if (f % groups != group) kept.push_back(state.frames[f]);
-    }
+  for (const std::vector<int>& group : dealt(observations)) {
+    std::vector<int> kept = state.frames;
+    std::erase_if(kept, [&](int frame) {
+      return std::find(group.begin(), group.end(), frame) != group.end();
+    });
     const BoardState trained =
-        minimise_reprojection(at(observations, kept), at_frames(state, kept), problem);
+        determined_minimum(at_frames(observations, kept), at_frames(state, kept), problem);
     const auto target_m = warped_target(observations.target_m, trained.warp_m);
-    for (int f = group; f < frames; f += groups) {
-      const std::vector<BoardView> views = at(observations, {state.frames[f]}).views;
+    for (const int frame : group) {
+      const auto f = static_cast<std::size_t>(
+          std::lower_bound(state.frames.begin(), state.frames.end(), frame) - state.frames.begin());
+      const std::vector<BoardView> views = at_frames(observations, {frame}).views;
       const BoardPoseFit fit =
           fit_board_pose(target_m, views, trained.rig, state.T_first_board[f], 50);
       for (const BoardView& view : views) {
@@ -85,6 +96,15 @@ double rms(const HeldOut& errors) {
   for (std::size_t f = 0; f < errors.squared_px2.size(); ++f) {
     sum += errors.squared_px2[f];
     n += errors.coordinates[f];
+  }
+  return std::sqrt(sum / n);
+}
+
+double rms(const CornerResiduals& residuals) {
+  double sum = 0, n = 0;
+  for (const auto& view : residuals) {
+    for (const Eigen::Vector2d& r : view) sum += r.squaredNorm();
+    n += 2 * static_cast<double>(view.size());
   }
   return std::sqrt(sum / n);
 }
@@ -126,7 +146,8 @@ std::string name_of(const std::vector<CameraModel>& models) {
   bool same = true;
   for (const CameraModel& model : models) {
     same = same && model.index() == models.front().index();
-    name += (name.empty() ? "" : ",") + std::string(model_name(model));
+    if (!name.empty()) name += ",";
+    name += model_name(model);
   }
   return same ? std::string(model_name(models.front())) : name;
 }
@@ -173,6 +194,30 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   return {text + "; use --model " + best->name};
 }
 
+/// A richer model fitted to all views and to those left by each group. Throws Error where they do
+/// not determine it.
+ModelScore score_of(const std::vector<CameraModel>& richer,
+                    const RigEstimate& estimate,
+                    const CalibrationOptions& options,
+                    const BoardObservations& observations,
+                    const BoardState& state,
+                    const HeldOut& in_use) {
+  BoardState start = state;
+  start.rig = in_models(state.rig, richer);
+  const ReprojectionProblem problem =
+      problem_for(options, start.rig, estimate.calibration->pixel_sigma_px);
+  const BoardState fitted = determined_minimum(observations, start, problem);
+  const HeldOut errors = held_out_errors(observations, fitted, problem);
+  ModelScore score;
+  score.models = richer;
+  score.name = name_of(richer);
+  score.held_out_rms_px = rms(errors);
+  score.fitted_rms_px = rms(corner_residuals(observations, fitted));
+  compare_errors(in_use, errors, score);
+  compare_parameters(estimate, fitted.rig, score);
+  return score;
+}
+
 }  // namespace
 
 ModelComparison compare_models(const RigEstimate& estimate,
@@ -187,13 +232,19 @@ ModelComparison compare_models(const RigEstimate& estimate,
   const auto models = candidates(estimate.rig);
   if (models.empty() || evidence.frames.size() < fewest_frames) return comparison;
 
-  const double sigma = estimate.calibration->pixel_sigma_px;
-  const std::vector<int> frames = compared_frames(evidence.frames, most_frames);
+  const std::vector<int> frames = evenly_spaced(evidence.frames, most_frames);
   const BoardState whole{estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   const BoardState state = at_frames(whole, frames);
-  const BoardObservations observations = at(evidence.observations, frames);
-  const HeldOut in_use =
-      held_out_errors(observations, state, problem_for(options, estimate.rig, sigma));
+  const BoardObservations observations = at_frames(evidence.observations, frames);
+  HeldOut in_use;
+  try {
+    in_use =
+        held_out_errors(observations, state,
+                        problem_for(options, estimate.rig, estimate.calibration->pixel_sigma_px));
+  } catch (const Error& error) {
+    comparison.not_compared = std::string("with some views left out, ") + error.what();
+    return comparison;
+  }
   comparison.frames = static_cast<int>(frames.size());
   comparison.in_use.models = models_of(estimate.rig);
   comparison.in_use.name = name_of(comparison.in_use.models);
@@ -201,22 +252,7 @@ ModelComparison compare_models(const RigEstimate& estimate,
   comparison.in_use.fitted_rms_px = estimate.calibration->rms_px;
   for (const std::vector<CameraModel>& richer : models) {
     try {
-      BoardState start = state;
-      start.rig = in_models(state.rig, richer);
-      const ReprojectionProblem problem = problem_for(options, start.rig, sigma);
-      const BoardState fitted = minimise_reprojection(observations, start, problem);
-      const ReducedNormalEquations equations =
-          reduced_normal_equations(observations, fitted, sigma, options.warp);
-      minimum_variance_bound(equations, parameter_names(fitted.rig));  // is it determined?
-      const HeldOut errors = held_out_errors(observations, fitted, problem);
-      ModelScore score;
-      score.models = richer;
-      score.name = name_of(richer);
-      score.held_out_rms_px = rms(errors);
-      score.fitted_rms_px = sigma * std::sqrt(equations.chi2 / equations.residuals);
-      compare_errors(in_use, errors, score);
-      compare_parameters(estimate, fitted.rig, score);
-      comparison.richer.push_back(std::move(score));
+      comparison.richer.push_back(score_of(richer, estimate, options, observations, state, in_use));
     } catch (const Error&) {
       break;  // the views do not determine this model, nor a richer one
     }

@@ -21,19 +21,22 @@ struct ModelScore {
 };
 
 /// No covariance covers model error: this asks whether a richer lens model (calib/model_nesting.h)
-/// predicts better, by leaving views out. The frames are dealt into at most eight groups; each
-/// group is left out in turn, every model calibrated on the rest, and a left-out frame's squared
-/// error taken after fitting its board's pose alone. With more than `most_frames`, evenly spaced
-/// ones stand for all.
+/// predicts better, by leaving views out. The frames are dealt into at most eight groups, those
+/// that the same cameras saw evenly; each group is left out in turn, every model calibrated on the
+/// rest (which must determine it), and a left-out frame's squared error taken after fitting its
+/// board's pose alone. With more than `most_frames`, evenly spaced ones stand for all.
 struct ModelComparison {
   ModelScore in_use;
   std::vector<ModelScore> richer;     ///< the next two, those that the views can determine
   int frames = 0;                     ///< compared
   std::vector<std::string> warnings;  ///< what a person should do about it
+  std::string not_compared;  ///< why there are no scores, where that is no matter of course
 };
 
 /// `estimate` is calibrate(observations, options)'s result. Nothing to compare (no richer model, or
-/// fewer than six frames) gives no scores and no warnings.
+/// fewer than six frames) gives no scores and no warnings; where the model in use cannot be
+/// calibrated without some group, `not_compared` says so. Throws Error for an estimate without
+/// evidence, covariance or summary.
 ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,
                                int most_frames = 60);

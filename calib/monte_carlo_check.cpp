@@ -13,33 +13,14 @@
 #include "calib/ordered_parallel.h"
 #include "calib/outliers.h"
 #include "calib/resolve.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
 
-constexpr std::uint32_t prior_feature = 0xffff0000;  // views count from 0
+constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
 constexpr int wishart_draws = 2000;
 constexpr double least_p = 0.005;
-
-/// A root and its pseudo-inverse of a positive semi-definite matrix, scaled before it is
-/// decomposed: matrix = root rootᵀ, white root = I.
-struct Root {
-  Eigen::MatrixXd root;   // p x q
-  Eigen::MatrixXd white;  // q x p
-
-  explicit Root(const Eigen::MatrixXd& matrix) {
-    const Eigen::ArrayXd sd = matrix.diagonal().array().max(0).sqrt();
-    const Eigen::VectorXd inverse = (sd > 0).select(1 / sd.max(1e-300), 0.0);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * matrix *
-                                                               inverse.asDiagonal());
-    const Eigen::VectorXd& s = eigen.eigenvalues();
-    const auto q = (s.array() > 1e-12 * s[s.size() - 1]).count();
-    const Eigen::MatrixXd U = eigen.eigenvectors().rightCols(q);
-    const Eigen::VectorXd half = s.tail(q).cwiseSqrt();
-    root = sd.matrix().asDiagonal() * U * half.asDiagonal();
-    white = half.cwiseInverse().asDiagonal() * U.transpose() * inverse.asDiagonal();
-  }
-};
 
 /// Makes the noisy copies of one calibration.
 class Copies {
@@ -84,7 +65,8 @@ class Copies {
     Eigen::Matrix2Xd all(2, corners_);
     Eigen::Index at = 0;
     for (std::size_t v = 0; v < predicted_.size(); ++v) {
-      Draws draws(place(trial, static_cast<std::uint32_t>(v)));
+      const BoardView& view = observations_.views[v];
+      Draws draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
       for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
         const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
         const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);
@@ -101,7 +83,7 @@ class Copies {
   std::uint64_t seed_;
   std::vector<std::vector<Eigen::Vector2d>> predicted_;
   Eigen::Index corners_ = 0;
-  std::vector<Root> priors_;
+  std::vector<ScaledRoot> priors_;
   std::optional<Resolver> resolver_;
 };
 
@@ -137,7 +119,7 @@ std::array<double, 2> mean_interval(double q, double n, double probability) {
 /// Fills in what the errors (a column a copy) say of the covariance.
 void judge(const Eigen::MatrixXd& errors,
            const Eigen::MatrixXd& covariance,
-           const Root& root,
+           const ScaledRoot& root,
            std::uint64_t seed,
            MonteCarloCheck& check) {
   const auto n = static_cast<double>(errors.cols());
@@ -175,7 +157,9 @@ void judge(const Eigen::MatrixXd& errors,
 
 }  // namespace
 
-bool MonteCarloCheck::consistent() const {
+bool MonteCarloCheck::copies_solved() const { return 100 * failed <= trials + failed; }
+
+bool MonteCarloCheck::scatter_as_stated() const {
   return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
          eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
          ks_p > least_p && ks_p_components > least_p;
@@ -191,7 +175,7 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
     throw Error("covariance", "it has another size than the rig has parameters",
                 "give it in full, with zeros for held parameters");
   }
-  const Root root(covariance);
+  const ScaledRoot root(covariance);
   const Copies copies(observations, state, problem, options.seed);
   Eigen::MatrixXd errors(p, options.trials);
   std::vector<char> solved(static_cast<std::size_t>(options.trials), 0);

@@ -7,6 +7,7 @@
 
 #include "calib/board_warp.h"
 #include "calib/error.h"
+#include "calib/pose_factor.h"
 #include "calib/view_linearisation.h"
 
 namespace vernier {
@@ -62,11 +63,7 @@ void add_view(const ViewLinearisation& J, int intrinsics, int pose, double weigh
 
 /// Adds the frame's term with its board pose eliminated.
 void add_frame(const FrameBlocks& blocks, int frame, int index, ReducedNormalEquations& sum) {
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> C(blocks.C);
-  if (C.info() != Eigen::Success) {
-    throw Error("frame " + std::to_string(frame), "its corners do not fix the pose of the board",
-                "leave the frame out");
-  }
+  const auto C = pose_factor(blocks.C, frame);
   const Eigen::Matrix<double, 6, Eigen::Dynamic> half =
       C.matrixL().solve(blocks.B.transpose());  // L⁻¹ BᵀA
   sum.held_poses_diagonal += blocks.A.diagonal();

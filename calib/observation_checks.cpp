@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "calib/board_homography.h"
+#include "calib/corner_difference.h"
 #include "calib/error.h"
 
 namespace vernier {
@@ -21,34 +22,8 @@ constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps com
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
 
-/// Largest and root mean square difference of the corners two views share.
-struct CornerDifference {
-  double largest_px = std::numeric_limits<double>::infinity();
-  double rms_px = std::numeric_limits<double>::infinity();
-};
-
-CornerDifference corner_difference(const BoardView& a, const BoardView& b) {
-  std::map<int, Eigen::Vector2d> pixels;
-  const bool same_corners = a.ids == b.ids;
-  if (!same_corners) {
-    for (std::size_t i = 0; i < a.ids.size(); ++i) pixels[a.ids[i]] = a.pixels_px[i];
-  }
-  const double enough = 2 * repeated_view_px * repeated_view_px * static_cast<double>(b.ids.size());
-  double largest = 0, sum = 0;
-  int shared = 0;
-  for (std::size_t i = 0; i < b.ids.size() && sum <= enough; ++i) {
-    const auto other = same_corners ? pixels.end() : pixels.find(b.ids[i]);
-    if (!same_corners && other == pixels.end()) continue;
-    const Eigen::Vector2d d = b.pixels_px[i] - (same_corners ? a.pixels_px[i] : other->second);
-    largest = std::max(largest, d.cwiseAbs().maxCoeff());
-    sum += d.squaredNorm();
-    ++shared;
-  }
-  if (shared < 4 || sum > enough) return {};
-  return {largest, std::sqrt(sum / (2 * shared))};
-}
-
-/// Median distance of neighbours along the target's rows, in the image: by corners as they follow.
+/// Distance of neighbouring corners in the image: that on the target, times the root of how areas
+/// grow at the centre of the view's corners.
 double corner_spacing_px(const BoardHomography& view,
                          const std::vector<Eigen::Vector3d>& target_m) {
   double least = std::numeric_limits<double>::infinity();
@@ -56,19 +31,7 @@ double corner_spacing_px(const BoardHomography& view,
     const double d = (target_m[i] - target_m[0]).head<2>().norm();
     if (d > 0) least = std::min(least, d);
   }
-  return least * std::sqrt(std::abs(view.H.topLeftCorner<2, 2>().determinant()));
-}
-
-/// "3, 5 and 9"; the first few of many.
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 6;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i) {
-    const bool last = i + 1 == names.size();
-    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
-  }
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
+  return least * std::sqrt(std::abs(view.H.determinant()));  // d(u, v)/d(X, Y) at the centre
 }
 
 void check_grids(const BoardObservations& observations,
@@ -148,7 +111,7 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
     for (std::size_t j = i + 1; j < views.size(); ++j) {
       const bool one_camera = views[i].camera == views[j].camera;
       if (!one_camera && views[i].frame != views[j].frame) continue;
-      const CornerDifference d = corner_difference(views[i], views[j]);
+      const CornerDifference d = corner_difference(views[i], views[j], repeated_view_px);
       if (!one_camera && d.rms_px < same_cameras_px) {
         throw Error(place_of(views[i]) + " and camera " + std::to_string(views[j].camera),
                     fmt::format("the images are the same (their corners differ by {:.2g} px)",
@@ -234,6 +197,17 @@ void ObservationDiagnosis::add(const ObservationDiagnosis& more) {
 std::string place_of(const BoardView& view) {
   return fmt::format("frame {}, camera {}", view.frame, view.camera) +
          (view.image.empty() ? "" : " (" + view.image + ")");
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return text;
 }
 
 ObservationDiagnosis check_observations(const BoardObservations& observations) {

@@ -35,4 +35,7 @@ ObservationDiagnosis check_observations(const BoardObservations& observations);
 /// "frame 3, camera 1 (right03.png)".
 std::string place_of(const BoardView& view);
 
+/// "3, 5 and 9"; of many the first few and how many more.
+std::string list_of(const std::vector<std::string>& names);
+
 }  // namespace vernier

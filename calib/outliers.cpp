@@ -2,17 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/outliers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "calib/board_warp.h"
-#include "calib/error.h"
+#include "calib/observation_checks.h"
 #include "calib/view_linearisation.h"
 
 namespace vernier {
 namespace {
 
 using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
+
+constexpr double least_sigma_px = 1e-6;  // residuals below are rounding
 
 /// Huber's weight: 1 up to two standard deviations, then falling as the inverse of the distance.
 double huber_weight(double in_sigmas) { return in_sigmas < 2 ? 1 : 2 / in_sigmas; }
@@ -23,12 +29,30 @@ double tukey_weight(double in_sigmas, double limit) {
   return t < 1 ? (1 - t * t) * (1 - t * t) : 0;
 }
 
+/// Robust standard deviation of a coordinate, one a camera: lenses and images differ.
+std::vector<double> camera_sigmas(const BoardObservations& observations,
+                                  const CornerResiduals& residuals) {
+  std::vector<CornerResiduals> of_camera(observations.size_px.size());
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
+    of_camera[static_cast<std::size_t>(observations.views[v].camera)].push_back(residuals[v]);
+  }
+  std::vector<double> sigmas;
+  for (const CornerResiduals& own : of_camera) {
+    sigmas.push_back(std::max(least_sigma_px, robust_pixel_sigma(own)));
+  }
+  return sigmas;
+}
+
 template <typename Weight>
-PerCorner weights_of(const CornerResiduals& residuals, double sigma, Weight weight) {
+PerCorner weights_of(const BoardObservations& observations,
+                     const CornerResiduals& residuals,
+                     Weight weight) {
+  const std::vector<double> sigmas = camera_sigmas(observations, residuals);
   PerCorner weights;
-  for (const auto& view : residuals) {
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
+    const double sigma = sigmas[static_cast<std::size_t>(observations.views[v].camera)];
     std::vector<double>& own = weights.emplace_back();
-    for (const Eigen::Vector2d& r : view) own.push_back(weight(r.norm() / sigma));
+    for (const Eigen::Vector2d& r : residuals[v]) own.push_back(weight(r.norm() / sigma));
   }
   return weights;
 }
@@ -52,8 +76,7 @@ BoardState redescending_minimum(const BoardObservations& observations,
   problem.must_converge = false;
   for (int round = 0; round < huber_rounds + tukey_rounds; ++round) {
     const CornerResiduals residuals = corner_residuals(observations, state);
-    const double sigma = robust_pixel_sigma(residuals);
-    PerCorner weights = weights_of(residuals, sigma, [&](double d) {
+    PerCorner weights = weights_of(observations, residuals, [&](double d) {
       return round < huber_rounds ? huber_weight(d) : std::max(1e-6, tukey_weight(d, limit));
     });
     if (round > huber_rounds && largest_change(weights, problem.corner_weights) < 1e-3) break;
@@ -93,9 +116,10 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
                                              const BoardState& state,
                                              double limit) {
   const CornerResiduals residuals = corner_residuals(observations, state);
-  const double beyond = limit * robust_pixel_sigma(residuals);
+  const std::vector<double> sigmas = camera_sigmas(observations, residuals);
   std::vector<std::vector<bool>> flags;
   for (std::size_t v = 0; v < residuals.size(); ++v) {
+    const double beyond = limit * sigmas[static_cast<std::size_t>(observations.views[v].camera)];
     const std::vector<Eigen::Vector2d>& own = residuals[v];
     const auto is_long = [&](const Eigen::Vector2d& r) { return r.norm() > beyond; };
     const auto longs = static_cast<std::size_t>(std::count_if(own.begin(), own.end(), is_long));
@@ -109,16 +133,21 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
   return flags;
 }
 
-/// Whether some view fits three times worse than is usual: least squares spreads the misfit of a
-/// wrong view over the others, so that no corner of it need look wrong by itself.
+/// Whether some view fits three times worse than is usual for its camera: least squares spreads the
+/// misfit of a wrong view over the others, so that no corner of it need look wrong by itself.
 bool some_view_stands_out(const BoardObservations& observations, const BoardState& state) {
-  std::vector<double> rms;
-  for (const auto& view : corner_residuals(observations, state)) {
+  std::vector<std::vector<double>> rms(observations.size_px.size());  // by camera
+  const CornerResiduals residuals = corner_residuals(observations, state);
+  for (std::size_t v = 0; v < residuals.size(); ++v) {
     double squares = 0;
-    for (const Eigen::Vector2d& r : view) squares += r.squaredNorm();
-    rms.push_back(std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, view.size()))));
+    for (const Eigen::Vector2d& r : residuals[v]) squares += r.squaredNorm();
+    rms[static_cast<std::size_t>(observations.views[v].camera)].push_back(
+        std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, residuals[v].size()))));
   }
-  return *std::max_element(rms.begin(), rms.end()) > 3 * median(rms);
+  return std::any_of(rms.begin(), rms.end(), [](const std::vector<double>& own) {
+    return !own.empty() &&
+           *std::max_element(own.begin(), own.end()) > 3 * std::max(least_sigma_px, median(own));
+  });
 }
 
 bool any(const std::vector<std::vector<bool>>& flags) {
@@ -135,40 +164,23 @@ RobustFit separated(const BoardObservations& observations,
   fit.inliers.views.clear();
   for (std::size_t v = 0; v < observations.views.size(); ++v) {
     const BoardView& view = observations.views[v];
-    const auto kept = static_cast<std::size_t>(std::count(out[v].begin(), out[v].end(), false));
-    const bool whole_view_out = 2 * kept < view.ids.size() || kept < 4;
     BoardView inlier{view.frame, view.camera, view.image, {}, {}};
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      if (whole_view_out || out[v][i]) {
-        fit.outliers.push_back(
-            {view.frame, view.camera, view.ids[i], view.image, view.pixels_px[i], 0});
-      } else {
-        inlier.ids.push_back(view.ids[i]);
-        inlier.pixels_px.push_back(view.pixels_px[i]);
-      }
+      if (out[v][i]) continue;
+      inlier.ids.push_back(view.ids[i]);
+      inlier.pixels_px.push_back(view.pixels_px[i]);
     }
-    if (!whole_view_out) fit.inliers.views.push_back(std::move(inlier));
+    const bool keep =
+        2 * inlier.ids.size() >= view.ids.size() && fixes_pose(observations.target_m, inlier.ids);
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (keep && !out[v][i]) continue;
+      fit.outliers.push_back(
+          {view.frame, view.camera, view.ids[i], view.image, view.pixels_px[i], 0});
+    }
+    if (keep) fit.inliers.views.push_back(std::move(inlier));
   }
   fit.state = at_frames(state, frames_of(fit.inliers));
   return fit;
-}
-
-/// Where the outliers lie from the final prediction; their frame's pose may be gone with them.
-void measure(const BoardObservations& observations, RobustFit& fit) {
-  const auto target_m = warped_target(observations.target_m, fit.state.warp_m);
-  for (CornerOutlier& outlier : fit.outliers) {
-    const auto frame =
-        std::lower_bound(fit.state.frames.begin(), fit.state.frames.end(), outlier.frame);
-    if (frame == fit.state.frames.end() || *frame != outlier.frame) {
-      outlier.residual_px = std::numeric_limits<double>::quiet_NaN();
-      continue;
-    }
-    const Pose& T_first_board = fit.state.T_first_board[frame - fit.state.frames.begin()];
-    const Eigen::Vector3d x =
-        fit.state.rig.T_camera_first[outlier.camera] * (T_first_board * target_m[outlier.id]);
-    outlier.residual_px =
-        (project(fit.state.rig.cameras[outlier.camera], x) - outlier.pixel_px).norm();
-  }
 }
 
 }  // namespace
@@ -198,32 +210,62 @@ double robust_pixel_sigma(const CornerResiduals& residuals) {
   return lengths.empty() ? 0 : median(std::move(lengths)) / rayleigh_median;
 }
 
+std::optional<BoardState> robust_minimum(const BoardObservations& observations,
+                                         const BoardState& state,
+                                         const ReprojectionProblem& problem,
+                                         double limit) {
+  if (!any(outlier_flags(observations, state, limit)) &&
+      !some_view_stands_out(observations, state)) {
+    return {};
+  }
+  return redescending_minimum(observations, state, problem, limit);
+}
+
 RobustFit outliers_at(const BoardObservations& observations,
                       const BoardState& state,
                       double limit) {
   RobustFit fit = separated(observations, state, outlier_flags(observations, state, limit));
-  measure(observations, fit);
+  measure_outliers(observations.target_m, fit.state, fit.outliers);
   return fit;
 }
 
-RobustFit without_outliers(const BoardObservations& observations,
-                           const BoardState& state,
-                           const ReprojectionProblem& problem,
-                           double limit) {
-  if (!any(outlier_flags(observations, state, limit)) &&
-      !some_view_stands_out(observations, state)) {
-    return {observations, state, {}};
+std::vector<std::string> cameras_left_out(const BoardObservations& observations,
+                                          const BoardObservations& inliers,
+                                          const Rig& rig) {
+  std::vector<std::string> words;
+  for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
+    std::set<int> kept;
+    for (const BoardView& view : inliers.views) {
+      if (view.camera == c) kept.insert(view.frame);
+    }
+    std::vector<std::string> out;
+    for (const BoardView& view : observations.views) {
+      if (view.camera == c && !kept.contains(view.frame)) out.push_back(std::to_string(view.frame));
+    }
+    if (out.size() <= kept.size()) continue;
+    words.push_back(fmt::format(
+        "{} of the {} views of camera {} (\"{}\") fit none of the others, more than may be left "
+        "out as outliers: look at the images of frames {}",
+        out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
   }
-  const BoardState robust = redescending_minimum(observations, state, problem, limit);
-  const auto flags = outlier_flags(observations, robust, limit);
-  if (!any(flags)) return {observations, state, {}};
-  RobustFit fit = separated(observations, robust, flags);
-  if (fit.inliers.views.empty()) {
-    throw Error("calibration", "no view agrees with any other", "check the board and its size");
+  return words;
+}
+
+void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
+                      const BoardState& state,
+                      std::vector<CornerOutlier>& outliers) {
+  const auto warped_m = warped_target(target_m, state.warp_m);
+  for (CornerOutlier& outlier : outliers) {
+    const auto frame = std::lower_bound(state.frames.begin(), state.frames.end(), outlier.frame);
+    if (frame == state.frames.end() || *frame != outlier.frame) {
+      outlier.residual_px = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    const Pose& T_first_board = state.T_first_board[frame - state.frames.begin()];
+    const Eigen::Vector3d x =
+        state.rig.T_camera_first[outlier.camera] * (T_first_board * warped_m[outlier.id]);
+    outlier.residual_px = (project(state.rig.cameras[outlier.camera], x) - outlier.pixel_px).norm();
   }
-  fit.state = minimise_reprojection(fit.inliers, fit.state, problem);
-  measure(observations, fit);
-  return fit;
 }
 
 }  // namespace vernier

@@ -2,36 +2,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/pose_covariance.h"
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "calib/draw_sources.h"
 #include "calib/error.h"
 #include "calib/random.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// tr(bound⁻¹ C) / p over the directions in which the bound has any variance: held parameters have
-/// none.
-double mean_inflation(const Eigen::MatrixXd& C, const Eigen::MatrixXd& bound) {
-  const Eigen::VectorXd inverse_sd = bound.diagonal().unaryExpr(
-      [](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse_sd.asDiagonal() * bound *
-                                                             inverse_sd.asDiagonal());
-  const Eigen::MatrixXd scaled = inverse_sd.asDiagonal() * C * inverse_sd.asDiagonal();
-  const double least = 1e-11 * eigen.eigenvalues().maxCoeff();
-  double trace = 0;
-  int directions = 0;
-  for (Eigen::Index k = 0; k < bound.rows(); ++k) {
-    if (!(eigen.eigenvalues()[k] > least)) continue;
-    const auto v = eigen.eigenvectors().col(k);
-    trace += v.dot(scaled * v) / eigen.eigenvalues()[k];
-    ++directions;
-  }
-  return directions > 0 ? trace / directions : 1;
+/// How many of the parameters the views determine, tr(C_bound S): all that have a variance, but for
+/// what a prior knows of them.
+double data_parameters(const RigEstimate& estimate, double directions) {
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  if (estimate.calibration->prior_dof == 0) return directions;
+  const ReducedNormalEquations equations = reduced_normal_equations(
+      evidence.observations,
+      {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m},
+      estimate.calibration->pixel_sigma_px,
+      evidence.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free);
+  return (*estimate.covariance_mvb * equations.information).trace();
+}
+
+/// φ above.
+double mean_inflation(const RigEstimate& estimate) {
+  const ScaledRoot bound(*estimate.covariance_mvb);
+  const auto p = static_cast<double>(bound.white.rows());
+  const double d = data_parameters(estimate, p);
+  if (!(d > 1e-3)) return 1;  // the views say nothing: there is nothing to inflate
+  const double trace =
+      (bound.white * estimate.covariance->matrix * bound.white.transpose()).trace();
+  return std::max(0.0, (trace - (p - d)) / d);
 }
 
 /// M with M δ_f = (ω_f, τ_f + t_f × ω_f) / frames.
@@ -63,17 +68,6 @@ Eigen::MatrixXd chained(const Eigen::MatrixXd& C,
 
 }  // namespace
 
-const Eigen::MatrixXd& chosen_covariance(const RigEstimate& estimate,
-                                         CovarianceChoice choice,
-                                         const std::string& place) {
-  if (choice == CovarianceChoice::honest) return required_covariance(estimate, place).matrix;
-  if (estimate.covariance_mvb) return *estimate.covariance_mvb;
-  if (estimate.covariance && estimate.covariance->kind == CovarianceKind::mvb) {
-    return estimate.covariance->matrix;
-  }
-  throw Error(place, "it has no minimum variance bound", "use the covariance it has");
-}
-
 RigAndBoards rig_and_boards(const RigEstimate& estimate,
                             CovarianceChoice choice,
                             const std::string& place) {
@@ -89,14 +83,14 @@ RigAndBoards rig_and_boards(const RigEstimate& estimate,
   joint.rig = estimate.rig;
   joint.frames = evidence.frames;
   joint.T_first_board = evidence.T_first_board;
-  joint.rig_covariance = chosen_covariance(estimate, choice, place);
+  joint.rig_covariance = required_covariance(estimate, choice, place).matrix;
   joint.given_rig = board_poses_given_rig(
       evidence.observations,
       {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m});
   double inflation = 1;
   if (choice == CovarianceChoice::honest && estimate.covariance_mvb &&
       estimate.covariance->kind != CovarianceKind::mvb) {
-    inflation = mean_inflation(joint.rig_covariance, *estimate.covariance_mvb);
+    inflation = mean_inflation(estimate);
   }
   joint.board_sigma_px = estimate.calibration->pixel_sigma_px * std::sqrt(inflation);
   return joint;

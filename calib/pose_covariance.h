@@ -7,26 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "calib/covariance_choice.h"
 #include "calib/joint_information.h"
-#include "calib/rig_estimate.h"
 
 namespace vernier {
-
-/// Which of an estimate's two covariances of the rig is meant: the honest one (what is sampled) or
-/// the minimum variance bound (what mrcal reports).
-enum class CovarianceChoice { honest, bound };
-
-/// The chosen covariance, parameters x parameters. Throws Error(`place`) where there is none.
-const Eigen::MatrixXd& chosen_covariance(const RigEstimate& estimate,
-                                         CovarianceChoice choice,
-                                         const std::string& place = "rig");
 
 /// How rig and boards move together: what carries a point that is fixed in space rather than in a
 /// camera (mrcal's reference for its projection uncertainty).
 ///
 /// The covariance of the boards given the rig is board_sigma_px² times that of joint_information.h.
 /// For the bound board_sigma_px is the pixel noise σ and everything is (JᵀJ)⁻¹ σ² exactly. For the
-/// honest covariance of the rig it is σ √φ with φ = tr(C_bound⁻¹ C) / p, the mean inflation: the
+/// honest covariance C of the rig it is σ √φ with the mean inflation of what the views say,
+///
+///     φ = (tr(C_bound⁻¹ C) − (p − d)) / d,   d = tr(C_bound S)
+///
+/// of p parameters, S the views' information: a prior's part, p − d, is not inflated. The
 /// residuals of a frame cannot show how wrong its own pose is (Bᵀr = 0 at the minimum, whatever the
 /// noise), so no sandwich covers that part, and it is taken to be as inflated as the rig.
 struct RigAndBoards {

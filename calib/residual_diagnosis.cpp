@@ -77,11 +77,8 @@ class Diagnosis {
   double share_gone(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
   double rms() const { return rms_of(sum_px2_, corners_); }
 
-  /// The same views solved otherwise; nothing where that fails. Priors and held values belong to
-  /// the model they were given for, so only free problems are tried again.
-  std::optional<Trial> solved(BoardState start, BoardWarp warp) const {
-    ReprojectionProblem trial = problem_;
-    trial.warp = warp;
+  /// The same views solved otherwise; nothing where that fails.
+  std::optional<Trial> solved(BoardState start, ReprojectionProblem trial) const {
     trial.max_iterations = 60;
     try {
       Trial result{minimise_reprojection(observations_, std::move(start), trial), 0};
@@ -92,12 +89,16 @@ class Diagnosis {
     return std::nullopt;
   }
 
+  /// Priors and held values belong to the model they were given for, so only a free problem is
+  /// tried again, and its flags are none of the other model's.
   std::optional<Trial> with_model(const CameraModel& model) const {
     const std::vector<CameraModel> models(state_.rig.cameras.size(), model);
+    ReprojectionProblem trial = problem_;
+    trial.held.clear();
     try {
       BoardState start = initial_state(observations_, models);
       start.warp_m = state_.warp_m;
-      return solved(std::move(start), problem_.warp);
+      return solved(std::move(start), std::move(trial));
     } catch (const Error&) {
       return std::nullopt;
     }
@@ -160,7 +161,9 @@ class Diagnosis {
 
   void look_at_board() {
     if (problem_.warp == BoardWarp::free) return;
-    const std::optional<Trial> bent = solved(state_, BoardWarp::free);
+    ReprojectionProblem trial = problem_;
+    trial.warp = BoardWarp::free;
+    const std::optional<Trial> bent = solved(state_, std::move(trial));
     if (!bent) return;
     const Eigen::Vector2d warp_mm = 1e3 * bent->state.warp_m;
     findings_.push_back(

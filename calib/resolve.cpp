@@ -105,8 +105,9 @@ class Descent {
   bool take_step() {
     const Step step = solve(system_, directions(result_.state.rig, cost_.held, parameters_));
     if (!step.sound) return leave_singular_point();
-    const double unit =
-        std::clamp(std::sqrt(system_.chi2 / dof_), least_unit_px / cost_.pixel_sigma_px, 1.0);
+    // σ̂ / σ, which a stated σ below the least that residuals show bounds from above alone
+    const double unit = std::min(
+        1.0, std::max(std::sqrt(system_.chi2 / dof_), least_unit_px / cost_.pixel_sigma_px));
     const bool damped = damping_.value > 0;
     const double length = step.length / unit;
     const double left = damped ? length : error_after(length, previous_length_);
@@ -190,41 +191,11 @@ struct Resolver::Problem {
   }
 };
 
-namespace {
-
-/// Throws Error where the problem is not one of this rig and these corners.
-void check(const BoardObservations& observations,
-           const Rig& rig,
-           const ReprojectionProblem& problem) {
-  const int n = parameter_count(rig);
-  if (!problem.held.empty() && static_cast<int>(problem.held.size()) != n) {
-    throw Error("held parameters", "there is not one flag a parameter of the rig",
-                "make them with held_mask");
-  }
-  for (const RigPrior& prior : problem.priors) {
-    if (prior.information.rows() != n || prior.information.cols() != n ||
-        parameter_names(prior.mean) != parameter_names(rig)) {
-      throw Error("prior", "it is of other parameters than the rig's", "make it with rig_prior");
-    }
-  }
-  bool fits =
-      problem.corner_weights.empty() || problem.corner_weights.size() == observations.views.size();
-  for (std::size_t v = 0; fits && v < problem.corner_weights.size(); ++v) {
-    fits = problem.corner_weights[v].size() == observations.views[v].ids.size();
-  }
-  if (!fits) throw Error("corner weights", "there is not one a corner", "give one a corner");
-  if (!(problem.pixel_sigma_px > 0)) {
-    throw Error("pixel sigma", "it is not positive", "give a standard deviation in pixels");
-  }
-}
-
-}  // namespace
-
 Resolver::Resolver(const BoardObservations& observations,
                    const BoardState& around,
                    ReprojectionProblem problem,
                    ResolveOptions options) {
-  check(observations, around.rig, problem);
+  check_problem(observations, around.rig, problem);
   problem_ = std::make_shared<const Problem>(observations, around, std::move(problem), options);
 }
 

@@ -4,14 +4,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "calib/chi_squared.h"
+#include "calib/corner_difference.h"
 #include "calib/error.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
@@ -94,17 +95,14 @@ void measure(const Eigen::VectorXd& delta,
              const Eigen::MatrixXd& covariance,
              const std::vector<std::string>& names,
              RigDifference& result) {
-  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
-  const Eigen::VectorXd z = delta.cwiseQuotient(sigma);
-  const Eigen::MatrixXd correlation =
-      sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  const Eigen::VectorXd& s = eigen.eigenvalues();
-  for (Eigen::Index k = s.size() - 1; k >= 0; --k) {
-    const Eigen::VectorXd u = eigen.eigenvectors().col(k);
+  const ScaledEigen eigen(covariance);
+  const Eigen::VectorXd z = delta.cwiseQuotient(eigen.deviations);
+  const Eigen::VectorXd& s = eigen.values;
+  for (Eigen::Index k = 0; k < s.size(); ++k) {
+    const Eigen::VectorXd u = eigen.directions.col(k);
     const double along = u.dot(z);
     const std::string words = describe_direction(u, names);
-    if (s[k] > null_direction * s[s.size() - 1]) {
+    if (s[k] > null_direction * s[0]) {
       result.directions.push_back({std::abs(along) / std::sqrt(s[k]), words});
       result.mahalanobis2 += along * along / s[k];
       ++result.dof;
@@ -116,22 +114,18 @@ void measure(const Eigen::VectorXd& delta,
                    [](const auto& x, const auto& y) { return x.in_sigma > y.in_sigma; });
 }
 
-const BoardView* same_image(const BoardView& view,
-                            const std::string& camera,
-                            const CalibrationEvidence& evidence,
-                            const Rig& rig) {
+bool has_image(const CalibrationEvidence& evidence,
+               const Rig& rig,
+               const BoardView& view,
+               const std::string& camera) {
   constexpr double same_image_px = 2;
-  for (const BoardView& other : evidence.observations.views) {
-    if (rig.cameras[other.camera].name != camera || other.ids != view.ids) continue;
-    double squares = 0;
-    for (std::size_t i = 0; i < view.pixels_px.size(); ++i) {
-      squares += (view.pixels_px[i] - other.pixels_px[i]).squaredNorm();
-    }
-    const double rms = std::sqrt(squares / static_cast<double>(view.pixels_px.size()));
+  const auto& others = evidence.observations.views;
+  return std::any_of(others.begin(), others.end(), [&](const BoardView& other) {
+    if (rig.cameras[other.camera].name != camera) return false;
+    const double rms_px = corner_difference(view, other, same_image_px).rms_px;
     const bool same_name = !view.image.empty() && view.image == other.image;
-    if (rms == 0 || (same_name && rms < same_image_px)) return &other;
-  }
-  return nullptr;
+    return rms_px == 0 || (same_name && rms_px < same_image_px);
+  });
 }
 
 }  // namespace
@@ -208,7 +202,7 @@ int shared_views(const CalibrationEvidence& a,
                  const Rig& rig_b) {
   return static_cast<int>(std::count_if(
       a.observations.views.begin(), a.observations.views.end(), [&](const BoardView& view) {
-        return same_image(view, rig_a.cameras[view.camera].name, b, rig_b) != nullptr;
+        return has_image(b, rig_b, view, rig_a.cameras[view.camera].name);
       }));
 }
 

@@ -52,8 +52,9 @@ RigDifference rig_difference(const Rig& a,
                              const Rig& b,
                              const Covariance& covariance_b);
 
-/// How many views (of one camera in one frame) of `a` are the same image in `b`: the pixels are
-/// the same, or the image's name is and its corners lie within 2 px rms.
+/// How many views (of one camera in one frame) of `a` are the same image in `b`: the pixels of the
+/// corners that both found are the same, or the image's name is and they lie within 2 px (rms, per
+/// coordinate).
 int shared_views(const CalibrationEvidence& a,
                  const Rig& rig_a,
                  const CalibrationEvidence& b,

@@ -2,12 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_estimate.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <set>
 
 #include "calib/error.h"
 
 namespace vernier {
+namespace {
+
+constexpr double no_variance = 1e-12;  // of a rotation's largest: rounding
+
+}  // namespace
 
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.covariance) {
@@ -18,12 +24,30 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
   return *estimate.covariance;
 }
 
-std::vector<Eigen::Index> free_parameters(const RigEstimate& estimate) {
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < parameter_count(estimate.rig); ++i) {
-    if (!estimate.covariance || estimate.covariance->matrix(i, i) > 0) free.push_back(i);
+std::vector<bool> held_parameters(const RigEstimate& estimate) {
+  const Rig& rig = estimate.rig;
+  const std::vector<std::string> names = parameter_names(rig);
+  std::vector<bool> held(names.size(), false);
+  if (!estimate.covariance) return held;
+  const Eigen::MatrixXd& C = estimate.covariance->matrix;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    held[i] = !(C(k, k) > 0);
   }
-  return free;
+  for (int c = 1; c < static_cast<int>(rig.cameras.size()); ++c) {
+    const int i = pose_index(rig, c);
+    const Eigen::Matrix3d by_tangent =
+        left_jacobian(vector_from_rotation(rig.T_camera_first[c].R)).inverse();
+    const Eigen::Vector3d variance =
+        (by_tangent * C.block<3, 3>(i, i) * by_tangent.transpose()).diagonal();
+    for (int k = 0; k < 3; ++k) held[i + k] = !(variance[k] > no_variance * variance.maxCoeff());
+  }
+  if (!estimate.calibration) return held;
+  for (const std::string& name : estimate.calibration->held) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) held[static_cast<std::size_t>(found - names.begin())] = true;
+  }
+  return held;
 }
 
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names) {

@@ -61,9 +61,10 @@ struct RigEstimate {
 /// The covariance to sample from. Throws Error(`place`) where the estimate has none.
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place);
 
-/// Indices of the rig's free parameters: those with a variance, or all of them where the estimate
-/// has no covariance. A rig file lists these.
-std::vector<Eigen::Index> free_parameters(const RigEstimate& estimate);
+/// One flag a parameter of the rig that was held: those that the calibration says, and those
+/// without a variance. A component of a rotation has its variance as one of the rotation vector.
+/// Where the estimate has no covariance none is. A rig file lists the others.
+std::vector<bool> held_parameters(const RigEstimate& estimate);
 
 /// Names the cameras otherwise, one name a camera, wherever the estimate says them: the covariance
 /// and the held parameters too. Throws Error where they are too few or many, or not different.

@@ -13,6 +13,7 @@
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
+#include "calib/held_parameters.h"
 #include "calib/rig_json.h"
 
 namespace vernier {
@@ -149,7 +150,14 @@ void check_parameters(const Node& root, const Rig& rig, const std::vector<Eigen:
   }
 }
 
-/// The matrix below `node`, one row a listed parameter; zero for the others.
+/// One flag a parameter that is not listed: it is held.
+std::vector<bool> unlisted(const Rig& rig, const std::vector<Eigen::Index>& listed) {
+  std::vector<bool> held(static_cast<std::size_t>(parameter_count(rig)), true);
+  for (const Eigen::Index i : listed) held[static_cast<std::size_t>(i)] = false;
+  return held;
+}
+
+/// The matrix below `node`, one row a listed parameter, in the tangent; zero for the others.
 Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                                        const Rig& rig,
                                        const std::vector<Eigen::Index>& listed) {
@@ -160,9 +168,8 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                 fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), listed.size()),
                 "give one row and column a parameter");
   }
-  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(parameter_count(rig), parameter_count(rig));
-  whole(listed, listed) = matrix;
-  return whole;
+  const Eigen::MatrixXd E = free_directions(rig, unlisted(rig, listed));
+  return E * matrix * E.transpose();
 }
 
 Covariance parse_covariance(const Node& node,
@@ -318,9 +325,10 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
 
 RigKnowledge rig_knowledge(const RigFile& file, const std::string& place) {
   const Covariance& whole = required_covariance(file.estimate, place);
-  RigKnowledge known{file.estimate.rig, {whole.kind, file.listed, {}}};
-  known.covariance.matrix = whole.matrix(file.listed_places, file.listed_places);
-  return known;
+  const Rig& rig = file.estimate.rig;
+  return {rig,
+          {whole.kind, file.listed,
+           covariance_of_free(whole.matrix, rig, unlisted(rig, file.listed_places))}};
 }
 
 RigFile read_rig(const std::filesystem::path& file) {
@@ -336,20 +344,21 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
     json["cameras"].push_back(
         camera_json(estimate.rig.cameras[i], estimate.rig.T_camera_first[i], i == 0));
   }
-  const std::vector<Eigen::Index> listed = free_parameters(estimate);
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  json["parameter_names"] = Json::array();
-  for (const Eigen::Index i : listed) json["parameter_names"].push_back(names[i]);
-  json["parameters"] = to_json(Eigen::VectorXd(parameters(estimate.rig)(listed)));
+  const std::vector<bool> held = held_parameters(estimate);
+  json["parameter_names"] = free_names(estimate.rig, held);
+  json["parameters"] = Json::array();
+  const Eigen::VectorXd values = parameters(estimate.rig);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (!held[i]) json["parameters"].push_back(values[static_cast<Eigen::Index>(i)]);
+  }
+  const auto listed = [&](const Eigen::MatrixXd& C) {
+    return to_json(covariance_of_free(C, estimate.rig, held));
+  };
   if (estimate.covariance) {
-    json["covariance"] = {
-        {"kind", name(estimate.covariance->kind)},
-        {"matrix", to_json(Eigen::MatrixXd(estimate.covariance->matrix(listed, listed)))}};
+    json["covariance"] = {{"kind", name(estimate.covariance->kind)},
+                          {"matrix", listed(estimate.covariance->matrix)}};
   }
-  if (estimate.covariance_mvb) {
-    json["covariance_mvb"]["matrix"] =
-        to_json(Eigen::MatrixXd((*estimate.covariance_mvb)(listed, listed)));
-  }
+  if (estimate.covariance_mvb) json["covariance_mvb"]["matrix"] = listed(*estimate.covariance_mvb);
   if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration, estimate.rig);
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);

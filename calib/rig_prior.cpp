@@ -65,13 +65,11 @@ RigPrior prior_at(const Rig& like,
                   const Covariance& covariance) {
   const std::vector<Eigen::Index> places = places_of(covariance.names, like);
   const Eigen::MatrixXd P = inverse_of(covariance);
-  const int p = parameter_count(like);
-  RigPrior prior{with_held_values(like, values), Eigen::MatrixXd::Zero(p, p)};
-  for (Eigen::Index i = 0; i < P.rows(); ++i) {
-    for (Eigen::Index k = 0; k < P.cols(); ++k) {
-      prior.information(places[i], places[k]) = 0.5 * (P(i, k) + P(k, i));
-    }
-  }
+  RigPrior prior{with_held_values(like, values), {}};
+  std::vector<bool> unnamed(static_cast<std::size_t>(parameter_count(like)), true);
+  for (const Eigen::Index i : places) unnamed[static_cast<std::size_t>(i)] = false;
+  const Eigen::MatrixXd K = values_by_tangent(prior.mean, unnamed)(places, Eigen::all);
+  prior.information = K.transpose() * (0.5 * (P + P.transpose())) * K;
   return prior;
 }
 

@@ -18,7 +18,9 @@ struct RigPrior {
 };
 
 /// What is known of a rig from elsewhere: `covariance` is over the parameters it names, any subset
-/// of those of `rig`, whose other values say nothing.
+/// of those of `rig`, whose other values say nothing. Over a whole rotation it is in the left
+/// tangent; over a part of one it is of these components of the rotation vector, as held ones are
+/// (calib/held_parameters.h), and says nothing of the others.
 struct RigKnowledge {
   Rig rig;
   Covariance covariance;

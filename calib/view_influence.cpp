@@ -7,28 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/covariance_choice.h"
 #include "calib/error.h"
-#include "calib/pose_covariance.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
-namespace {
-
-/// L of C = L Lᵀ by the eigenvectors of the scaled matrix, so that C may have rows of zeros.
-Eigen::MatrixXd factor_of(const Eigen::MatrixXd& C) {
-  const Eigen::VectorXd sd = C.diagonal().cwiseMax(0).cwiseSqrt();
-  const Eigen::VectorXd inverse = (sd.array() > 0).select(sd.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * C *
-                                                             inverse.asDiagonal());
-  return sd.asDiagonal() * eigen.eigenvectors() *
-         eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-}
-
-}  // namespace
-
 std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equations,
                                           const Eigen::MatrixXd& bound) {
   constexpr double decides_alone = 1 - 1e-6;
-  const Eigen::MatrixXd L = factor_of(bound);
+  const Eigen::MatrixXd L = ScaledRoot(bound).root;
   std::vector<ViewInfluence> influences;
   for (std::size_t f = 0; f < equations.frame_information.size(); ++f) {
     ViewInfluence one;
@@ -68,7 +55,7 @@ std::vector<ViewInfluence> view_influence(const RigEstimate& estimate, const std
       {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m}, sigma,
       evidence.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free);
   auto influences =
-      view_influence(equations, chosen_covariance(estimate, CovarianceChoice::bound, place));
+      view_influence(equations, required_covariance(estimate, CovarianceChoice::mvb, place).matrix);
   for (std::size_t f = 0; f < influences.size(); ++f) influences[f].frame = evidence.frames[f];
   std::size_t f = 0;
   for (const BoardView& view : evidence.observations.views) {

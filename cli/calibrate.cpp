@@ -68,6 +68,9 @@ void run(const Options& options, Session& session) {
     comparison = compare_models(estimate, calibration);
     std::vector<std::string>& warnings = estimate.calibration->warnings;
     warnings.insert(warnings.end(), comparison.warnings.begin(), comparison.warnings.end());
+    if (!comparison.not_compared.empty()) {
+      warnings.push_back("models were not compared: " + comparison.not_compared);
+    }
   }
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   judge(estimate, session);

@@ -14,6 +14,14 @@ std::string coverage_line(const std::string& what,
                      100 * c.coverage_mvb, c.z_rms_honest, c.z_rms_mvb);
 }
 
+/// What could not be predicted, where there is any.
+std::string without_a_point(const LeftOutBoardsResult& result) {
+  if (result.corners_left_out == 0) return "";
+  return fmt::format(
+      " (left out: {} corners without a point in space, {} boards with too few others)",
+      result.corners_left_out, result.boards_left_out);
+}
+
 }  // namespace
 
 Json coverage_json(const LengthCoverage& c) {
@@ -38,16 +46,18 @@ CheckPart check_boards_left_out(const BoardObservations& observations,
                {"failed", result.failed},
                {"training_frames", result.training_frames},
                {"boards", result.boards},
+               {"boards_left_out", result.boards_left_out},
+               {"corners_left_out", result.corners_left_out},
                {"seed", options.seed},
                {"edges", coverage_json(result.edges)},
                {"scale", coverage_json(result.scale)}};
   part.text = fmt::format(
-      "boards left out: {} splits{}, {} frames to calibrate, {} boards predicted\n"
+      "boards left out: {} splits{}, {} frames to calibrate, {} boards predicted{}\n"
       "  {:<26} {:>7} {:>19} {:>11} {:>11} {:>15}\n  {:<26} {:>7} {:>19} {:>11} {:>11} {:>7} "
       "{:>7}\n",
       result.splits, result.failed > 0 ? fmt::format(" ({} failed)", result.failed) : "",
-      result.training_frames, result.boards, "", "", "", "inside 95 %", "inside 95 %", "rms z", "",
-      "lengths", "rms error", "honest", "bound", "honest", "bound");
+      result.training_frames, result.boards, without_a_point(result), "", "", "", "inside 95 %",
+      "inside 95 %", "rms z", "", "lengths", "rms error", "honest", "bound", "honest", "bound");
   part.text += coverage_line("rows, columns, diagonals", result.edges, 1e3, "mm");
   part.text += coverage_line("whole board's size", result.scale, 1e6, "ppm");
   if (result.scale.z_rms_honest > 2) {

@@ -35,7 +35,13 @@ CheckPart check_by_noisy_copies(const CheckedProblem& p, const NoisyCopies& copi
       check.nees_mean, check.nees_expected, check.nees_interval_95[0], check.nees_interval_95[1],
       check.std_ratio_min, check.std_ratio_max, check.eigenvalues[0], check.eigenvalues[1],
       check.eigenvalue_band_99[0], check.eigenvalue_band_99[1], check.ks_p, check.ks_p_components);
-  if (!check.consistent()) {
+  if (!check.copies_solved()) {
+    part.failures.push_back(fmt::format(
+        "{} of {} noisy copies could not be solved: the views hardly determine the rig, and what "
+        "the others scatter says too little; use a model with fewer parameters, or more views",
+        check.failed, check.trials + check.failed));
+  }
+  if (!check.scatter_as_stated()) {
     part.failures.push_back(fmt::format(
         "noisy copies scatter otherwise than the covariance says: NEES {:.2f} for {:.0f}, sigmas "
         "{:.2f} to {:.2f} times the predicted",

@@ -77,7 +77,8 @@ void add_covariance(const RigEstimate& estimate, Json& json) {
   json["raw_condition"] = decomposition.raw_condition();
   json["scaled_condition"] = decomposition.scaled_condition();
   json["directions"] = table["directions"];
-  json["free_parameters"] = free_parameters(estimate).size();
+  const std::vector<bool> held = held_parameters(estimate);
+  json["free_parameters"] = std::count(held.begin(), held.end(), false);
   add_correlation(*estimate.covariance, json);
   if (estimate.rig.cameras.size() == 2) json["depth"] = depth_json(estimate);
 }

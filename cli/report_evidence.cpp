@@ -197,7 +197,7 @@ Json report_projection(const RigEstimate& estimate) {
   const RigAndBoards honest = rig_and_boards(estimate, CovarianceChoice::honest);
   std::optional<RigAndBoards> bound;
   if (estimate.covariance_mvb && estimate.covariance->kind != CovarianceKind::mvb) {
-    bound = rig_and_boards(estimate, CovarianceChoice::bound);
+    bound = rig_and_boards(estimate, CovarianceChoice::mvb);
   }
   const auto [nearest, median, farthest] = board_ranges(*estimate.evidence);
   Json json{{"boards_m", {rounded(nearest, 3), rounded(median, 3), rounded(farthest, 3)}},

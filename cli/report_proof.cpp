@@ -35,6 +35,10 @@ Json models_json(const ModelComparison& comparison) {
 
 void add_models(const RigEstimate& estimate, const CalibrationOptions& options, Json& json) {
   const ModelComparison comparison = compare_models(estimate, options, most_frames);
+  if (!comparison.not_compared.empty()) {
+    json["notes"].push_back("Models were not compared: " + comparison.not_compared + ".");
+    return;
+  }
   if (comparison.richer.empty()) {
     json["notes"].push_back(
         "No richer lens model was compared: there is none, the views do not determine one, or "
@@ -51,25 +55,14 @@ Json named_coverage(const std::string& what, const std::string& unit, const Leng
   return json;
 }
 
-/// The observations at evenly spaced frames, so many at most.
-BoardObservations thinned(BoardObservations observations) {
-  const std::vector<int> frames = frames_of(observations);
-  const std::size_t n = frames.size();
-  if (n <= most_frames) return observations;
-  std::vector<int> some;
-  for (std::size_t k = 0; k < most_frames; ++k) some.push_back(frames[k * n / most_frames]);
-  std::erase_if(observations.views, [&](const BoardView& view) {
-    return !std::binary_search(some.begin(), some.end(), view.frame);
-  });
-  return observations;
-}
-
 void add_left_out(const RigEstimate& estimate,
                   const CalibrationOptions& options,
                   const std::string& file,
                   const Session& session,
                   Json& json) {
-  const BoardObservations observations = thinned(estimate.evidence->observations);
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  const BoardObservations observations =
+      at_frames(evidence.observations, evenly_spaced(evidence.frames, most_frames));
   session.say(fmt::format("{}: calibrating {} times with boards left out", file, splits));
   const LeftOutBoardsResult result =
       measure_left_out_boards(observations, {.splits = splits, .calibration = options});
@@ -77,6 +70,8 @@ void add_left_out(const RigEstimate& estimate,
   json["left_out"] = {{"splits", result.splits},
                       {"failed", result.failed},
                       {"boards", result.boards},
+                      {"boards_left_out", result.boards_left_out},
+                      {"corners_left_out", result.corners_left_out},
                       {"frames", frames},
                       {"training_frames", result.training_frames},
                       {"rows",

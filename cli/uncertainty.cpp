@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include "calib/covariance_choice.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
 #include "cli/option_checks.h"
@@ -23,8 +24,7 @@ struct Options {
 /// The estimate with the wanted covariance as the one that is sampled.
 RigEstimate with_choice(RigEstimate estimate, const Options& options, const std::string& place) {
   if (options.covariance == "honest") return estimate;
-  estimate.covariance = Covariance{CovarianceKind::mvb, parameter_names(estimate.rig),
-                                   chosen_covariance(estimate, CovarianceChoice::bound, place)};
+  estimate.covariance = required_covariance(estimate, CovarianceChoice::mvb, place);
   return estimate;
 }
 

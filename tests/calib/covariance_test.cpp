@@ -7,8 +7,10 @@
 #include <Eigen/Dense>
 
 #include "calib/error.h"
+#include "calib/joint_information.h"
 #include "calib/simulated_board.h"
 #include "calib/view_linearisation.h"
+#include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
@@ -120,6 +122,32 @@ TEST(ScaledDecomposition, AHeldParameterStaysHeld) {
   const ScaledDecomposition d(c);
   EXPECT_EQ(d.factor().row(1).norm(), 0);
   EXPECT_NEAR(d.factor().row(0).norm(), 3, 1e-12);
+}
+
+/// The board of every frame seen by one row of its corners alone.
+SimulatedBoard rows_of_boards(std::uint64_t seed) {
+  SimulatedBoard board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 1});
+  for (BoardView& view : board.observations.views) {
+    view.ids.resize(9);
+    view.pixels_px.resize(9);
+  }
+  return board;
+}
+
+// A row of corners leaves the board free to turn about it, whatever rounding makes of that.
+TEST(NormalEquations, ARowOfCornersFixesNoPose) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SimulatedBoard board = rows_of_boards(seed);
+    const std::string expected =
+        "frame 0: its corners do not fix the pose of the board; leave the frame out";
+    EXPECT_EQ(test::error_message(
+                  [&] { reduced_normal_equations(board.observations, board.truth, 0.2); }),
+              expected)
+        << seed;
+    EXPECT_EQ(test::error_message([&] { board_poses_given_rig(board.observations, board.truth); }),
+              expected)
+        << seed;
+  }
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "calib/error.h"
-#include "calib/model_comparison.h"
 #include "calib/simulated_board.h"
+#include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -41,33 +41,44 @@ TEST(LeftOutBoards, WrongModelIsSeen) {
   EXPECT_GT(with(Radial1{}), 2 * with(OpenCv4{}));
 }
 
+// A corner whose rays part: it alone is left out and counted, and a board of too few corners is.
+TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 305, 0, {.frames = 14});
+  const auto measured = [&](const BoardObservations& observations) {
+    return measure_left_out_boards(
+        observations,
+        {.splits = 8, .calibration = {.held = {{"left.ax", 1.002}}, .check_input = false}});
+  };
+  const LeftOutBoardsResult clean = measured(board.observations);
+  EXPECT_EQ(clean.boards, 8 * 6);
+  EXPECT_EQ(clean.corners_left_out + clean.boards_left_out, 0);
+  BoardObservations clean_views = board.observations, spoilt = board.observations;
+  BoardView& one = test::view_of(spoilt, 3, 1);
+  for (const std::size_t i : {0u, 20u}) one.pixels_px[i].x() = 639;
+  BoardView& other = test::view_of(spoilt, 8, 1);
+  other.ids = {0, 8, 45, 53, 13, 31};
+  other.pixels_px = {};
+  const BoardView& whole = test::view_of(clean_views, 8, 1);
+  for (const int id : other.ids) other.pixels_px.push_back(whole.pixels_px[id]);
+  for (std::size_t i = 3; i < 6; ++i) other.pixels_px[i].x() = 639;
+  const LeftOutBoardsResult result = measured(spoilt);
+  EXPECT_EQ(result.splits, 8);
+  EXPECT_GT(result.boards_left_out, 0);
+  EXPECT_LT(result.boards_left_out, 8);
+  EXPECT_EQ(result.boards, clean.boards - result.boards_left_out);
+  // frame 3 was left out by some splits, with two corners less each time
+  const int of_frame_3 = result.corners_left_out - 3 * result.boards_left_out;
+  EXPECT_GT(of_frame_3, 0);
+  EXPECT_EQ(of_frame_3 % 2, 0);
+  EXPECT_LE(of_frame_3, 16);
+  EXPECT_NEAR(result.scale.z_rms_mvb, clean.scale.z_rms_mvb, 0.7);
+}
+
 TEST(LeftOutBoards, NeedAPairAndViews) {
   auto observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 5}).observations;
   EXPECT_THROW(measure_left_out_boards(observations), Error);
   observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 8}).observations;
   EXPECT_THROW(measure_left_out_boards(observations, {.training_frames = 8}), Error);
-}
-
-TEST(ModelComparison, NamesTheModelThatPredictsBetter) {
-  Rig truth = test::stereo_rig(OpenCv4{});
-  const auto board = simulate_board(truth, {}, 304, 0, {.frames = 16, .pixel_sigma_px = 0.1});
-  const CalibrationOptions options{.model = Radial1{}};
-  const ModelComparison c = compare_models(calibrate(board.observations, options), options);
-  ASSERT_EQ(c.richer.size(), 2u);
-  ASSERT_EQ(c.warnings.size(), 1u);
-  EXPECT_NE(c.warnings[0].find("use --model opencv4"), std::string::npos) << c.warnings[0];
-  EXPECT_LT(c.richer[0].held_out_rms_px, c.in_use.held_out_rms_px);
-  EXPECT_GT(c.richer[0].better_views, 12);
-}
-
-// 20 sets whose model is right: a warning would come once in 700 models (two a set).
-TEST(ModelComparison, IsSilentWhereTheModelIsRight) {
-  for (std::uint64_t seed = 320; seed < 340; ++seed) {
-    const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 13});
-    const CalibrationOptions options{.model = Radial1{}};
-    const ModelComparison c = compare_models(calibrate(board.observations, options), options);
-    EXPECT_TRUE(c.warnings.empty()) << c.warnings[0];
-  }
 }
 
 }  // namespace

@@ -102,6 +102,33 @@ TEST(MonteCarloCheck, HeldParametersHaveNoShareInIt) {
   EXPECT_TRUE(check.consistent()) << check.nees_mean << " " << check.ks_p;
 }
 
+TEST(MonteCarloCheck, CopiesThatCannotBeSolvedSpeakAgainstIt) {
+  const Calibrated calibrated;
+  MonteCarloCheck check = calibrated.check(calibrated.covariance);
+  ASSERT_TRUE(check.consistent());
+  check.failed = 5;  // of 505
+  EXPECT_TRUE(check.consistent());
+  check.failed = 6;
+  EXPECT_FALSE(check.consistent());
+  EXPECT_FALSE(check.copies_solved());
+  EXPECT_TRUE(check.scatter_as_stated());
+}
+
+// A view's noise is its own: leaving out another view changes what is estimated from it, not what
+// was drawn.
+TEST(MonteCarloCheck, NoiseDoesNotDependOnTheOtherViews) {
+  const Calibrated all;
+  Calibrated less = all;
+  less.board.observations.views.erase(less.board.observations.views.begin());
+  less.covariance = minimum_variance_bound(
+      reduced_normal_equations(less.board.observations, less.board.truth, sigma_px),
+      parameter_names(less.board.truth.rig));
+  const MonteCarloCheck a = all.check(all.covariance, 100), b = less.check(less.covariance, 100);
+  for (std::size_t i = 0; i < 16; ++i) {  // other noise: 0.1 apart on the mean
+    EXPECT_NEAR(a.std_ratios[i], b.std_ratios[i], 0.05) << i;
+  }
+}
+
 TEST(MonteCarloCheck, PriorsAreDrawnToo) {
   Calibrated calibrated;
   Eigen::VectorXd sd = calibrated.covariance.diagonal().cwiseSqrt();

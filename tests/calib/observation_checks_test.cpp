@@ -133,6 +133,63 @@ TEST_F(ObservationChecks, RowsAndColumnsExchangedAreNamed) {
             std::string::npos);
 }
 
+// A wide lens bends a tilted board by several pixels, far from the spacing of its corners.
+TEST_F(ObservationChecks, TiltedBoardsBeforeAWideLensPass) {
+  const Rig rig = [] {
+    Rig wide = test::stereo_rig(Fisheye4{});
+    wide.cameras.resize(1);
+    wide.T_camera_first.resize(1);
+    wide.cameras[0].parameters << 240, 1, 319.5, 239.5, -0.03, 0.005, 0, 0;
+    return wide;
+  }();
+  const Camera& camera = rig.cameras[0];
+  BoardObservations seen{{camera.size_px}, good_.target_m, {}};
+  const Eigen::Vector3d middle = 0.5 * (seen.target_m.front() + seen.target_m.back());
+  for (const double x : {-0.7, 0.0, 0.7}) {
+    for (const double y : {-0.7, 0.0, 0.7}) {
+      for (const double along : {-0.08, 0.0, 0.08}) {
+        for (const double away : {0.12, 0.15, 0.2}) {
+          BoardView view{static_cast<int>(seen.views.size()), 0, "", {}, {}};
+          const Eigen::Matrix3d R =
+              rotation_from_vector({0, y, 0}) * rotation_from_vector({x, 0, 0});
+          for (std::size_t i = 0; i < seen.target_m.size(); ++i) {
+            const Eigen::Vector3d X =
+                R * (seen.target_m[i] - middle) + Eigen::Vector3d(0, along, away);
+            const Eigen::Vector2d pixel = project(camera, X);
+            if (X.z() < 0.03 || !in_image(camera, pixel)) continue;
+            view.ids.push_back(static_cast<int>(i));
+            view.pixels_px.push_back(pixel);
+          }
+          if (view.ids.size() == seen.target_m.size()) seen.views.push_back(std::move(view));
+        }
+      }
+    }
+  }
+  EXPECT_GT(seen.views.size(), 20u);
+  EXPECT_EQ(complaint_of(seen), "");
+}
+
+TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
+  BoardView& view = test::view_of(good_, 5, 1);
+  view.image = "right05.png";
+  const BoardView whole = view;
+  const auto complaint = [&](const std::vector<int>& ids) {
+    view.ids = ids;
+    view.pixels_px.clear();
+    for (const int id : ids) view.pixels_px.push_back(whole.pixels_px[id]);
+    return complaint_of(good_);
+  };
+  const std::string expected =
+      "frame 5, camera 1 (right05.png): its corners, all but one at most, lie on one line of the "
+      "board, which fixes no pose of it; leave the view out";
+  EXPECT_EQ(complaint({9, 10, 11, 12, 13, 14, 15, 16, 17}), expected);  // a row
+  EXPECT_EQ(complaint({0, 10, 20, 30, 40, 50}), expected);              // a diagonal
+  EXPECT_EQ(complaint({0, 1, 2, 3, 31}), expected);                     // and one elsewhere
+  EXPECT_EQ(complaint({31, 3, 12, 21}), expected);                      // four, three in a column
+  EXPECT_EQ(complaint({0, 1, 9, 10}), "");
+  EXPECT_EQ(complaint({0, 1, 2, 9, 10}), "");
+}
+
 TEST_F(ObservationChecks, ATargetThatIsNotFlatIsRefused) {
   for (std::size_t i = 0; i < good_.target_m.size(); ++i) good_.target_m[i].z() = 0.02 * (i % 4);
   EXPECT_EQ(complaint_of(good_).find("target: its corners lie in no plane z = 0"), 0u);

@@ -65,7 +65,7 @@ class Propagated
 };
 
 TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
-  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::mvb);
   double worst = 0;
   int compared = 0;
   for (const auto& grid : solution_["projection"]) {
@@ -87,7 +87,7 @@ TEST_P(Propagated, ProjectionCovarianceIsMrcals) {
 }
 
 TEST_P(Propagated, TriangulationCovarianceIsMrcals) {
-  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate_, CovarianceChoice::mvb);
   const double sigma_px = solution_["sigma"].get<double>();
   const auto& pixels = solution_["triangulation"]["q"];
   const auto pair = [&](std::size_t i) {

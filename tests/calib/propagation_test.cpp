@@ -232,7 +232,7 @@ TEST(JointInformation, IsTheInverseOfTheFullNormalMatrixForFlatAndWarpedBoards) 
 }
 
 TEST(JointInformation, MeanMotionIsTheMeanOfThePoses) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
   const int n = parameter_count(joint.rig), frames = static_cast<int>(joint.frames.size());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + 6, n + 6 * frames);
   M.topLeftCorner(n, n).setIdentity();
@@ -251,8 +251,8 @@ TEST(ProjectionUncertainty, DoesNotDependOnWhichCameraIsTheFirst) {
   BoardObservations swapped = estimate().evidence->observations;
   for (BoardView& view : swapped.views) view.camera = 1 - view.camera;
   const RigEstimate other = calibrate(swapped, {.pixel_sigma_px = 0.2, .white_noise = true});
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::bound);
-  const RigAndBoards joint_swapped = rig_and_boards(other, CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
+  const RigAndBoards joint_swapped = rig_and_boards(other, CovarianceChoice::mvb);
   for (int c = 0; c < 2; ++c) {
     const ProjectionUncertainty a(joint, c, PointFixedTo::boards);
     const ProjectionUncertainty b(joint_swapped, 1 - c, PointFixedTo::boards);
@@ -266,7 +266,7 @@ TEST(ProjectionUncertainty, DoesNotDependOnWhichCameraIsTheFirst) {
 }
 
 TEST(ProjectionUncertainty, FarPointsApproachInfinityAndACameraFixedRayHasNoDistance) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
   for (int c = 0; c < 2; ++c) {
     for (const auto fixed_to : {PointFixedTo::boards, PointFixedTo::first_camera}) {
       const ProjectionUncertainty u(joint, c, fixed_to);
@@ -294,10 +294,36 @@ TEST(ProjectionUncertainty, AnHonestCovarianceThatIsAMultipleOfTheBoundScalesEve
   scaled.covariance->kind = CovarianceKind::jackknife;
   scaled.covariance->matrix = 4 * *scaled.covariance_mvb;
   const RigAndBoards honest = rig_and_boards(scaled, CovarianceChoice::honest);
-  const RigAndBoards bound = rig_and_boards(scaled, CovarianceChoice::bound);
+  const RigAndBoards bound = rig_and_boards(scaled, CovarianceChoice::mvb);
   EXPECT_LT(
       relative_difference(rig_and_motion_covariance(honest), 4 * rig_and_motion_covariance(bound)),
       1e-9);
+}
+
+// What a prior knows is no part of what the views' scatter inflates: with S the views' information
+// and P the prior's, an honest covariance C S C + C P C with the first part nine times as large
+// says that the views are three times as noisy.
+TEST(ProjectionUncertainty, APriorIsNotInflatedWithTheViews) {
+  const SimulatedBoard board =
+      simulate_board(test::stereo_rig(), {6, 5, 0.05}, 7, 0, {.frames = 10, .pixel_sigma_px = 0.2});
+  std::vector<KnownParameter> known;
+  const Eigen::VectorXd values = parameters(test::stereo_rig());
+  const std::vector<std::string> names = parameter_names(test::stereo_rig());
+  for (std::size_t i = 0; i < 13; ++i) {
+    known.push_back({names[i], values[static_cast<Eigen::Index>(i)], i % 5 == 1 ? 1e-7 : 1e-5});
+  }
+  RigEstimate e =
+      calibrate(board.observations, {.pixel_sigma_px = 0.2, .known = known, .white_noise = true});
+  const CalibrationEvidence& evidence = *e.evidence;
+  const Eigen::MatrixXd C = *e.covariance_mvb;
+  const Eigen::MatrixXd S =
+      reduced_normal_equations(evidence.observations,
+                               {e.rig, evidence.frames, evidence.T_first_board}, 0.2)
+          .information;
+  ASSERT_LT((C * S).trace(), 4);  // of 16 parameters the views determine so many
+  e.covariance->kind = CovarianceKind::jackknife;
+  e.covariance->matrix = 9 * C * S * C + (C - C * S * C);
+  EXPECT_NEAR(rig_and_boards(e, CovarianceChoice::honest).board_sigma_px, 3 * 0.2, 1e-5);
 }
 
 TEST(ProjectionUncertainty, HeldParametersTakeNoPart) {
@@ -360,7 +386,7 @@ TEST(RigAndBoards, WhatIsMissingIsNamed) {
   const auto with = [&](auto change) {
     RigEstimate e = estimate();
     change(e);
-    return complaint([&] { rig_and_boards(e, CovarianceChoice::bound, "r.json"); });
+    return complaint([&] { rig_and_boards(e, CovarianceChoice::mvb, "r.json"); });
   };
   EXPECT_PRED2(says, with([](RigEstimate& e) { e.evidence.reset(); }),
                "r.json: it holds no evidence");
@@ -425,7 +451,7 @@ TEST(Triangulation, OfARigOfOneCameraIsRefused) {
 }
 
 TEST(TriangulationUncertainty, ALengthIsBetterKnownThanItsEnds) {
-  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::bound);
+  const RigAndBoards joint = rig_and_boards(estimate(), CovarianceChoice::mvb);
   const TriangulationUncertainty u(joint, TriangulationFrame::rig);
   const PixelPair a = *pixel_pair(joint.rig, {0, 0, 3}), b = *pixel_pair(joint.rig, {0.1, 0, 3});
   const Eigen::Matrix3d between = *u.between(a, b);

@@ -54,6 +54,28 @@ TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
   EXPECT_TRUE(better.calibration->doubts.empty());
 }
 
+// opencv8 has two words of parameters more than radial1: nothing of the poorer problem may be asked
+// of it.
+TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
+  Rig wide;
+  for (int c = 0; c < 4; ++c) {
+    Camera camera = test::stereo_rig(Fisheye4{}).cameras[0];
+    camera.name = "camera" + std::to_string(c);
+    camera.parameters << 305, 1, 320, 240, -0.02, 0.005, -0.002, 0.0003;
+    wide.cameras.push_back(camera);
+    wide.T_camera_first.push_back(
+        {Eigen::Matrix3d::Identity(), {-0.05 * (c % 2), 0.05 * (c / 2), 0}});
+  }
+  const auto seen =
+      simulate_board(wide, {}, 7, 0, {.frames = 12, .distance_m = 0.2, .tilt_rad = 0.35})
+          .observations;
+  const RigEstimate estimate = calibrate(seen, {.model = Radial1{}});
+  ASSERT_EQ(estimate.calibration->doubts.size(), 1u);
+  EXPECT_NE(estimate.calibration->doubts[0].find("the lens needs another model: with "),
+            std::string::npos)
+      << estimate.calibration->doubts[0];
+}
+
 TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
   const Eigen::Vector2d warp_m(0.004, -0.002);
   const SimulatedBoard drawn = simulate_board(rig_, {}, 7, 0, {.frames = 15, .distance_m = 0.6});

@@ -98,6 +98,20 @@ TEST(Resolver, HeldParametersStay) {
               vector_from_rotation(start.rig.T_camera_first[1].R)[1], 1e-15);
 }
 
+// Stated noise far below what residuals can show: lengths of steps are in its units.
+TEST(Resolver, ATinyPixelSigmaIsTakenAtItsWord) {
+  const SimulatedBoard board = scene(test::stereo_rig(), 24, 0);
+  const ReprojectionProblem problem{.pixel_sigma_px = 1e-4};
+  const BoardState start = perturbed(board, 1e-4);
+  const ResolveResult once =
+      Resolver(board.observations, start, problem, {.tolerance_sigma = 1e9}).resolve();
+  ASSERT_EQ(once.iterations, 1);
+  const Eigen::MatrixXd C = Resolver(board.observations, start, problem).covariance(start);
+  const Eigen::VectorXd step = difference(once.state.rig, start.rig);
+  const double length = std::sqrt(step.dot(C.ldlt().solve(step)));
+  EXPECT_NEAR(once.error_left_sigma / length, 0.03 / 0.97, 1e-4);  // the rate that is counted on
+}
+
 TEST(Resolver, PriorsAreInTheCost) {
   const SimulatedBoard board = scene(test::stereo_rig());
   const int n = parameter_count(board.truth.rig);

@@ -173,6 +173,9 @@ TEST(SharedViews, AreFoundByPixelsOrByImage) {
   view.image = "left01.png";
   for (auto& pixel : view.pixels_px) pixel.x() += 0.1;
   EXPECT_EQ(shared_views(*named.evidence, a.rig, *again.evidence, a.rig), all);
+  view.ids.pop_back();  // one corner less
+  view.pixels_px.pop_back();
+  EXPECT_EQ(shared_views(*named.evidence, a.rig, *again.evidence, a.rig), all);
   // of another session, an image of the same name shows the board elsewhere
   for (auto& pixel : view.pixels_px) pixel.x() += 30;
   EXPECT_EQ(shared_views(*named.evidence, a.rig, *again.evidence, a.rig), all - 1);

@@ -37,12 +37,12 @@ inline void make_partial(BoardObservations& observations) {
   }
 }
 
-/// χ² at a state, by the plain code, and the standard deviations of the rig there were nothing
-/// held.
+/// χ² at a state, by the plain code, and the covariance of the rig there.
 struct Reference {
   double chi2 = 0;
   double residuals = 0;
-  Eigen::VectorXd sd;
+  Eigen::MatrixXd covariance;  ///< zero where held
+  Eigen::VectorXd sd;          ///< infinite where held
 
   Reference(const BoardObservations& observations,
             const BoardState& state,
@@ -66,9 +66,8 @@ struct Reference {
       const Eigen::MatrixXd by_free = prior_offset(prior, state.rig).by_rig * E;
       add_prior(equations, by_free.transpose() * prior.information * by_free);
     }
-    sd = (E * minimum_variance_bound(equations, free_names(state.rig, held)) * E.transpose())
-             .diagonal()
-             .cwiseSqrt();
+    covariance = E * minimum_variance_bound(equations, free_names(state.rig, held)) * E.transpose();
+    sd = covariance.diagonal().cwiseSqrt();
     for (double& s : sd) s = s > 0 ? s : std::numeric_limits<double>::infinity();  // held
   }
 };

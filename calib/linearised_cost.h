@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/minimise_reprojection.h"
+
+namespace vernier {
+
+/// The unified cost about a state, in the directions that are free:
+///
+///     a = a_state ⊕ E z,   χ²(z) ≈ χ² + 2 gᵀ z + zᵀ S z
+///
+/// board poses and a free warp eliminated, priors included.
+struct LinearisedCost {
+  Eigen::MatrixXd free;              ///< E (calib/held_parameters.h)
+  std::vector<std::string> names;    ///< of what is free, one a column of E
+  ReducedNormalEquations equations;  ///< of z, at the problem's noise
+};
+
+/// Corner weights are left aside. Throws Error where every parameter is held, or as
+/// check_problem and reduced_normal_equations do. minimum_variance_bound(equations, names) then
+/// says whether z is determined.
+LinearisedCost linearised_cost(const BoardObservations& observations,
+                               const BoardState& state,
+                               const ReprojectionProblem& problem);
+
+}  // namespace vernier

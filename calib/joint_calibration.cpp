@@ -192,6 +192,32 @@ CalibrationSummary summary_of(const Joint& joint,
   return summary;
 }
 
+/// What the result says against itself.
+void warn(const JointCalibration& joint,
+          std::size_t pairs,
+          double fixed_scale,
+          CalibrationSummary& summary) {
+  const std::size_t out = summary.pair_outliers.size();
+  if (10 * out > pairs) {
+    summary.doubts.push_back(fmt::format(
+        "{} of {} pairs were left out as outliers: the matches are poor, or the rig is not one",
+        out, pairs));
+  } else if (out > 0) {
+    summary.warnings.push_back(fmt::format("{} of {} pairs were left out as outliers", out, pairs));
+  }
+  const double scale = joint.pair_sigma_scale;
+  if (fixed_scale == 0 && pairs > 0 && (scale > 2 || scale < 0.5)) {
+    summary.warnings.push_back(fmt::format(
+        "the noise of the pairs is {:.2g} times what they state; the result goes by the residuals",
+        scale));
+  }
+  if (joint.observability && joint.observability->mostly_prior()) {
+    summary.warnings.push_back(
+        fmt::format("the answer is mostly prior: the pairs determine {:.1f} of {} parameters",
+                    joint.observability->from_data, joint.observability->directions.size()));
+  }
+}
+
 Joint start_of(const JointEvidence& evidence, const Rig& start, const JointOptions& options) {
   Joint joint;
   joint.boards = merge_boards(evidence.boards, start);
@@ -223,6 +249,20 @@ std::optional<Observability> what_pairs_brought(const Joint& joint,
 }
 
 }  // namespace
+
+PriorAgreement agreement_with(const RigKnowledge& prior, const RigEstimate& estimate) {
+  const std::vector<bool> held = held_parameters(estimate);
+  const Rig& rig = estimate.rig;
+  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
+  std::vector<Eigen::Index> free;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (!held[i]) free.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (free_names(rig, held) != prior.covariance.names) return {};
+  return prior_agreement(moved(free), prior.covariance.names, prior.covariance.matrix,
+                         covariance_of_free(*estimate.covariance_mvb, rig, held),
+                         covariance_of_free(estimate.covariance->matrix, rig, held));
+}
 
 std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
   std::vector<HeldParameter> held;
@@ -271,6 +311,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   for (const HeldParameter& held : options.held) {
     estimate.calibration->held.push_back(held.name);
   }
+  warn(result, evidence.pairs.size(), options.pair_sigma_scale, *estimate.calibration);
   estimate.evidence = merged_evidence(joint.boards, joint.state);
   estimate.evidence->pairs = evidence.pairs;
   estimate.evidence->priors = evidence.priors;
@@ -295,23 +336,22 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                 fmt::format("{} pairs for {} free parameters", pairs.size(), free),
                 "match more corners, or hold parameters");
   }
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(parameter_count(prior.rig), parameter_count(prior.rig));
-  for (std::size_t i = 0; i < prior.covariance.names.size(); ++i) {
-    for (std::size_t k = 0; k < prior.covariance.names.size(); ++k) {
-      const std::vector<std::string> all = parameter_names(prior.rig);
-      const auto at = [&](std::size_t n) {
-        return std::find(all.begin(), all.end(), prior.covariance.names[n]) - all.begin();
-      };
-      C(at(i), at(k)) =
-          prior.covariance.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
-    }
-  }
+  const std::vector<bool> unknown = held_mask(prior.rig, held_by(prior));
+  const Eigen::MatrixXd E = free_directions(prior.rig, unknown);
+  const Eigen::MatrixXd C = E * prior.covariance.matrix * E.transpose();
   const ObservationDiagnosis said = check_scene(pairs, prior.rig, C, place);
   JointEvidence evidence;
   evidence.priors.push_back(prior);
   evidence.pairs = pairs;
   JointCalibration result = calibrate_jointly(evidence, prior.rig, with_held);
   auto& summary = *result.estimate.calibration;
+  const PriorAgreement agreement = agreement_with(prior, result.estimate);
+  if (agreement.p_value < 1e-4) {
+    summary.doubts.push_back(fmt::format(
+        "pairs and prior disagree (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma where {}): the rig "
+        "has changed, or one of them states too little uncertainty",
+        agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma, agreement.words));
+  }
   summary.warnings.insert(summary.warnings.begin(), said.warnings.begin(), said.warnings.end());
   summary.doubts.insert(summary.doubts.begin(), said.doubts.begin(), said.doubts.end());
   return result;

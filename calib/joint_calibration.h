@@ -9,6 +9,7 @@
 #include "calib/held_parameters.h"
 #include "calib/observability.h"
 #include "calib/pair_observations.h"
+#include "calib/prior_agreement.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 
@@ -70,6 +71,10 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const RigKnowledge& prior,
                                       const JointOptions& options = {},
                                       const std::string& place = "");
+
+/// Whether pairs and prior agree (calib/prior_agreement.h), of a calibration from both; nothing (p
+/// 1) where parameters that the prior knows were held.
+PriorAgreement agreement_with(const RigKnowledge& prior, const RigEstimate& estimate);
 
 /// The parameters that `prior` does not name, held where its rig has them.
 std::vector<HeldParameter> held_by(const RigKnowledge& prior);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_estimate.h"
 
+#include "calib/held_parameters.h"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <set>
@@ -50,6 +52,14 @@ std::vector<bool> held_parameters(const RigEstimate& estimate) {
   return held;
 }
 
+RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place) {
+  const Covariance& all = required_covariance(estimate, place);
+  const std::vector<bool> held = held_parameters(estimate);
+  return {estimate.rig,
+          {all.kind, free_names(estimate.rig, held),
+           covariance_of_free(all.matrix, estimate.rig, held)}};
+}
+
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names) {
   Rig& rig = estimate.rig;
   if (names.size() != rig.cameras.size()) {
@@ -74,6 +84,11 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   };
   if (estimate.covariance) rename_all(estimate.covariance->names);
   if (estimate.calibration) rename_all(estimate.calibration->held);
+  if (!estimate.evidence) return;
+  for (RigKnowledge& prior : estimate.evidence->priors) {
+    for (std::size_t i = 0; i < names.size(); ++i) prior.rig.cameras[i].name = names[i];
+    rename_all(prior.covariance.names);
+  }
 }
 
 }  // namespace vernier

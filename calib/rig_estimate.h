@@ -70,4 +70,8 @@ std::vector<bool> held_parameters(const RigEstimate& estimate);
 /// and the held parameters too. Throws Error where they are too few or many, or not different.
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names);
 
+/// What the estimate says about its free parameters, as a prior for another calibration. Throws
+/// Error(`place`) where it has no covariance.
+RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place);
+
 }  // namespace vernier

@@ -222,6 +222,12 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
       summary.outliers.push_back(parse_outlier(node.at("outliers").at(i), rig));
     }
   }
+  if (node.has("pair_outliers")) {
+    const Node list = node.at("pair_outliers");
+    for (std::size_t i = 0; i < list.array().size(); ++i) {
+      summary.pair_outliers.push_back(rig_json::parse_pair_outlier(list.at(i)));
+    }
+  }
   summary.warnings = parse_texts(node, "warnings");
   summary.doubts = parse_texts(node, "doubts");
   return summary;
@@ -245,6 +251,9 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
                                 {"pixel_px", {o.pixel_px.x(), o.pixel_px.y()}},
                                 {"residual_px", o.residual_px}});  // null where not a number
   }
+  for (const PairOutlier& o : s.pair_outliers) {
+    json["pair_outliers"].push_back(rig_json::to_json(o));
+  }
   json["warnings"] = s.warnings;
   if (!s.doubts.empty()) json["doubts"] = s.doubts;
   return json;
@@ -265,6 +274,33 @@ void require_finite(const Json& json, const std::string& place) {
       require_finite(json[i], place + "[" + std::to_string(i) + "]");
     }
   }
+}
+
+/// A prior as the rig file that would say as much.
+Json prior_json(const RigKnowledge& prior) {
+  RigEstimate estimate;
+  estimate.rig = prior.rig;
+  std::vector<bool> held;
+  for (const std::string& name : parameter_names(prior.rig)) {
+    const std::vector<std::string>& known = prior.covariance.names;
+    held.push_back(std::find(known.begin(), known.end(), name) == known.end());
+  }
+  const Eigen::MatrixXd E = free_directions(prior.rig, held);
+  estimate.covariance = Covariance{prior.covariance.kind, parameter_names(prior.rig),
+                                   E * prior.covariance.matrix * E.transpose()};
+  return Json::parse(format_rig(estimate, KeepEvidence::no));
+}
+
+std::vector<RigKnowledge> parse_priors(const Node& evidence) {
+  std::vector<RigKnowledge> priors;
+  if (!evidence.has("priors")) return priors;
+  const Node list = evidence.at("priors");
+  for (std::size_t i = 0; i < list.array().size(); ++i) {
+    const Node prior = list.at(i);
+    priors.push_back(
+        knowledge_of(parse_rig(prior.json().dump(), prior.place()).estimate, prior.place()));
+  }
+  return priors;
 }
 
 int line_of(const std::string& text, std::size_t byte) {
@@ -312,6 +348,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (root.has("evidence")) {
     estimate.evidence = rig_json::parse_evidence(root.at("evidence"), estimate.rig);
+    estimate.evidence->priors = parse_priors(root.at("evidence"));
   }
   Json others = Json::object();
   for (const auto& [key, value] : json.items()) {
@@ -324,11 +361,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
 }
 
 RigKnowledge rig_knowledge(const RigFile& file, const std::string& place) {
-  const Covariance& whole = required_covariance(file.estimate, place);
-  const Rig& rig = file.estimate.rig;
-  return {rig,
-          {whole.kind, file.listed,
-           covariance_of_free(whole.matrix, rig, unlisted(rig, file.listed_places))}};
+  return knowledge_of(file.estimate, place);
 }
 
 RigFile read_rig(const std::filesystem::path& file) {
@@ -362,6 +395,9 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
   if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration, estimate.rig);
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
+    for (const RigKnowledge& prior : estimate.evidence->priors) {
+      json["evidence"]["priors"].push_back(prior_json(prior));
+    }
   }
   require_finite(json, "rig");
   if (!estimate.other_keys.empty()) json.update(Json::parse(estimate.other_keys));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "calib/error.h"
@@ -86,9 +88,78 @@ int camera_index(const Node& name, const Rig& rig) {
   throw Error(name.place(), "the rig has no camera \"" + text + "\"", "");
 }
 
+Json to_json(const PairOutlier& o) {
+  return {{"pair", o.image_pair},
+          {"row", o.row},
+          {"pixels_px", to_json(Eigen::VectorXd(o.pixels_px))},
+          {"residual_px", o.residual_px}};
+}
+
+PairOutlier parse_pair_outlier(const Node& node) {
+  PairOutlier o;
+  o.image_pair = node.at("pair").integer();
+  o.row = static_cast<std::size_t>(node.at("row").number());
+  const Eigen::VectorXd y = node.at("pixels_px").vector();
+  if (y.size() != 4) throw Error(node.at("pixels_px").place(), "is not two pixels", "");
+  o.pixels_px = y;
+  o.residual_px = node.at("residual_px").number();
+  return o;
+}
+
+namespace {
+
+/// The double that is written as shortly as its float is.
+double shortest(double of_float) {
+  return std::stod(fmt::format("{}", static_cast<float>(of_float)));
+}
+
+/// Image pair after image pair: its number, its pixels four by four, its noise.
+Json pairs_json(const PairObservations& pairs) {
+  Json json = Json::array();
+  for (const ImagePair& image : pairs.image_pairs) {
+    Json one{{"pair", image.number}};
+    Json pixels = Json::array(), sigma = Json::array();
+    bool same = true;
+    for (std::size_t i = image.first; i < image.first + image.count; ++i) {
+      for (const double value : pairs.pixels_px[i]) pixels.push_back(value);
+      sigma.push_back(shortest(pairs.sigma_of(i)));
+      same = same && pairs.sigma_of(i) == pairs.sigma_of(image.first);
+    }
+    one["pixels_px"] = std::move(pixels);
+    one["sigma_px"] = same ? sigma[0] : sigma;
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+PairObservations parse_pairs(const Node& node) {
+  PairObservations pairs;
+  for (std::size_t k = 0; k < node.array().size(); ++k) {
+    const Node one = node.at(k);
+    const Eigen::VectorXd y = one.at("pixels_px").vector();
+    const Node noise = one.at("sigma_px");
+    const auto count = y.size() / 4;
+    Eigen::VectorXd sigma = noise.json().is_number()
+                                ? Eigen::VectorXd::Constant(count, noise.number())
+                                : noise.vector();
+    if (y.size() % 4 != 0 || sigma.size() != count) {
+      throw Error(one.place(), "its pixels do not go with its noise",
+                  "give four coordinates and one sigma_px a match");
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+      add_pair(pairs, one.at("pair").integer(), y.segment<4>(4 * i), sigma[i]);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
   Json json;
   const BoardObservations& observations = evidence.observations;
+  if (evidence.pairs.size() > 0) json["pairs"] = pairs_json(evidence.pairs);
+  if (observations.views.empty()) return json;
   json["board"]["points_m"] = Json::array();
   for (const auto& X : observations.target_m) {
     json["board"]["points_m"].push_back(to_json(Eigen::VectorXd(X)));
@@ -151,6 +222,11 @@ CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   CalibrationEvidence evidence;
   BoardObservations& observations = evidence.observations;
   for (const Camera& camera : rig.cameras) observations.size_px.push_back(camera.size_px);
+  if (node.has("pairs")) {
+    evidence.pairs = parse_pairs(node.at("pairs"));
+    check_pairs(evidence.pairs, rig);
+    if (!node.has("board")) return evidence;
+  }
   const Node points = node.at("board").at("points_m");
   for (std::size_t i = 0; i < points.array().size(); ++i) {
     observations.target_m.push_back(points.at(i).vector3());

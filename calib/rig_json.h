@@ -44,6 +44,10 @@ Json to_json(const Eigen::MatrixXd& m);
 /// Index of the camera of that name. Throws Error where the rig has none.
 int camera_index(const Node& name, const Rig& rig);
 
+Json to_json(const PairOutlier& outlier);
+PairOutlier parse_pair_outlier(const Node& node);
+
+/// Boards and pairs; priors are rig files in themselves (calib/rig_file.cpp).
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig);
 CalibrationEvidence parse_evidence(const Node& node, const Rig& rig);
 

@@ -5,6 +5,8 @@
 #include "calib/model_comparison.h"
 #include "calib/rig_file.h"
 #include "cli/board_input.h"
+#include "cli/calibrate_pairs.h"
+#include "cli/option_checks.h"
 #include "cli/rig_table.h"
 #include "cli/session.h"
 #include "cli/solver_input.h"
@@ -16,7 +18,7 @@ namespace {
 struct Options {
   BoardInput board;
   SolverInput solver;
-  std::string output;
+  std::string output, pairs;
   bool no_evidence = false, no_model_check = false;
 };
 
@@ -59,6 +61,14 @@ void judge(const RigEstimate& estimate, Session& session) {
 }
 
 void run(const Options& options, Session& session) {
+  if (!options.pairs.empty()) {
+    refuse_options(*options.board.app, board_options, "pairs are of no board");
+    refuse_options(*options.board.app,
+                   std::array{"--model", "--pixel-sigma", "--know", "--warp", "--no-model-check"},
+                   "with --pairs the prior says it");
+    calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
+    return;
+  }
   spare_inputs(files_named(options.board), options.output);
   spare_inputs({options.solver.prior}, options.output);
   const CalibrationOptions calibration = calibration_options(options.solver, session);
@@ -89,11 +99,16 @@ void run(const Options& options, Session& session) {
 void add_calibrate(CLI::App& app, Session& session) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      add_verb(app, session, "calibrate", "calibrate a rig from images or corners of a board",
+      add_verb(app, session, "calibrate",
+               "calibrate a rig from images or corners of a board, or from matched corners of any "
+               "scene and a prior",
                "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
-               "--square-m 0.025 -o rig.json");
+               "--square-m 0.025 -o rig.json\n"
+               "  vernier calibrate --pairs pairs.csv --prior prior.json -o rig.json");
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
+  verb->add_option("--pairs", o->pairs,
+                   "matched corners of any scene (see vernier match); needs --prior");
   verb->add_flag("--no-model-check", o->no_model_check,
                  "do not compare with richer lens models on views left out");
   verb->add_flag("--no-evidence", o->no_evidence, "leave the corners out of the rig file");

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   cli::add_doctor(app, session);
   cli::add_detect(app, session);
   cli::add_calibrate(app, session);
+  cli::add_combine(app, session);
   cli::add_check(app, session);
   cli::add_uncertainty(app, session);
   cli::add_sample(app, session);

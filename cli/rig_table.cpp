@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/rig_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vernier::cli {
@@ -9,6 +10,25 @@ namespace {
 
 Eigen::VectorXd deviations(const Eigen::MatrixXd& covariance) {
   return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+/// The worst of the pairs left out.
+std::string pair_outlier_lines(std::vector<PairOutlier> outliers) {
+  constexpr std::size_t most = 10;
+  std::stable_sort(outliers.begin(), outliers.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.residual_px) > std::abs(b.residual_px);
+  });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, outliers.size()); ++i) {
+    const PairOutlier& o = outliers[i];
+    text += fmt::format(
+        "left out: ({:.1f}, {:.1f}) with ({:.1f}, {:.1f}) of image pair {}, {:.1f} px from its "
+        "epipolar line\n",
+        o.pixels_px[0], o.pixels_px[1], o.pixels_px[2], o.pixels_px[3], o.image_pair,
+        std::abs(o.residual_px));
+  }
+  if (outliers.size() > most) text += fmt::format("… and {} more\n", outliers.size() - most);
+  return text;
 }
 
 }  // namespace
@@ -28,10 +48,13 @@ std::string rig_table(const RigEstimate& estimate) {
   if (estimate.calibration) {
     const CalibrationSummary& s = *estimate.calibration;
     text += fmt::format(
-        "{} views, rms {:.4f} px a coordinate, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees "
-        "of "
-        "freedom\n",
-        s.views, s.rms_px, s.pixel_sigma_px, s.chi2, s.dof);
+        "{} {}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom\n",
+        s.views,
+        s.source == "board"   ? "views"
+        : s.source == "pairs" ? "image pairs"
+                              : "views",
+        s.rms_px, s.source == "board" ? " a coordinate" : " from the epipolar line",
+        s.pixel_sigma_px, s.chi2, s.dof);
     if (s.prior_dof > 0) {
       text +=
           fmt::format("prior: chi² {:.2f} for {} parameters it knows\n", s.prior_chi2, s.prior_dof);
@@ -40,6 +63,7 @@ std::string rig_table(const RigEstimate& estimate) {
       text += fmt::format("left out: corner {} of frame {}, {}, {:.1f} px from its place\n", o.id,
                           o.frame, estimate.rig.cameras[o.camera].name, o.residual_px);
     }
+    text += pair_outlier_lines(s.pair_outliers);
   }
   const std::vector<std::string> names = parameter_names(estimate.rig);
   const Eigen::VectorXd values = parameters(estimate.rig);
@@ -81,6 +105,8 @@ Json rig_json(const RigEstimate& estimate) {
     json["views"] = s.views;
     json["warnings"] = s.warnings;
     json["held"] = s.held;
+    json["source"] = s.source;
+    json["pair_outliers"] = s.pair_outliers.size();
     json["outliers"] = Json::array();
     for (const CornerOutlier& o : s.outliers) {
       json["outliers"].push_back({{"frame", o.frame},

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/calibrate_pairs.h"
+
+#include "calib/error.h"
+#include "calib/pairs_file.h"
+#include "calib/rig_file.h"
+#include "cli/observability_report.h"
+#include "cli/rig_table.h"
+#include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
+
+namespace vernier::cli {
+
+void calibrate_pairs(const std::string& pairs_file,
+                     const SolverInput& solver,
+                     const std::string& output,
+                     bool keep_evidence,
+                     Session& session) {
+  if (solver.prior.empty()) {
+    throw Error("--pairs", "pairs alone do not determine a rig (never its scale)",
+                "give --prior with a rig file, a calibration or a datasheet's values");
+  }
+  spare_inputs({pairs_file, solver.prior}, output);
+  const RigFile prior = read_rig(find_rig(solver.prior));
+  for (const std::string& warning : prior.warnings) session.warn(warning);
+  const CalibrationOptions how = calibration_options(solver, session);
+  JointOptions options;
+  options.held = how.held;
+  options.reject_outliers = how.reject_outliers;
+  const JointCalibration joint = calibrate_from_pairs(
+      read_pairs(pairs_file), rig_knowledge(prior, solver.prior), options, pairs_file);
+  write_rig(joint.estimate, output, keep_evidence ? KeepEvidence::yes : KeepEvidence::no);
+  for (const std::string& warning : joint.estimate.calibration->warnings) session.warn(warning);
+  for (const std::string& doubt : joint.estimate.calibration->doubts) session.doubt(doubt);
+  const ObservabilityReport seen = report_observability(joint, prior.estimate.covariance->matrix);
+  Json json = rig_json(joint.estimate);
+  json["observability"] = seen.json;
+  json["pair_sigma_scale"] = joint.pair_sigma_scale;
+  json["output"] = output;
+  session.result(json,
+                 rig_table(joint.estimate) + seen.text + fmt::format("written to {}\n", output));
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cli/session.h"
+#include "cli/solver_input.h"
+
+namespace vernier::cli {
+
+/// `vernier calibrate --pairs`: a rig from matched corners of any scene and a prior.
+void calibrate_pairs(const std::string& pairs_file,
+                     const SolverInput& solver,
+                     const std::string& output,
+                     bool keep_evidence,
+                     Session& session);
+
+}  // namespace vernier::cli

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/observability_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/depth_uncertainty.h"
+#include "stereo/vertical_disparity.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double range_m = 3;  // where disparity and depth are told
+
+/// Uncertainty downstream of a covariance of the rig.
+struct Downstream {
+  double vertical_disparity_px = 0, depth_m = 0;
+};
+Downstream downstream(const Rig& rig, const Eigen::MatrixXd& covariance) {
+  RigEstimate estimate;
+  estimate.rig = rig;
+  estimate.covariance = Covariance{CovarianceKind::prior, parameter_names(rig), covariance};
+  return {vertical_disparity_map(rig, covariance, 20, 15, range_m).rms_px,
+          depth_uncertainty(estimate, {range_m}, 1, 2).front().sigma_linear_m};
+}
+
+}  // namespace
+
+ObservabilityReport report_observability(const JointCalibration& joint,
+                                         const Eigen::MatrixXd& covariance_before) {
+  ObservabilityReport report;
+  if (!joint.observability) return report;
+  const Observability& o = *joint.observability;
+  const Rig& rig = joint.estimate.rig;
+  const Downstream before = downstream(rig, covariance_before);
+  const Downstream after = downstream(rig, joint.estimate.covariance->matrix);
+  std::string& text = report.text;
+  text += "what the pairs brought (standard deviation after over before; 1 is nothing):\n";
+  for (const ObservedDirection& d : o.directions) {
+    text += fmt::format("  {:8.4f}  {}\n", d.sd_ratio, d.words);
+  }
+  text += fmt::format(
+      "the data determine {:.1f} of {} parameters: {} directions are known at least twice as well "
+      "as before, {} are as they were\n",
+      o.from_data, o.directions.size(), o.improved, o.unchanged);
+  text += fmt::format(
+      "no pair sees the length of the baseline: its sigma was {:.4g} mm and is {:.4g} mm; all "
+      "depths scale with it\n",
+      1e3 * o.baseline_sd_before_m, 1e3 * o.baseline_sd_after_m);
+  text += fmt::format(
+      "at {:g} m: vertical disparity {:.3g} px rms before, {:.3g} px after; depth sigma {:.3g} m "
+      "before, {:.3g} m after\n",
+      range_m, before.vertical_disparity_px, after.vertical_disparity_px, before.depth_m,
+      after.depth_m);
+  Json& json = report.json;
+  json = {{"from_data", o.from_data},
+          {"improved", o.improved},
+          {"unchanged", o.unchanged},
+          {"mostly_prior", o.mostly_prior()},
+          {"scale_information_ratio", o.scale_information_ratio},
+          {"baseline_sd_m", {o.baseline_sd_before_m, o.baseline_sd_after_m}},
+          {"range_m", range_m},
+          {"vertical_disparity_px", {before.vertical_disparity_px, after.vertical_disparity_px}},
+          {"depth_sigma_m", {before.depth_m, after.depth_m}}};
+  json["directions"] = Json::array();
+  for (const ObservedDirection& d : o.directions) {
+    json["directions"].push_back({{"sd_ratio", d.sd_ratio}, {"words", d.words}});
+  }
+  return report;
+}
+
+}  // namespace vernier::cli

@@ -19,10 +19,10 @@ struct UncertainPixel {
 
 /// Where the right camera may see what is at a left pixel: a point at inverse depth ρ on the curve
 struct BandNode {
-  double inverse_depth = 0;        ///< 1 / z in the left camera's frame, 1 / m
-  Eigen::Vector2d pixel_px;        ///< q(ρ), in the right image as it is, distorted
+  double inverse_depth = 0;  ///< 1 / z in the left camera's frame, 1 / m
+  Eigen::Vector2d pixel_px;  ///< q(ρ), in the right image as it is, distorted
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  ///< of q(ρ)
-  bool follows = false;            ///< the curve runs here from the node before
+  bool follows = false;  ///< the curve runs here from the node before
 };
 
 /// How near a right pixel is to the curve.

@@ -75,6 +75,12 @@ ImageMatching match_images(const ImageFiles& files,
                            const std::string& prior_place,
                            const ImageMatchingOptions& options) {
   const Covariance& covariance = required_covariance(prior, prior_place);
+  if (prior.rig.cameras.size() != 2) {
+    throw Error(prior_place,
+                "it is a rig of " + std::to_string(prior.rig.cameras.size()) +
+                    " cameras; corners are matched between two",
+                "give the prior of the two that took the images");
+  }
   const EpipolarBand band(prior.rig, covariance.matrix, options.band);
   HarrisOptions harris{.count = options.corners, .cells = options.cells};
   const CornerImage left =

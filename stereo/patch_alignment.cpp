@@ -12,8 +12,10 @@
 namespace vernier {
 namespace {
 
-constexpr int most_steps = 12;
+constexpr int most_steps = 25;
 constexpr double settled_px = 0.01;
+constexpr double step_share =
+    0.6;  // differences rise less than the image does: full steps overshoot
 constexpr double most_gain = 3;
 constexpr double most_stretch = 0.6;
 
@@ -92,7 +94,7 @@ double correlation(const Eigen::VectorXd& w, Eigen::VectorXd a, Eigen::VectorXd 
 
 /// The warp with the small one that `fit` tells of undone before it.
 Warp composed(const Warp& warp, const Vector6d& fit, const Eigen::Vector2d& direction) {
-  const double gain = fit[4];
+  const double gain = fit[4] / step_share;
   const Eigen::Matrix2d small =
       Eigen::Matrix2d::Identity() + direction * fit.segment<2>(2).transpose() / gain;
   Warp next;

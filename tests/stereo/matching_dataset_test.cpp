@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Corners and matches of the Middlebury pairs against their ground truth. The constants were chosen on
-// four of the eleven scenes, which are told apart.
+// Corners and matches of the Middlebury pairs against their ground truth. The constants were chosen
+// on four of the eleven scenes, which are told apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ RigEstimate prior_of(const test::StereoScene& scene) {
   Eigen::VectorXd sigma(14);
   sigma << 0.002 * scene.f_px, 0.002, 0.5, 0.5, 0.002 * scene.f_px, 0.002, 0.5, 0.5,  //
       5e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3;
-  prior.covariance = Covariance{CovarianceKind::prior, parameter_names(prior.rig),
-                                sigma.cwiseAbs2().asDiagonal()};
+  prior.covariance =
+      Covariance{CovarianceKind::prior, parameter_names(prior.rig), sigma.cwiseAbs2().asDiagonal()};
   return prior;
 }
 
@@ -59,12 +59,13 @@ double robust_sd(std::vector<double> values) {
 
 std::string line(const SceneScore& s) {
   char text[300];
-  std::snprintf(text, sizeof text,
-                "visible %d repeatability %.3f (by chance %.3f) matched %.3f wrong %d of %d = %.4f, "
-                "on occluded corners %d, dy sd %.3f px robust, z robust %.2f",
-                s.visible, double(s.repeated) / s.visible, double(s.by_chance) / s.visible,
-                double(s.accepted) / s.visible, s.wrong, s.accepted, double(s.wrong) / s.accepted,
-                s.occluded, robust_sd(s.dy), robust_sd(s.z));
+  std::snprintf(
+      text, sizeof text,
+      "visible %d repeatability %.3f (by chance %.3f) matched %.3f wrong %d of %d = %.4f, "
+      "on occluded corners %d, dy sd %.3f px robust, z robust %.2f",
+      s.visible, double(s.repeated) / s.visible, double(s.by_chance) / s.visible,
+      double(s.accepted) / s.visible, s.wrong, s.accepted, double(s.wrong) / s.accepted, s.occluded,
+      robust_sd(s.dy), robust_sd(s.z));
   return text;
 }
 
@@ -81,9 +82,8 @@ SceneScore score(const test::StereoScene& scene, const ImageMatchingOptions& opt
   const test::StereoTruth truth = test::read_truth(scene);
   const CornerImage left =
       corner_image(read_grey_image(scene.left), {.count = options.corners, .cells = options.cells});
-  const CornerImage right =
-      corner_image(read_grey_image(scene.right),
-                   {.count = options.corners * 3 / 2, .cells = options.cells});
+  const CornerImage right = corner_image(
+      read_grey_image(scene.right), {.count = options.corners * 3 / 2, .cells = options.cells});
   SceneScore s;
   for (const ImageCorner& corner : left.corners) {
     if (!truth.visible(corner.pixel_px)) continue;

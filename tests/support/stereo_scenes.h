@@ -24,13 +24,13 @@ struct StereoScene {
   std::filesystem::path left, right, disparity, right_disparity;
   double disparity_scale = 1;  ///< grey values a pixel
   double f_px = 1000, baseline_m = 0.16;
-  double offset_px = 0;         ///< disparity + offset = f b / z
+  double offset_px = 0;          ///< disparity + offset = f b / z
   double most_disparity_px = 0;  ///< of its group of scenes
 };
 
-/// The eleven Middlebury pairs below `folder` (Scharstein and Szeliski 2002, 2003; Scharstein and Pal
-/// 2007; Hirschmüller and Scharstein 2007; Scharstein et al. 2014). Those of 2001 and 2003 have no
-/// calibration: 1000 px and 0.16 m are assumed.
+/// The eleven Middlebury pairs below `folder` (Scharstein and Szeliski 2002, 2003; Scharstein and
+/// Pal 2007; Hirschmüller and Scharstein 2007; Scharstein et al. 2014). Those of 2001 and 2003 have
+/// no calibration: 1000 px and 0.16 m are assumed.
 inline std::vector<StereoScene> middlebury_scenes(const std::filesystem::path& folder) {
   std::vector<StereoScene> scenes;
   const auto add = [&](const std::string& name, const std::filesystem::path& at, int first,
@@ -125,7 +125,8 @@ inline StereoTruth read_truth(const StereoScene& scene) {
   StereoTruth truth;
   const auto read = [&](const std::filesystem::path& file) {
     cv::Mat map;
-    cv::imread(file.string(), cv::IMREAD_GRAYSCALE).convertTo(map, CV_32F, 1 / scene.disparity_scale);
+    cv::imread(file.string(), cv::IMREAD_GRAYSCALE)
+        .convertTo(map, CV_32F, 1 / scene.disparity_scale);
     return map;
   };
   const cv::Size size = cv::imread(scene.left.string(), cv::IMREAD_GRAYSCALE).size();

@@ -35,7 +35,8 @@ struct SceneScore {
   int visible = 0, repeated = 0, by_chance = 0;  ///< left corners
   int accepted = 0, wrong = 0;                   ///< matches of visible ones
   int occluded = 0;                              ///< matches of occluded ones
-  std::vector<double> dy, z;                     ///< of the right ones
+  std::vector<double> dy,
+      z;  ///< of the right ones, less the scene's median dy: its rectification's
 
   SceneScore& operator+=(const SceneScore& o) {
     visible += o.visible, repeated += o.repeated, by_chance += o.by_chance;
@@ -46,15 +47,22 @@ struct SceneScore {
   }
 };
 
+double median(std::vector<double> v) {
+  if (v.empty()) return 0;
+  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// Of values about 0.
 double robust_sd(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = [](std::vector<double>& v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  const double centre = middle(values);
-  for (double& v : values) v = std::abs(v - centre);
-  return 1.4826 * middle(values);
+  for (double& v : values) v = std::abs(v);
+  return 1.4826 * median(values);
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 std::string line(const SceneScore& s) {
@@ -62,7 +70,7 @@ std::string line(const SceneScore& s) {
   std::snprintf(
       text, sizeof text,
       "visible %d repeatability %.3f (by chance %.3f) matched %.3f wrong %d of %d = %.4f, "
-      "on occluded corners %d, dy sd %.3f px robust, z robust %.2f",
+      "on occluded corners %d, dy sd %.3f px (robust %.3f), z sd %.2f (robust %.2f)",
       s.visible, double(s.repeated) / s.visible, double(s.by_chance) / s.visible,
       double(s.accepted) / s.visible, s.wrong, s.accepted, double(s.wrong) / s.accepted, s.occluded,
       robust_sd(s.dy), robust_sd(s.z));
@@ -94,6 +102,7 @@ SceneScore score(const test::StereoScene& scene, const ImageMatchingOptions& opt
   const ImageMatching matching =
       match_images({0, scene.left, scene.right}, prior_of(scene), "prior", options);
   EXPECT_EQ(matching.corners_left, static_cast<int>(left.corners.size()));
+  std::vector<double> sigma;
   for (const CornerMatch& match : matching.matches) {
     if (!truth.visible(match.left_px)) {
       const auto x = cvRound(match.left_px.x()), y = cvRound(match.left_px.y());
@@ -105,8 +114,13 @@ SceneScore score(const test::StereoScene& scene, const ImageMatchingOptions& opt
       ++s.wrong;
     } else {
       s.dy.push_back(match.left_px.y() - match.right_px.y());
-      s.z.push_back(s.dy.back() / (std::sqrt(2.0) * match.sigma_px));
+      sigma.push_back(std::sqrt(2.0) * match.sigma_px);
     }
+  }
+  const double offset = median(s.dy);
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    s.dy[i] -= offset;
+    s.z.push_back(s.dy[i] / sigma[i]);
   }
   return s;
 }

@@ -73,7 +73,7 @@ std::string line(const SceneScore& s) {
       "on occluded corners %d, dy sd %.3f px (robust %.3f), z sd %.2f (robust %.2f)",
       s.visible, double(s.repeated) / s.visible, double(s.by_chance) / s.visible,
       double(s.accepted) / s.visible, s.wrong, s.accepted, double(s.wrong) / s.accepted, s.occluded,
-      robust_sd(s.dy), robust_sd(s.z));
+      rms(s.dy), robust_sd(s.dy), rms(s.z), robust_sd(s.z));
   return text;
 }
 

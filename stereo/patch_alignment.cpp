@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/patch_alignment.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -62,11 +62,10 @@ Template make_template(const cv::Mat& left,
   }
   const Matrix6d N = patch.J.transpose() * patch.weight.asDiagonal() * patch.J;
   const Vector6d scale = N.diagonal().cwiseMax(1e-12).cwiseSqrt();
-  const Eigen::FullPivLU<Matrix6d> lu(scale.cwiseInverse().asDiagonal() * N *
-                                      scale.cwiseInverse().asDiagonal());
-  patch.holds = lu.rcond() > 1e-8;
-  patch.inverse =
-      scale.cwiseInverse().asDiagonal() * lu.inverse() * scale.cwiseInverse().asDiagonal();
+  const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * N * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  patch.holds = eigen.eigenvalues()[0] > 1e-8;
+  patch.inverse = N.inverse();
   return patch;
 }
 

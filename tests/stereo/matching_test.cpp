@@ -61,42 +61,63 @@ std::vector<CornerMatch> matched(const CornerMatchingOptions& options = {}) {
   return match_corners(pair().image[0], pair().image[1], band, options);
 }
 
+/// Of the right pixel against the left one's true place, across the epipolar curve.
+double error_across(const CornerMatch& match) {
+  const Eigen::Vector2d truth = pair().true_right(match.left_px);
+  const Eigen::Vector3d X = pair().plane.point(pair().rig.cameras[0], Pose{}, match.left_px);
+  const Eigen::Vector2d along = (pixel_pair(pair().rig, 0.99 * X)->other_px - truth).normalized();
+  const Eigen::Vector2d error = match.right_px - truth;
+  return along.x() * error.y() - along.y() * error.x();
+}
+
 TEST(CornerMatching, FindsMostAndHardlyAnyWrong) {
   const auto matches = matched();
   EXPECT_GT(matches.size(), 0.6 * pair().image[0].corners.size());
   int wrong = 0;
+  std::vector<double> across;
   for (const CornerMatch& match : matches) {
     wrong += (match.right_px - pair().true_right(match.left_px)).norm() > 1;
+    across.push_back(std::abs(error_across(match)));
   }
+  std::sort(across.begin(), across.end());
+  RecordProperty("median_error_across_px", std::to_string(across[across.size() / 2]));
+  EXPECT_LT(across[across.size() / 2], 0.03);
   RecordProperty("matches", static_cast<int>(matches.size()));
   RecordProperty("wrong", wrong);
   EXPECT_LE(wrong, 1);
 }
 
-/// Error across the epipolar curve over the stated deviation of a difference of two coordinates.
-/// The floor is for what real images add and is left out here. About 200 matches: the standard
-/// deviation of their mean square is 0.1, and neighbours share pixels; 0.5 is 5 of them, the upper
-/// bound is one-sided against a covariance too small.
+/// Error across the epipolar curve over the stated deviation of a difference of two coordinates, at
+/// a noise that outweighs what interpolation does (0.02 px), so without the floor that is for it.
+/// About 200 matches: the standard deviation of their mean square is 0.1, of their mean 0.07.
 TEST(CornerMatching, StatesItsNoise) {
-  CornerMatchingOptions options;
-  options.sigma_floor_px = 0;
-  double squares = 0, mean = 0;
-  const auto matches = matched(options);
-  for (const CornerMatch& match : matches) {
-    const Eigen::Vector2d truth = pair().true_right(match.left_px);
-    const Eigen::Vector3d X = pair().plane.point(pair().rig.cameras[0], Pose{}, match.left_px);
-    const Eigen::Vector2d along = (pixel_pair(pair().rig, 0.99 * X)->other_px - truth).normalized();
-    const Eigen::Vector2d error = match.right_px - truth;
-    const double z =
-        (along.x() * error.y() - along.y() * error.x()) / (std::sqrt(2.0) * match.sigma_px);
-    squares += z * z / static_cast<double>(matches.size());
-    mean += z / static_cast<double>(matches.size());
+  constexpr double noise = 8;
+  CornerImage images[2];
+  for (int c = 0; c < 2; ++c) {
+    Draws draws({.seed = 4, .feature = std::uint32_t(c), .source = 204});
+    images[c] =
+        corner_image(test::with_noise(pair().clean[c], noise, draws), {.count = 300 + 150 * c});
   }
+  const EpipolarBand band(pair().rig, Pair::covariance(pair().rig), {.nearest_m = 1});
+  const auto matches =
+      match_corners(images[0], images[1], band, {.least_aligned_score = 0.8, .sigma_floor_px = 0});
+  ASSERT_GT(matches.size(), 120u);
+  double squares = 0, mean = 0, variance = 0;
+  const auto n = static_cast<double>(matches.size());
+  for (const CornerMatch& match : matches) {
+    const double error = error_across(match);
+    const double z = error / (std::sqrt(2.0) * match.sigma_px);
+    squares += z * z / n;
+    mean += z / n;
+    variance += error * error / n;
+  }
+  RecordProperty("matches", static_cast<int>(matches.size()));
+  RecordProperty("rms_px", std::to_string(std::sqrt(variance)));
   RecordProperty("z_mean", std::to_string(mean));
   RecordProperty("z_mean_square", std::to_string(squares));
-  EXPECT_NEAR(mean, 0, 5 / std::sqrt(static_cast<double>(matches.size())));
+  EXPECT_NEAR(mean, 0, 5 / std::sqrt(n));
   EXPECT_LT(squares, 1.5);
-  EXPECT_GT(squares, 0.5);
+  EXPECT_GT(squares, 0.6);
 }
 
 TEST(CornerMatching, IsTheSameFromTheOtherSide) {
@@ -172,18 +193,30 @@ TEST(PatchAlignment, FindsTheShiftAsWellAsItSays) {
   }
   RecordProperty("mean_chi2", std::to_string(chi2));
   RecordProperty("bias_px", std::to_string(mean.norm()));
-  EXPECT_LT(mean.norm(), 0.02);
+  EXPECT_LT(mean.norm(), 0.03);
   EXPECT_NEAR(chi2, 2, 0.8);
 }
 
-TEST(PatchAlignment, FollowsASlantAndRefusesABlank) {
+TEST(PatchAlignment, FollowsASlantFromNearBy) {
   const Pair& p = pair();
-  const Eigen::Vector2d left_px = p.image[0].corners.front().pixel_px;
-  const Eigen::Vector2d truth = p.true_right(left_px);
-  const auto aligned = align_patch(p.image[0].grey, p.image[1].grey, left_px,
-                                   truth + Eigen::Vector2d(0.5, -0.3), {1, 0});
-  ASSERT_TRUE(aligned);
-  EXPECT_LT((aligned->right_px - truth).norm(), 0.1);
+  int settled = 0, near = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector2d left_px = p.image[0].corners[i].pixel_px;
+    const Eigen::Vector2d truth = p.true_right(left_px);
+    if (!in_image(p.rig.cameras[1], truth - Eigen::Vector2d(10, 0))) continue;
+    const auto aligned = align_patch(p.image[0].grey, p.image[1].grey, left_px,
+                                     truth + Eigen::Vector2d(0.4, -0.3), {1, 0});
+    if (!aligned) continue;
+    ++settled;
+    near += (aligned->right_px - truth).norm() < 0.1;
+  }
+  RecordProperty("settled", settled);
+  RecordProperty("near", near);
+  EXPECT_GE(settled, 35);
+  EXPECT_GE(near, 0.9 * settled);
+}
+
+TEST(PatchAlignment, RefusesABlank) {
   const cv::Mat blank(50, 50, CV_32F, cv::Scalar(10));
   EXPECT_FALSE(align_patch(blank, blank, {25, 25}, {25, 25}, {1, 0}));
 }

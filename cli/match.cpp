@@ -15,9 +15,11 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double few = 0.05;       // share of left corners matched below which something is wrong
-constexpr int times_more = 3;      // matches with the images exchanged that say they are
-constexpr std::size_t probed = 3;  // image pairs that are tried exchanged
+constexpr double few = 0.1;         // share of left corners matched below which something is wrong
+constexpr double suspicious = 0.3;  // and below which the images may be exchanged
+constexpr int times_more = 2;       // matches with the images exchanged that say they are …
+constexpr std::size_t enough = 20;  // … if there are so many
+constexpr std::size_t probed = 3;   // image pairs that are tried exchanged
 
 struct Options {
   std::string left, right, prior, output, picture;
@@ -76,7 +78,7 @@ void check_not_exchanged(const std::vector<ImageMatching>& all,
                               options.matching)
                      .matches.size();
   }
-  if (exchanged < 10 || exchanged < times_more * given) return;
+  if (exchanged < enough || exchanged < times_more * given) return;
   throw Error(all.front().files.left.string(),
               fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
                           "way round",
@@ -97,8 +99,10 @@ void judge(const std::vector<ImageMatching>& all,
     if (sum.matches == 0) throw Error(blank.string(), fault, "give images of a textured scene");
     session.warn(blank.string() + ": " + fault + "; its pair is left out");
   }
-  if (sum.matches >= few * static_cast<double>(sum.corners)) return;
+  const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
+  if (share >= suspicious) return;
   check_not_exchanged(all, prior, options);
+  if (share >= few) return;
   const std::string fault =
       fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
   const std::string remedy =

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Corners and matches of the Middlebury pairs against their ground truth. The constants were chosen
-// on four of the eleven scenes, which are told apart.
+// Corners and matches of real pairs against their ground truth. Most constants were chosen with all
+// eleven Middlebury pairs in view, with an eye on four of them first (told apart below), so none of
+// these is held out; the aloe is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,13 +35,18 @@ RigEstimate prior_of(const test::StereoScene& scene) {
 struct SceneScore {
   int visible = 0, repeated = 0, by_chance = 0;  ///< left corners
   int accepted = 0, wrong = 0;                   ///< matches of visible ones
-  int occluded = 0;                              ///< matches of occluded ones
+  int occluded = 0, occluded_wrong = 0;          ///< matches of occluded ones
+  int outline = 0, outline_wrong = 0;            ///< matches of visible ones at outlines
+  int tail = 0, outline_tail = 0;                ///< right ones of |z| > 3
   std::vector<double> dy,
       z;  ///< of the right ones, less the scene's median dy: its rectification's
 
   SceneScore& operator+=(const SceneScore& o) {
     visible += o.visible, repeated += o.repeated, by_chance += o.by_chance;
-    accepted += o.accepted, wrong += o.wrong, occluded += o.occluded;
+    accepted += o.accepted, wrong += o.wrong;
+    occluded += o.occluded, occluded_wrong += o.occluded_wrong;
+    outline += o.outline, outline_wrong += o.outline_wrong;
+    tail += o.tail, outline_tail += o.outline_tail;
     dy.insert(dy.end(), o.dy.begin(), o.dy.end());
     z.insert(z.end(), o.z.begin(), o.z.end());
     return *this;
@@ -66,14 +72,17 @@ double rms(const std::vector<double>& values) {
 }
 
 std::string line(const SceneScore& s) {
-  char text[300];
+  char text[600];
   std::snprintf(
       text, sizeof text,
-      "visible %d repeatability %.3f (by chance %.3f) matched %.3f wrong %d of %d = %.4f, "
-      "on occluded corners %d, dy sd %.3f px (robust %.3f), z sd %.2f (robust %.2f)",
+      "visible %d, repeatability %.3f (by chance %.3f), matched %.3f, wrong %d of %d = %.4f; "
+      "occluded "
+      "corners matched %d, of them wrong %d; at outlines %d matches, wrong %d; |z| > 3: %d, at "
+      "outlines %d; dy sd %.3f px (robust %.3f), z sd %.2f (robust %.2f)",
       s.visible, double(s.repeated) / s.visible, double(s.by_chance) / s.visible,
       double(s.accepted) / s.visible, s.wrong, s.accepted, double(s.wrong) / s.accepted, s.occluded,
-      rms(s.dy), robust_sd(s.dy), rms(s.z), robust_sd(s.z));
+      s.occluded_wrong, s.outline, s.outline_wrong, s.tail, s.outline_tail, rms(s.dy),
+      robust_sd(s.dy), rms(s.z), robust_sd(s.z));
   return text;
 }
 
@@ -103,24 +112,33 @@ SceneScore score(const test::StereoScene& scene, const ImageMatchingOptions& opt
       match_images({0, scene.left, scene.right}, prior_of(scene), "prior", options);
   EXPECT_EQ(matching.corners_left, static_cast<int>(left.corners.size()));
   std::vector<double> sigma;
+  std::vector<bool> outline;
   for (const CornerMatch& match : matching.matches) {
     if (!truth.visible(match.left_px)) {
       const auto x = cvRound(match.left_px.x()), y = cvRound(match.left_px.y());
-      s.occluded += truth.occluded.at<uchar>(y, x) > 0;
+      const bool hidden = truth.occluded.at<uchar>(y, x) > 0;
+      s.occluded += hidden;
+      s.occluded_wrong += hidden && truth.error_px(match.left_px, match.right_px) > 2;
       continue;
     }
     ++s.accepted;
+    const bool at_outline = truth.at_outline(match.left_px);
+    s.outline += at_outline;
     if (truth.error_px(match.left_px, match.right_px) > 2) {
       ++s.wrong;
+      s.outline_wrong += at_outline;
     } else {
       s.dy.push_back(match.left_px.y() - match.right_px.y());
       sigma.push_back(std::sqrt(2.0) * match.sigma_px);
+      outline.push_back(at_outline);
     }
   }
   const double offset = median(s.dy);
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     s.dy[i] -= offset;
     s.z.push_back(s.dy[i] / sigma[i]);
+    s.tail += std::abs(s.z[i]) > 3;
+    s.outline_tail += std::abs(s.z[i]) > 3 && outline[i];
   }
   return s;
 }
@@ -145,6 +163,21 @@ TEST(MatchingOnMiddlebury, CornersAreRepeatedAndFewMatchesAreWrong) {
     EXPECT_LE(double(s.wrong) / s.accepted, 0.015);
     EXPECT_GE(double(s.accepted) / s.visible, 0.70);
   }
+}
+
+/// The one pair that no constant was chosen with, nor the number of corners here. It misses the bar
+/// of 0.82 for repeatability: 0.80 was measured, the bound below is against getting worse.
+TEST(MatchingOnAloe, HasHardlyAnyWrongUnseen) {
+  const std::filesystem::path folder = "/usr/share/doc/opencv-doc/examples/data";
+  if (!std::filesystem::exists(folder / "aloeL.jpg")) GTEST_SKIP() << "no opencv-doc";
+  const test::StereoScene scene = test::aloe_scene(folder);
+  ImageMatchingOptions options;
+  options.corners = 1500;
+  options.band.nearest_m = test::nearest_m(scene);
+  const SceneScore s = score(scene, options);
+  RecordProperty(scene.name, line(s));
+  EXPECT_GE(double(s.repeated) / s.visible, 0.78);
+  EXPECT_LE(double(s.wrong) / s.accepted, 0.015);
 }
 
 }  // namespace

@@ -94,6 +94,18 @@ inline cv::Mat read_npz(const std::filesystem::path& file, cv::Size size) {
   return values;
 }
 
+/// A pair that Debian's opencv-doc has, Middlebury's Aloe at full size: no constant of the matching
+/// was chosen with a look at it.
+inline StereoScene aloe_scene(const std::filesystem::path& folder) {
+  StereoScene scene{"aloe"};
+  scene.left = folder / "aloeL.jpg";
+  scene.right = folder / "aloeR.jpg";
+  scene.disparity = folder / "aloeGT.png";
+  scene.f_px = 3740;
+  scene.most_disparity_px = 255;
+  return scene;
+}
+
 /// Ground truth at the left pixels.
 struct StereoTruth {
   cv::Mat disparity;  ///< CV_32F, 0 where not known
@@ -104,6 +116,19 @@ struct StereoTruth {
     const int x = cvRound(left_px.x()), y = cvRound(left_px.y());
     const float d = disparity.at<float>(y, x);
     return d > 0 && !occluded.at<uchar>(y, x) && left_px.x() - d > 10;
+  }
+
+  /// Within two pixels of a step of the disparity by more than a pixel, or of what is not known.
+  bool at_outline(const Eigen::Vector2d& left_px) const {
+    const int x = cvRound(left_px.x()), y = cvRound(left_px.y());
+    const float own = disparity.at<float>(y, x);
+    for (int j = -2; j <= 2; ++j) {
+      for (int i = -2; i <= 2; ++i) {
+        const float d = disparity.at<float>(y + j, x + i);
+        if (!(d > 0) || std::abs(d - own) > 1) return true;
+      }
+    }
+    return false;
   }
 
   /// How far a right pixel is from where the left one is seen, by the best of the disparities of

@@ -8,8 +8,10 @@
 #include "calib/pairs_file.h"
 #include "calib/rig_file.h"
 #include "cli/match_picture.h"
+#include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
 #include "stereo/match_images.h"
 
 namespace vernier::cli {
@@ -112,6 +114,13 @@ void judge(const std::vector<ImageMatching>& all,
   session.doubt(fault + "; " + remedy);
 }
 
+std::vector<std::filesystem::path> inputs(const std::filesystem::path& prior,
+                                          const std::vector<ImageFiles>& files) {
+  std::vector<std::filesystem::path> all{prior};
+  for (const ImageFiles& pair : files) all.insert(all.end(), {pair.left, pair.right});
+  return all;
+}
+
 Json matching_json(const ImageMatching& m) {
   return {{"pair", m.files.number},           {"left", m.files.left.string()},
           {"right", m.files.right.string()},  {"corners_left", m.corners_left},
@@ -121,9 +130,12 @@ Json matching_json(const ImageMatching& m) {
 }
 
 void run(const Options& options, Session& session) {
-  const RigFile prior = read_rig(find_rig(options.prior));
+  const std::filesystem::path prior_file = find_rig(options.prior);
+  const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
   const auto files = paired_images(options.left, options.right);
+  spare_inputs(inputs(prior_file, files), options.output);
+  if (!options.picture.empty()) spare_inputs(inputs(prior_file, files), options.picture);
   const auto all = match_all(files, prior.estimate, options, session);
   judge(all, prior.estimate, options, session);
 
@@ -169,7 +181,7 @@ void add_match(CLI::App& app, Session& session) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   verb->add_option("--nearest-m", o->matching.band.nearest_m, "depth of the nearest thing in view")
-      ->check(CLI::PositiveNumber)
+      ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--cells", o->matching.cells,
                    "spread corners evenly over cells x cells parts of the image (0: not)")

@@ -168,9 +168,16 @@ class Match(Case):
         self.complains(*self.arguments(change=third), '-q',
                        of='it is a rig of 3 cameras; corners are matched between two')
 
+    def test_outputs_never_replace_inputs(self):
+        self.pairs()
+        left = self.folder / 'left1.pgm'
+        before = left.read_bytes()
+        self.complains(*self.arguments(), '-q', '--picture', left, of='is an input')
+        self.assertEqual(left.read_bytes(), before)
+
     def test_options_that_make_no_sense(self):
         self.pairs()
-        for option in (('-n', '0'), ('--nearest-m', '-1'), ('--cells', 'x')):
+        for option in (('-n', '0'), ('--nearest-m', '-1'), ('--nearest-m', 'nan'), ('--cells', 'x')):
             self.assertEqual(cli_test.vernier(*self.arguments(), *option).returncode, 2)
 
 

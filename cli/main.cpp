@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
       "input,\n3 no trustworthy answer.");
   cli::add_doctor(app, session);
   cli::add_detect(app, session);
+  cli::add_match(app, session);
   cli::add_calibrate(app, session);
   cli::add_combine(app, session);
   cli::add_check(app, session);

@@ -84,6 +84,7 @@ std::vector<double> parse_numbers(const std::string& text,
 
 void add_doctor(CLI::App& app, Session& session);
 void add_detect(CLI::App& app, Session& session);
+void add_match(CLI::App& app, Session& session);
 void add_calibrate(CLI::App& app, Session& session);
 void add_combine(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <mutex>
+
+#include "calib/error.h"
+#include "calib/ordered_parallel.h"
+#include "calib/pairs_file.h"
+#include "calib/rig_file.h"
+#include "cli/match_picture.h"
+#include "cli/option_checks.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
+#include "stereo/match_images.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double few = 0.1;         // share of left corners matched below which something is wrong
+constexpr double suspicious = 0.3;  // and below which the images may be exchanged
+constexpr int times_more = 2;       // matches with the images exchanged that say they are …
+constexpr std::size_t enough = 20;  // … if there are so many
+constexpr std::size_t probed = 3;   // image pairs that are tried exchanged
+
+struct Options {
+  std::string left, right, prior, output, picture;
+  ImageMatchingOptions matching;
+  int threads = 0;
+};
+
+double median_sigma(const std::vector<CornerMatch>& matches) {
+  if (matches.empty()) return 0;
+  std::vector<double> sigma;
+  for (const CornerMatch& match : matches) sigma.push_back(match.sigma_px);
+  const auto middle = sigma.begin() + static_cast<long>(sigma.size() / 2);
+  std::nth_element(sigma.begin(), middle, sigma.end());
+  return *middle;
+}
+
+std::vector<ImageMatching> match_all(const std::vector<ImageFiles>& files,
+                                     const RigEstimate& prior,
+                                     const Options& options,
+                                     Session& session) {
+  std::vector<ImageMatching> all(files.size());
+  Progress progress(session, "matching");
+  std::mutex mutex;
+  int done = 0;
+  for_each_index(files.size(), options.threads, [&](std::size_t i) {
+    all[i] = match_images(files[i], prior, options.prior, options.matching);
+    const std::lock_guard lock(mutex);
+    progress.update(++done, static_cast<int>(files.size()));
+  });
+  return all;
+}
+
+struct Totals {
+  std::size_t corners = 0, matches = 0;
+};
+
+Totals totals(const std::vector<ImageMatching>& all) {
+  Totals sum;
+  for (const ImageMatching& m : all) {
+    sum.corners += static_cast<std::size_t>(m.corners_left);
+    sum.matches += m.matches.size();
+  }
+  return sum;
+}
+
+/// Throws Error where exchanging left and right gives many more matches. Asked where there are few.
+void check_not_exchanged(const std::vector<ImageMatching>& all,
+                         const RigEstimate& prior,
+                         const Options& options) {
+  if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
+  std::size_t given = 0, exchanged = 0;
+  for (std::size_t i = 0; i < std::min(probed, all.size()); ++i) {
+    const ImageFiles& files = all[i].files;
+    given += all[i].matches.size();
+    exchanged += match_images({files.number, files.right, files.left}, prior, options.prior,
+                              options.matching)
+                     .matches.size();
+  }
+  if (exchanged < enough || exchanged < times_more * given) return;
+  throw Error(all.front().files.left.string(),
+              fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
+                          "way round",
+                          given, exchanged),
+              "exchange --left and --right, or the cameras of the prior");
+}
+
+/// Throws Error where nothing came of it; says what is doubtful.
+void judge(const std::vector<ImageMatching>& all,
+           const RigEstimate& prior,
+           const Options& options,
+           Session& session) {
+  const Totals sum = totals(all);
+  for (const ImageMatching& m : all) {
+    if (m.corners_left > 0 && m.corners_right > 0) continue;
+    const auto& blank = m.corners_left > 0 ? m.files.right : m.files.left;
+    const std::string fault = "no corner stands out of the image's noise";
+    if (sum.matches == 0) throw Error(blank.string(), fault, "give images of a textured scene");
+    session.warn(blank.string() + ": " + fault + "; its pair is left out");
+  }
+  const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
+  if (share >= suspicious) return;
+  check_not_exchanged(all, prior, options);
+  if (share >= few) return;
+  const std::string fault =
+      fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
+  const std::string remedy =
+      "see that the prior is of these cameras, its covariance not too narrow, the images "
+      "simultaneous, and the scene beyond --nearest-m";
+  if (sum.matches == 0) throw Error("match", fault, remedy);
+  session.doubt(fault + "; " + remedy);
+}
+
+std::vector<std::filesystem::path> inputs(const std::filesystem::path& prior,
+                                          const std::vector<ImageFiles>& files) {
+  std::vector<std::filesystem::path> all{prior};
+  for (const ImageFiles& pair : files) all.insert(all.end(), {pair.left, pair.right});
+  return all;
+}
+
+Json matching_json(const ImageMatching& m) {
+  return {{"pair", m.files.number},           {"left", m.files.left.string()},
+          {"right", m.files.right.string()},  {"corners_left", m.corners_left},
+          {"corners_right", m.corners_right}, {"noise_left", m.noise_left},
+          {"noise_right", m.noise_right},     {"candidates", m.candidates},
+          {"matches", m.matches.size()},      {"median_sigma_px", median_sigma(m.matches)}};
+}
+
+void run(const Options& options, Session& session) {
+  const std::filesystem::path prior_file = find_rig(options.prior);
+  const RigFile prior = read_rig(prior_file);
+  for (const std::string& warning : prior.warnings) session.warn(warning);
+  const auto files = paired_images(options.left, options.right);
+  spare_inputs(inputs(prior_file, files), options.output);
+  if (!options.picture.empty()) spare_inputs(inputs(prior_file, files), options.picture);
+  const auto all = match_all(files, prior.estimate, options, session);
+  judge(all, prior.estimate, options, session);
+
+  PairObservations pairs;
+  Json images = Json::array();
+  std::string text = fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>13}  {}\n", "pair", "left",
+                                 "right", "candidates", "matches", "median sigma", "left image");
+  for (const ImageMatching& m : all) {
+    add_matches(pairs, m);
+    images.push_back(matching_json(m));
+    text += fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>10.3f} px  {}\n", m.files.number,
+                        m.corners_left, m.corners_right, m.candidates, m.matches.size(),
+                        median_sigma(m.matches), m.files.left.string());
+  }
+  write_pairs(pairs, options.output);
+  if (!options.picture.empty()) write_match_picture(all.front(), options.picture);
+  text += fmt::format("{} matches of {} image pairs written to {}\n", pairs.size(),
+                      pairs.image_pairs.size(), options.output);
+  session.result({{"matches", pairs.size()},
+                  {"image_pairs", images},
+                  {"doubts", session.doubts()},
+                  {"output", options.output}},
+                 text);
+}
+
+}  // namespace
+
+void add_match(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(app, session, "match",
+                            "match corners of any scene between the images of a stereo pair",
+                            "vernier match --left 'left*.png' --right 'right*.png' --prior "
+                            "prior.rig.json --nearest-m 0.8 -o pairs.csv\n"
+                            "  vernier calibrate --pairs pairs.csv --prior prior.rig.json "
+                            "-o rig.json");
+  verb->add_option("--left", o->left, "left images (a quoted pattern)")->required();
+  verb->add_option("--right", o->right, "right images; the same number, the same pair")->required();
+  verb->add_option("--prior", o->prior,
+                   "rig file, or a shipped name: its covariance says where to search")
+      ->required();
+  verb->add_option("-n,--corners", o->matching.corners,
+                   "left corners an image at most, the strongest; right ones half as many again")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  verb->add_option("--nearest-m", o->matching.band.nearest_m, "depth of the nearest thing in view")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--cells", o->matching.cells,
+                   "spread corners evenly over cells x cells parts of the image (0: not)")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  verb->add_option("--threads", o->threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  verb->add_option("--picture", o->picture, "PNG of the first image pair with its matches");
+  verb->add_option("-o,--output", o->output, "matched pairs, CSV")->required();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

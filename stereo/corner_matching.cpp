@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/corner_matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "calib/distributions.h"
+#include "calib/error.h"
+#include "calib/projection_uncertainty.h"
+#include "stereo/image_noise.h"
+#include "stereo/match_support.h"
+#include "stereo/patch_alignment.h"
+
+namespace vernier {
+namespace {
+
+using Patches = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor>;
+
+/// The patches of an image's corners, of zero mean and unit length, one a column.
+Patches patches(const CornerImage& image, int half) {
+  const int side = 2 * half + 1;
+  Patches all(side * side, static_cast<Eigen::Index>(image.corners.size()));
+  for (Eigen::Index c = 0; c < all.cols(); ++c) {
+    const Eigen::Vector2d p = image.corners[c].pixel_px;
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        all(j * side + i, c) =
+            static_cast<float>(grey_between(image.grey, p.x() + i - half, p.y() + j - half));
+      }
+    }
+    all.col(c).array() -= all.col(c).mean();
+    const float length = all.col(c).norm();
+    if (length > 0) all.col(c) /= length;
+  }
+  return all;
+}
+
+/// Corners by the square of the image that they are in.
+class CornerGrid {
+ public:
+  explicit CornerGrid(const std::vector<ImageCorner>& corners) {
+    for (const ImageCorner& corner : corners) {
+      columns_ = std::max(columns_, cell(corner.pixel_px.x()) + 1);
+      rows_ = std::max(rows_, cell(corner.pixel_px.y()) + 1);
+    }
+    cells_.resize(static_cast<std::size_t>(columns_) * rows_);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector2d& p = corners[i].pixel_px;
+      cells_[cell(p.y()) * columns_ + cell(p.x())].push_back(static_cast<int>(i));
+    }
+  }
+
+  template <class Visit>
+  void for_each_within(const Eigen::Vector2d& low, const Eigen::Vector2d& high, Visit visit) const {
+    const int x0 = std::max(0, cell(low.x())), x1 = std::min(columns_ - 1, cell(high.x()));
+    const int y0 = std::max(0, cell(low.y())), y1 = std::min(rows_ - 1, cell(high.y()));
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        for (const int i : cells_[y * columns_ + x]) visit(i);
+      }
+    }
+  }
+
+ private:
+  static constexpr double side_px = 16;
+  static int cell(double x) { return static_cast<int>(std::floor(x / side_px)); }
+  int columns_ = 0, rows_ = 0;
+  std::vector<std::vector<int>> cells_;
+};
+
+struct Candidate {
+  int right = 0;
+  Eigen::Vector2d direction;  ///< of the epipolar curve
+  float score = 0;
+};
+
+/// What the right image's corners are searched with.
+struct RightSearch {
+  RightSearch(const std::vector<ImageCorner>& from, double gate_probability)
+      : corners(from), grid(from), nearest(from.size()) {
+    for (int dof : {1, 2}) gate[dof] = chi_squared_quantile(gate_probability, dof);
+    for (const ImageCorner& corner : from) {
+      largest_variance = std::max(largest_variance, std::pow(worst_sd(corner.covariance_px2), 2));
+    }
+  }
+  const std::vector<ImageCorner>& corners;
+  CornerGrid grid;
+  double gate[3] = {0, 0, 0};
+  double largest_variance = 0;
+  std::vector<BandDistance> nearest;  ///< of each corner to the curve in hand
+};
+
+/// Right corners within the gate of a curve, in the order of their indices.
+std::vector<Candidate> candidates_of(const std::vector<BandNode>& curve, RightSearch& search) {
+  std::vector<int> seen;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    const BandNode &a = curve[i - 1], &b = curve[i];
+    if (!b.follows) continue;
+    const double variance = std::max(a.covariance_px2.trace(), b.covariance_px2.trace());
+    const double reach = std::sqrt(search.gate[2] * (variance + search.largest_variance));
+    const Eigen::Vector2d margin(reach, reach);
+    search.grid.for_each_within(
+        a.pixel_px.cwiseMin(b.pixel_px) - margin, a.pixel_px.cwiseMax(b.pixel_px) + margin,
+        [&](int right) {
+          const ImageCorner& corner = search.corners[right];
+          const auto d = distance_to_step(curve, i, {corner.pixel_px, corner.covariance_px2});
+          BandDistance& nearest = search.nearest[right];
+          if (std::isinf(nearest.mahalanobis2)) seen.push_back(right);
+          if (d.mahalanobis2 < nearest.mahalanobis2) nearest = d;
+        });
+  }
+  std::sort(seen.begin(), seen.end());
+  std::vector<Candidate> candidates;
+  for (const int right : seen) {
+    const BandDistance& d = search.nearest[right];
+    if (d.mahalanobis2 <= search.gate[d.dof]) candidates.push_back({right, d.direction});
+    search.nearest[right] = {};
+  }
+  return candidates;
+}
+
+/// The candidate that stands out, if one does; `best_of_right` keeps each right corner's best
+/// score.
+std::optional<Candidate> best_candidate(std::vector<Candidate>& candidates,
+                                        const CornerMatchingOptions& options) {
+  if (candidates.empty()) return std::nullopt;
+  const auto by_score = [](const Candidate& a, const Candidate& b) { return a.score < b.score; };
+  const auto best = std::max_element(candidates.begin(), candidates.end(), by_score);
+  if (!(best->score >= options.least_score)) return std::nullopt;
+  for (auto other = candidates.begin(); other != candidates.end(); ++other) {
+    if (other != best && other->score > best->score - options.least_margin) return std::nullopt;
+  }
+  return *best;
+}
+
+CornerMatch aligned_match(const Alignment& aligned,
+                          const Candidate& candidate,
+                          const CornerMatchingOptions& options) {
+  CornerMatch match;
+  match.right = candidate.right;
+  match.right_px = aligned.right_px;
+  match.score = aligned.score;
+  const Eigen::Vector2d normal(-candidate.direction.y(), candidate.direction.x());
+  match.sigma_px = std::sqrt(0.5 * normal.dot(aligned.covariance_px2 * normal) +
+                             options.sigma_floor_px * options.sigma_floor_px);
+  return match;
+}
+
+/// Steps 1 and 2 of match_corners(): one candidate a left corner, or none.
+std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
+                                                 const CornerImage& right,
+                                                 const EpipolarBand& band,
+                                                 const CornerMatchingOptions& options,
+                                                 long& count) {
+  const Patches left_patches = patches(left, options.patch_half_px);
+  const Patches right_patches = patches(right, options.patch_half_px);
+  RightSearch search(right.corners, options.gate_probability);
+  std::vector<std::optional<Candidate>> chosen(left.corners.size());
+  std::vector<float> best_of_right(right.corners.size(), -1);
+  for (std::size_t i = 0; i < left.corners.size(); ++i) {
+    const ImageCorner& corner = left.corners[i];
+    auto candidates = candidates_of(band.curve({corner.pixel_px, corner.covariance_px2}), search);
+    count += static_cast<long>(candidates.size());
+    for (Candidate& c : candidates) {
+      c.score = left_patches.col(static_cast<Eigen::Index>(i)).dot(right_patches.col(c.right));
+      best_of_right[c.right] = std::max(best_of_right[c.right], c.score);
+    }
+    chosen[i] = best_candidate(candidates, options);
+  }
+  for (auto& c : chosen) {
+    if (c && c->score < best_of_right[c->right]) c.reset();
+  }
+  return chosen;
+}
+
+void check(const CornerMatchingOptions& options) {
+  if (!(options.gate_probability > 0 && options.gate_probability < 1)) {
+    throw Error("matching", "the gate's probability is not between 0 and 1", "give 0.997, say");
+  }
+  if (options.patch_half_px < 1 || options.aligned_half_px < 2 || options.neighbours < 1) {
+    throw Error("matching", "a patch has no pixels, or no neighbours are to be asked",
+                "give whole numbers above 1");
+  }
+}
+
+}  // namespace
+
+CornerImage corner_image(const cv::Mat& grey, const HarrisOptions& options) {
+  CornerImage image;
+  image.noise = image_noise(grey);
+  image.corners = harris_corners(grey, image.noise, options);
+  grey.convertTo(image.grey, CV_32F);
+  return image;
+}
+
+std::vector<CornerMatch> match_corners(const CornerImage& left,
+                                       const CornerImage& right,
+                                       const EpipolarBand& band,
+                                       const CornerMatchingOptions& options,
+                                       long* candidates) {
+  check(options);
+  long count = 0;
+  const auto chosen = correlated(left, right, band, options, count);
+  if (candidates) *candidates = count;
+  std::vector<CornerMatch> matches;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i]) continue;
+    const Eigen::Vector2d left_px = left.corners[i].pixel_px;
+    const auto aligned = align_patch(left.grey, right.grey, left_px,
+                                     right.corners[chosen[i]->right].pixel_px, chosen[i]->direction,
+                                     {.half_px = options.aligned_half_px,
+                                      .most_shift_px = options.most_shift_px,
+                                      .noise_left = left.noise,
+                                      .noise_right = right.noise});
+    if (!aligned || aligned->score < options.least_aligned_score) continue;
+    matches.push_back(aligned_match(*aligned, *chosen[i], options));
+    matches.back().left = static_cast<int>(i);
+    matches.back().left_px = left_px;
+  }
+  return supported(matches, options);
+}
+
+}  // namespace vernier

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/harris_corners.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "calib/projection_uncertainty.h"
+
+namespace vernier {
+namespace {
+
+/// The gradient's filter: a sampled Gaussian, and its central difference.
+struct GradientFilter {
+  explicit GradientFilter(double scale_px) {
+    const int radius = static_cast<int>(std::ceil(4 * scale_px));
+    smooth = cv::getGaussianKernel(2 * radius + 1, scale_px, CV_32F);
+    difference = cv::Mat::zeros(2 * radius + 3, 1, CV_32F);
+    for (int i = 0; i <= 2 * radius; ++i) {
+      difference.at<float>(i) -= smooth.at<float>(i) / 2;
+      difference.at<float>(i + 2) += smooth.at<float>(i) / 2;
+    }
+  }
+  void by_x(const cv::Mat& from, cv::Mat& to, int border = cv::BORDER_DEFAULT) const {
+    cv::sepFilter2D(from, to, CV_32F, difference, smooth, {-1, -1}, 0, border);
+  }
+  void by_y(const cv::Mat& from, cv::Mat& to, int border = cv::BORDER_DEFAULT) const {
+    cv::sepFilter2D(from, to, CV_32F, smooth, difference, {-1, -1}, 0, border);
+  }
+  int reach() const { return difference.rows / 2; }
+  cv::Mat smooth, difference;
+};
+
+struct Gradients {
+  cv::Mat x, y;
+};
+
+/// Products of the gradient under the window, and Harris' response.
+struct StructureTensor {
+  StructureTensor(const Gradients& g, const HarrisOptions& options) : k(options.k) {
+    const int radius = static_cast<int>(std::ceil(4 * options.integration_scale_px));
+    window = cv::getGaussianKernel(2 * radius + 1, options.integration_scale_px, CV_32F);
+    const auto sum = [&](const cv::Mat& a, const cv::Mat& b) {
+      cv::Mat product = a.mul(b), under_window;
+      cv::sepFilter2D(product, under_window, CV_32F, window, window);
+      return under_window;
+    };
+    xx = sum(g.x, g.x);
+    yy = sum(g.y, g.y);
+    xy = sum(g.x, g.y);
+    const cv::Mat trace = xx + yy;
+    response = xx.mul(yy) - xy.mul(xy) - k * trace.mul(trace);
+  }
+  double k;
+  cv::Mat window, xx, yy, xy, response;
+};
+
+struct Peak {
+  int x = 0, y = 0;
+  double strength = 0;
+};
+
+/// Whether no neighbour is stronger; of equal ones the first in reading order is the peak.
+bool is_peak(const cv::Mat& r, int x, int y, int radius) {
+  const float own = r.at<float>(y, x);
+  for (int j = -radius; j <= radius; ++j) {
+    const float* row = r.ptr<float>(y + j);
+    for (int i = -radius; i <= radius; ++i) {
+      const bool before = j < 0 || (j == 0 && i < 0);
+      if (before ? row[x + i] >= own : row[x + i] > own) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Peak> peaks(const cv::Mat& r, const HarrisOptions& options) {
+  std::vector<Peak> found;
+  const int border = std::max(options.border_px, options.suppression_radius_px);
+  for (int y = border; y < r.rows - border; ++y) {
+    const float* row = r.ptr<float>(y);
+    for (int x = border; x < r.cols - border; ++x) {
+      if (row[x] > 0 && is_peak(r, x, y, options.suppression_radius_px)) {
+        found.push_back({x, y, row[x]});
+      }
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Peak& a, const Peak& b) { return a.strength > b.strength; });
+  return found;
+}
+
+/// Every part's strongest first, up to its share of the count; then the rest.
+std::vector<Peak> spread(std::vector<Peak> sorted, cv::Size size, const HarrisOptions& options) {
+  if (options.cells <= 0 || options.count <= 0) return sorted;
+  const int share = std::max(1, options.count / (options.cells * options.cells));
+  std::map<int, int> taken;
+  std::stable_partition(sorted.begin(), sorted.end(), [&](const Peak& peak) {
+    const int column = peak.x * options.cells / size.width;
+    const int row = peak.y * options.cells / size.height;
+    return taken[row * options.cells + column]++ < share;
+  });
+  return sorted;
+}
+
+/// Peak of the parabola through three values, from the middle one, and its derivatives by them.
+struct Vertex {
+  Vertex(double before, double at, double after) {
+    const double bend = before - 2 * at + after;
+    if (!(bend < 0)) return;
+    const double unclamped = 0.5 * (before - after) / bend;
+    if (std::abs(unclamped) > 0.5) return;
+    offset = unclamped;
+    by_values[0] = (0.5 - offset) / bend;
+    by_values[1] = 2 * offset / bend;
+    by_values[2] = (-0.5 - offset) / bend;
+  }
+  double offset = 0, by_values[3] = {0, 0, 0};
+};
+
+/// Förstner's point about a peak of the response.
+class PointFit {
+ public:
+  PointFit(const Gradients& g,
+           const StructureTensor& tensor,
+           const Peak& peak,
+           const HarrisOptions& options)
+      : gradients_(g),
+        tensor_(tensor),
+        peak_(peak),
+        scale_(options.integration_scale_px),
+        half_(tensor.window.rows / 2 + 1),
+        vertex_{vertex(1, 0), vertex(0, 1)},
+        centre_(peak.x + vertex_[0].offset, peak.y + vertex_[1].offset) {}
+
+  std::optional<Eigen::Vector2d> point(double most_shift_px) {
+    Eigen::Matrix2d M = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    for_window([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
+      const double w = weight(from_centre);
+      M += w * g * g.transpose();
+      b += w * g * g.dot(from_centre);
+    });
+    if (!(M.determinant() > 1e-9 * M.trace() * M.trace())) return std::nullopt;
+    inverse_ = M.inverse();
+    shift_ = inverse_ * b;
+    if (!(shift_.norm() <= most_shift_px)) return std::nullopt;
+    return centre_ + shift_;
+  }
+
+  /// σ² Σ_q c_q c_qᵀ with c_q = ∂p / ∂I_q: derivatives by the gradients, through the gradient's
+  /// filter once more.
+  Eigen::Matrix2d covariance(const GradientFilter& filter, double noise) const {
+    const int margin = filter.reach(), size = 2 * (half_ + margin) + 1;
+    cv::Mat by_gx[2], by_gy[2];
+    for (int a = 0; a < 2; ++a) {
+      by_gx[a] = cv::Mat::zeros(size, size, CV_32F);
+      by_gy[a] = cv::Mat::zeros(size, size, CV_32F);
+    }
+    const Eigen::Matrix2d by_centre = point_by_centre();
+    for_window([&](int i, int j, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
+      const Eigen::Vector2d to = from_centre - shift_;
+      const Eigen::Matrix2d at_fixed_centre =
+          weight(from_centre) * inverse_ *
+          (g * to.transpose() + g.dot(to) * Eigen::Matrix2d::Identity());
+      const Eigen::Matrix2d by_g = at_fixed_centre + by_centre * centre_by_gradient(i, j, g);
+      for (int a = 0; a < 2; ++a) {
+        by_gx[a].at<float>(j + half_ + margin, i + half_ + margin) = static_cast<float>(by_g(a, 0));
+        by_gy[a].at<float>(j + half_ + margin, i + half_ + margin) = static_cast<float>(by_g(a, 1));
+      }
+    });
+    cv::Mat c[2];
+    for (int a = 0; a < 2; ++a) {
+      cv::Mat x, y;
+      filter.by_x(by_gx[a], x, cv::BORDER_CONSTANT);
+      filter.by_y(by_gy[a], y, cv::BORDER_CONSTANT);
+      c[a] = x + y;
+    }
+    Eigen::Matrix2d sum;
+    sum << c[0].dot(c[0]), c[0].dot(c[1]), c[0].dot(c[1]), c[1].dot(c[1]);
+    return noise * noise * sum;
+  }
+
+ private:
+  Vertex vertex(int dx, int dy) const {
+    const cv::Mat& r = tensor_.response;
+    return {r.at<float>(peak_.y - dy, peak_.x - dx), r.at<float>(peak_.y, peak_.x),
+            r.at<float>(peak_.y + dy, peak_.x + dx)};
+  }
+
+  double weight(const Eigen::Vector2d& from_centre) const {
+    return std::exp(-from_centre.squaredNorm() / (2 * scale_ * scale_));
+  }
+
+  /// ∂p / ∂c of the window's centre c: M⁻¹ Σ (w / s²) g gᵀ (x − p) (x − c)ᵀ.
+  Eigen::Matrix2d point_by_centre() const {
+    Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+    for_window([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
+      sum += weight(from_centre) / (scale_ * scale_) * g.dot(from_centre - shift_) * g *
+             from_centre.transpose();
+    });
+    return inverse_ * sum;
+  }
+
+  /// ∂c / ∂g of the gradient at the peak's pixel (i, j): through the responses of the parabolas,
+  /// with ∂R = (yy − 2k tr) ∂xx + (xx − 2k tr) ∂yy − 2 xy ∂xy.
+  Eigen::Matrix2d centre_by_gradient(int i, int j, const Eigen::Vector2d& g) const {
+    Eigen::Matrix2d by_gradient = Eigen::Matrix2d::Zero();
+    for (int axis = 0; axis < 2; ++axis) {
+      for (int step = -1; step <= 1; ++step) {
+        const int dx = axis == 0 ? step : 0, dy = axis == 0 ? 0 : step;
+        const double w = window_at(i - dx) * window_at(j - dy);
+        const int x = peak_.x + dx, y = peak_.y + dy;
+        const double xx = tensor_.xx.at<float>(y, x), yy = tensor_.yy.at<float>(y, x);
+        const double xy = tensor_.xy.at<float>(y, x), edge = 2 * tensor_.k * (xx + yy);
+        const Eigen::RowVector2d response_by_g(2 * w * ((yy - edge) * g.x() - xy * g.y()),
+                                               2 * w * ((xx - edge) * g.y() - xy * g.x()));
+        by_gradient.row(axis) += vertex_[axis].by_values[step + 1] * response_by_g;
+      }
+    }
+    return by_gradient;
+  }
+
+  double window_at(int i) const {
+    const int at = i + tensor_.window.rows / 2;
+    return at < 0 || at >= tensor_.window.rows ? 0 : tensor_.window.at<float>(at);
+  }
+
+  /// visit(i, j, pixel less the window's centre, gradient), i and j from the peak's pixel.
+  template <class Visit>
+  void for_window(Visit visit) const {
+    for (int j = -half_; j <= half_; ++j) {
+      const int y = peak_.y + j;
+      if (y < 0 || y >= gradients_.x.rows) continue;
+      for (int i = -half_; i <= half_; ++i) {
+        const int x = peak_.x + i;
+        if (x < 0 || x >= gradients_.x.cols) continue;
+        visit(i, j, Eigen::Vector2d(x, y) - centre_,
+              Eigen::Vector2d(gradients_.x.at<float>(y, x), gradients_.y.at<float>(y, x)));
+      }
+    }
+  }
+
+  const Gradients& gradients_;
+  const StructureTensor& tensor_;
+  Peak peak_;
+  double scale_;
+  int half_;
+  Vertex vertex_[2];
+  Eigen::Vector2d centre_, shift_;  ///< of the window, and to the point
+  Eigen::Matrix2d inverse_;         ///< M⁻¹
+};
+
+/// Two peaks may have one point.
+bool is_new(const std::vector<ImageCorner>& corners, const Eigen::Vector2d& point) {
+  return std::none_of(corners.begin(), corners.end(), [&](const ImageCorner& corner) {
+    return (corner.pixel_px - point).squaredNorm() < 1;
+  });
+}
+
+}  // namespace
+
+std::vector<ImageCorner> harris_corners(const cv::Mat& grey,
+                                        double noise,
+                                        const HarrisOptions& options) {
+  const GradientFilter filter(options.gradient_scale_px);
+  Gradients g;
+  filter.by_x(grey, g.x);
+  filter.by_y(grey, g.y);
+  const StructureTensor tensor(g, options);
+  std::vector<ImageCorner> corners;
+  for (const Peak& peak : spread(peaks(tensor.response, options), grey.size(), options)) {
+    if (options.count > 0 && corners.size() >= static_cast<std::size_t>(options.count)) break;
+    PointFit fit(g, tensor, peak, options);
+    const auto point = fit.point(options.most_shift_px);
+    if (!point || !is_new(corners, *point)) continue;
+    const Eigen::Matrix2d covariance = fit.covariance(filter, noise);
+    if (!(worst_sd(covariance) <= options.worst_sigma_px)) continue;
+    corners.push_back({*point, covariance, peak.strength});
+  }
+  std::stable_sort(corners.begin(), corners.end(), [](const ImageCorner& a, const ImageCorner& b) {
+    return a.strength > b.strength;
+  });
+  return corners;
+}
+
+}  // namespace vernier

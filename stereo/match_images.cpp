@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/match_images.h"
+
+#include <map>
+
+#include "calib/board_detection.h"
+#include "calib/error.h"
+#include "calib/grey_image.h"
+#include "calib/observations_file.h"
+#include "stereo/corner_matching.h"
+
+namespace vernier {
+namespace {
+
+using FilesByNumber = std::map<int, std::filesystem::path>;
+
+FilesByNumber by_number(const std::vector<std::filesystem::path>& files) {
+  FilesByNumber numbered;
+  for (const auto& file : files) {
+    const int number = parse_image_name(file).frame;
+    const auto [at, is_new] = numbered.emplace(number, file);
+    if (!is_new) {
+      throw Error(file.string(),
+                  "it has the number " + std::to_string(number) + " of " + at->second.string(),
+                  "give each image of a camera a last number of its own in its name");
+    }
+  }
+  return numbered;
+}
+
+void check_all_paired(const FilesByNumber& own, const FilesByNumber& others, const char* side) {
+  for (const auto& [number, file] : own) {
+    if (others.count(number)) continue;
+    throw Error(file.string(),
+                std::string("no ") + side + " image has its number " + std::to_string(number) +
+                    " (" + std::to_string(own.size()) + " images against " +
+                    std::to_string(others.size()) + ")",
+                "the last number in a name is the pair; give simultaneous images the same");
+  }
+}
+
+cv::Mat read_image(const std::filesystem::path& file,
+                   const Camera& camera,
+                   const std::string& prior_place) {
+  const cv::Mat grey = read_grey_image(file);
+  if (Eigen::Vector2i(grey.cols, grey.rows) != camera.size_px) {
+    const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    throw Error(file.string(),
+                "its size " + size(grey.cols, grey.rows) + " is not that of the camera \"" +
+                    camera.name + "\" of " + prior_place + ", " +
+                    size(camera.size_px[0], camera.size_px[1]),
+                "give images as the prior's cameras take them, or the prior of these");
+  }
+  return grey;
+}
+
+}  // namespace
+
+std::vector<ImageFiles> paired_images(const std::string& left, const std::string& right) {
+  const auto left_files = matching_files(left), right_files = matching_files(right);
+  if (left_files.size() == 1 && right_files.size() == 1) {
+    return {{0, left_files.front(), right_files.front()}};
+  }
+  const FilesByNumber lefts = by_number(left_files), rights = by_number(right_files);
+  check_all_paired(lefts, rights, "right");
+  check_all_paired(rights, lefts, "left");
+  std::vector<ImageFiles> pairs;
+  for (const auto& [number, file] : lefts) pairs.push_back({number, file, rights.at(number)});
+  return pairs;
+}
+
+ImageMatching match_images(const ImageFiles& files,
+                           const RigEstimate& prior,
+                           const std::string& prior_place,
+                           const ImageMatchingOptions& options) {
+  const Covariance& covariance = required_covariance(prior, prior_place);
+  if (prior.rig.cameras.size() != 2) {
+    throw Error(prior_place,
+                "it is a rig of " + std::to_string(prior.rig.cameras.size()) +
+                    " cameras; corners are matched between two",
+                "give the prior of the two that took the images");
+  }
+  const EpipolarBand band(prior.rig, covariance.matrix, options.band);
+  HarrisOptions harris{.count = options.corners, .cells = options.cells};
+  const CornerImage left =
+      corner_image(read_image(files.left, prior.rig.cameras[0], prior_place), harris);
+  harris.count += harris.count / 2;
+  const CornerImage right =
+      corner_image(read_image(files.right, prior.rig.cameras[1], prior_place), harris);
+  ImageMatching result;
+  result.files = files;
+  result.corners_left = static_cast<int>(left.corners.size());
+  result.corners_right = static_cast<int>(right.corners.size());
+  result.noise_left = left.noise;
+  result.noise_right = right.noise;
+  result.matches = match_corners(left, right, band, options.matching, &result.candidates);
+  return result;
+}
+
+void add_matches(PairObservations& pairs, const ImageMatching& matching) {
+  for (const CornerMatch& match : matching.matches) {
+    Eigen::Vector4d pixels_px;
+    pixels_px << match.left_px, match.right_px;
+    add_pair(pairs, matching.files.number, pixels_px, match.sigma_px);
+  }
+}
+
+}  // namespace vernier

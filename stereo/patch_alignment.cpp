@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/patch_alignment.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace vernier {
+namespace {
+
+constexpr int most_steps = 25;
+constexpr double settled_px = 0.01;
+constexpr double step_share =
+    0.6;  // differences rise less than the image does: full steps overshoot
+constexpr double most_gain = 3;
+constexpr double most_stretch = 0.6;
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+std::array<double, 4> cubic_weights(double t) {
+  const double t2 = t * t, t3 = t2 * t;
+  return {0.5 * (-t3 + 2 * t2 - t), 0.5 * (3 * t3 - 5 * t2 + 2), 0.5 * (-3 * t3 + 4 * t2 + t),
+          0.5 * (t3 - t2)};
+}
+
+/// The left patch: per pixel its offset, weight, grey value and row of the Jacobian (by shift u, v,
+/// stretch, shear, gain, offset).
+struct Template {
+  std::vector<Eigen::Vector2d> offsets;
+  Eigen::VectorXd weight, grey;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> J;
+  Matrix6d inverse;  ///< of Jᵀ W J
+  bool holds = false;
+};
+
+Template make_template(const cv::Mat& left,
+                       const Eigen::Vector2d& p,
+                       const Eigen::Vector2d& direction,
+                       int half) {
+  Template patch;
+  const int n = (2 * half + 1) * (2 * half + 1);
+  patch.weight.resize(n);
+  patch.grey.resize(n);
+  patch.J.resize(n, 6);
+  int row = 0;
+  for (int j = -half; j <= half; ++j) {
+    for (int i = -half; i <= half; ++i, ++row) {
+      const double x = p.x() + i, y = p.y() + j;
+      const Eigen::Vector2d g(0.5 * (grey_between(left, x + 1, y) - grey_between(left, x - 1, y)),
+                              0.5 * (grey_between(left, x, y + 1) - grey_between(left, x, y - 1)));
+      const double along = g.dot(direction);
+      patch.offsets.emplace_back(i, j);
+      patch.weight[row] = std::exp(-2.0 * (i * i + j * j) / (half * half));
+      patch.grey[row] = grey_between(left, x, y);
+      patch.J.row(row) << g.x(), g.y(), along * i, along * j, patch.grey[row], 1;
+    }
+  }
+  const Matrix6d N = patch.J.transpose() * patch.weight.asDiagonal() * patch.J;
+  const Vector6d scale = N.diagonal().cwiseMax(1e-12).cwiseSqrt();
+  const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * N * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  patch.holds = eigen.eigenvalues()[0] > 1e-8;
+  patch.inverse = N.inverse();
+  return patch;
+}
+
+/// Maps offsets about the left pixel to right pixels.
+struct Warp {
+  Eigen::Matrix2d D = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d q;
+};
+
+Eigen::VectorXd sampled(const cv::Mat& right, const Template& patch, const Warp& warp) {
+  Eigen::VectorXd values(patch.grey.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const Eigen::Vector2d at = warp.q + warp.D * patch.offsets[i];
+    values[i] = grey_between(right, at.x(), at.y());
+  }
+  return values;
+}
+
+double correlation(const Eigen::VectorXd& w, Eigen::VectorXd a, Eigen::VectorXd b) {
+  a.array() -= w.dot(a) / w.sum();
+  b.array() -= w.dot(b) / w.sum();
+  const double power = w.dot(a.cwiseAbs2()) * w.dot(b.cwiseAbs2());
+  return power > 0 ? w.dot(a.cwiseProduct(b)) / std::sqrt(power) : 0;
+}
+
+/// The warp with the small one that `fit` tells of undone before it.
+Warp composed(const Warp& warp, const Vector6d& fit, const Eigen::Vector2d& direction) {
+  const double gain = fit[4] / step_share;
+  const Eigen::Matrix2d small =
+      Eigen::Matrix2d::Identity() + direction * fit.segment<2>(2).transpose() / gain;
+  Warp next;
+  next.D = warp.D * small.inverse();
+  next.q = warp.q - next.D * fit.head<2>() / gain;
+  return next;
+}
+
+Eigen::Matrix2d covariance(const Template& patch,
+                           const Warp& warp,
+                           const Eigen::VectorXd& values,
+                           const Vector6d& fit,
+                           const AlignmentOptions& options) {
+  const Eigen::VectorXd residual = values - patch.J * fit;
+  const double gain2 = fit[4] * fit[4], noise_l = options.noise_left, noise_r = options.noise_right;
+  const double mean_square = std::max(patch.weight.dot(residual.cwiseAbs2()) / patch.weight.sum(),
+                                      gain2 * noise_l * noise_l + noise_r * noise_r) /
+                             gain2;
+  const Matrix6d spread = patch.J.transpose() * patch.weight.cwiseAbs2().asDiagonal() * patch.J;
+  const Matrix6d C = patch.inverse * spread * patch.inverse;
+  return mean_square * warp.D * C.topLeftCorner<2, 2>() * warp.D.transpose();
+}
+
+}  // namespace
+
+double grey_between(const cv::Mat& image, double x, double y) {
+  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+  const auto wx = cubic_weights(x - left), wy = cubic_weights(y - top);
+  double sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    const float* row = image.ptr<float>(std::clamp(top + j - 1, 0, image.rows - 1));
+    double line = 0;
+    for (int i = 0; i < 4; ++i) line += wx[i] * row[std::clamp(left + i - 1, 0, image.cols - 1)];
+    sum += wy[j] * line;
+  }
+  return sum;
+}
+
+std::optional<Alignment> align_patch(const cv::Mat& left,
+                                     const cv::Mat& right,
+                                     const Eigen::Vector2d& left_px,
+                                     const Eigen::Vector2d& right_px,
+                                     const Eigen::Vector2d& direction,
+                                     const AlignmentOptions& options) {
+  const Template patch = make_template(left, left_px, direction, options.half_px);
+  if (!patch.holds) return std::nullopt;
+  Warp warp;
+  warp.q = right_px;
+  for (int step = 0; step < most_steps; ++step) {
+    const Eigen::VectorXd values = sampled(right, patch, warp);
+    const Vector6d fit = patch.inverse * (patch.J.transpose() * patch.weight.cwiseProduct(values));
+    if (!(fit[4] > 1 / most_gain && fit[4] < most_gain)) return std::nullopt;
+    const Warp next = composed(warp, fit, direction);
+    const bool settled = (next.q - warp.q).norm() < settled_px;
+    warp = next;
+    if (!((warp.q - right_px).norm() <= options.most_shift_px)) return std::nullopt;
+    if ((warp.D - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() > most_stretch) {
+      return std::nullopt;
+    }
+    if (settled) {
+      return Alignment{warp.q, covariance(patch, warp, values, fit, options),
+                       correlation(patch.weight, patch.grey, values)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace vernier

@@ -20,16 +20,6 @@ bool has_pairs(const RigEstimate& estimate) {
   return estimate.evidence && estimate.evidence->pairs.size() > 0;
 }
 
-/// The estimate's covariance over its free parameters.
-RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& name) {
-  const Covariance& all = required_covariance(estimate, name);
-  const std::vector<Eigen::Index> free = free_parameters(estimate);
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  RigKnowledge known{estimate.rig, {all.kind, {}, all.matrix(free, free)}};
-  for (const Eigen::Index i : free) known.covariance.names.push_back(names[i]);
-  return known;
-}
-
 std::string kind_of(const CombineInput& input) {
   if (!input.estimate || (has_pairs(*input.estimate) && !has_boards(*input.estimate))) {
     return "pairs";
@@ -76,29 +66,29 @@ RigKnowledge knowledge_of(const JointCalibration& joint) {
   return knowledge_of(joint.estimate, "combination");
 }
 
-Eigen::MatrixXd part_of(const Eigen::MatrixXd& all, const std::vector<Eigen::Index>& free) {
-  return all(free, free);
-}
-
 /// Pairs against what was known before them.
 PriorAgreement agreement_of_pairs(const RigKnowledge& before,
                                   const PairObservations& pairs,
                                   const CombineInput& input,
                                   const JointOptions& options) {
   const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
-  const std::vector<Eigen::Index> free = free_parameters(with.estimate);
-  const RigPrior prior = rig_prior(before.rig, before);
-  const Eigen::VectorXd offset = difference(with.estimate.rig, before.rig)(free);
+  const Rig& rig = with.estimate.rig;
+  const std::vector<bool> held = held_parameters(with.estimate);
+  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, before.rig);
+  Eigen::VectorXd offset(static_cast<Eigen::Index>(before.covariance.names.size()));
+  for (Eigen::Index i = 0, k = 0; i < moved.size(); ++i) {
+    if (!held[static_cast<std::size_t>(i)]) offset[k++] = moved[i];
+  }
   return prior_agreement(offset, before.covariance.names, before.covariance.matrix,
-                         part_of(*with.estimate.covariance_mvb, free),
-                         part_of(with.estimate.covariance->matrix, free));
+                         covariance_of_free(*with.estimate.covariance_mvb, rig, held),
+                         covariance_of_free(with.estimate.covariance->matrix, rig, held));
 }
 
 PriorAgreement agreement_of_rigs(const RigKnowledge& before,
                                  const RigEstimate& estimate,
                                  const std::string& name) {
-  const RigKnowledge own = knowledge_of(estimate, name);
-  const RigDifference d = rig_difference(before.rig, before.covariance, own.rig, own.covariance);
+  const RigDifference d = rig_difference(before.rig, whole_covariance(before), estimate.rig,
+                                         required_covariance(estimate, name));
   PriorAgreement agreement{d.mahalanobis2, d.dof, d.p_value, 0, ""};
   if (!d.directions.empty()) {
     agreement.in_sigma = std::abs(d.directions.front().in_sigma);
@@ -188,8 +178,9 @@ FilteredRig information_filter(const std::vector<CombineInput>& inputs,
   joint.white_noise = true;
   RigKnowledge known = knowledge_of(*inputs.front().estimate, inputs.front().name);
   if (inputs.front().estimate->covariance_mvb && has_boards(*inputs.front().estimate)) {
-    const std::vector<Eigen::Index> free = free_parameters(*inputs.front().estimate);
-    known.covariance.matrix = part_of(*inputs.front().estimate->covariance_mvb, free);
+    const RigEstimate& first = *inputs.front().estimate;
+    known.covariance.matrix =
+        covariance_of_free(*first.covariance_mvb, first.rig, held_parameters(first));
   }
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     if (!batch.inputs[i].used) continue;

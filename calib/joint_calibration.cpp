@@ -187,7 +187,9 @@ CalibrationSummary summary_of(const Joint& joint,
                                              6 * static_cast<double>(joint.state.frames.size())));
   for (const RigPrior& prior : joint.cost.priors) {
     summary.prior_chi2 += prior_chi2(prior, joint.state.rig);
-    summary.prior_dof += static_cast<int>((prior.information.diagonal().array() > 0).count());
+  }
+  for (const RigKnowledge& prior : evidence.priors) {
+    summary.prior_dof += static_cast<int>(prior.covariance.names.size());
   }
   return summary;
 }
@@ -295,18 +297,8 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                 fmt::format("{} pairs for {} free parameters", pairs.size(), free),
                 "match more corners, or hold parameters");
   }
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(parameter_count(prior.rig), parameter_count(prior.rig));
-  for (std::size_t i = 0; i < prior.covariance.names.size(); ++i) {
-    for (std::size_t k = 0; k < prior.covariance.names.size(); ++k) {
-      const std::vector<std::string> all = parameter_names(prior.rig);
-      const auto at = [&](std::size_t n) {
-        return std::find(all.begin(), all.end(), prior.covariance.names[n]) - all.begin();
-      };
-      C(at(i), at(k)) =
-          prior.covariance.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
-    }
-  }
-  const ObservationDiagnosis said = check_scene(pairs, prior.rig, C, place);
+  const ObservationDiagnosis said =
+      check_scene(pairs, prior.rig, whole_covariance(prior).matrix, place);
   JointEvidence evidence;
   evidence.priors.push_back(prior);
   evidence.pairs = pairs;

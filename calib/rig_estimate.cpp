@@ -7,6 +7,7 @@
 #include <set>
 
 #include "calib/error.h"
+#include "calib/held_parameters.h"
 
 namespace vernier {
 namespace {
@@ -48,6 +49,14 @@ std::vector<bool> held_parameters(const RigEstimate& estimate) {
     if (found != names.end()) held[static_cast<std::size_t>(found - names.begin())] = true;
   }
   return held;
+}
+
+RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place) {
+  const Covariance& all = required_covariance(estimate, place);
+  const std::vector<bool> held = held_parameters(estimate);
+  return {estimate.rig,
+          {all.kind, free_names(estimate.rig, held),
+           covariance_of_free(all.matrix, estimate.rig, held)}};
 }
 
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names) {

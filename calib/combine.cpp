@@ -78,8 +78,8 @@ PriorAgreement agreement_of_pairs(const RigKnowledge& before,
 PriorAgreement agreement_of_rigs(const RigKnowledge& before,
                                  const RigEstimate& estimate,
                                  const std::string& name) {
-  const RigKnowledge own = knowledge_of(estimate, name);
-  const RigDifference d = rig_difference(before.rig, before.covariance, own.rig, own.covariance);
+  const RigDifference d = rig_difference(before.rig, whole_covariance(before), estimate.rig,
+                                         required_covariance(estimate, name));
   PriorAgreement agreement{d.mahalanobis2, d.dof, d.p_value, 0, ""};
   if (!d.directions.empty()) {
     agreement.in_sigma = std::abs(d.directions.front().in_sigma);

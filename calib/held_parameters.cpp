@@ -51,20 +51,6 @@ Eigen::VectorXd neutral_parameters(const Rig& rig) {
   return parameters(neutral);
 }
 
-/// The derivative of the tangent by the values of the parameters, rotation vectors that are held in
-/// part being values. Where a rotation is wholly free any basis will do: the plain one keeps its
-/// rows readable.
-Eigen::MatrixXd tangent_by_value(const Rig& rig, const std::vector<bool>& held) {
-  const auto p = static_cast<Eigen::Index>(held.size());
-  Eigen::MatrixXd by_value = Eigen::MatrixXd::Identity(p, p);
-  for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
-    const int i = pose_index(rig, static_cast<int>(c));
-    if (!held[i] && !held[i + 1] && !held[i + 2]) continue;
-    by_value.block<3, 3>(i, i) = left_jacobian(vector_from_rotation(rig.T_camera_first[c].R));
-  }
-  return by_value;
-}
-
 std::vector<Eigen::Index> free_places(const std::vector<bool>& held) {
   std::vector<Eigen::Index> places;
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -107,12 +93,24 @@ Rig with_held_values(const Rig& rig, const std::vector<HeldParameter>& held) {
   return result;
 }
 
+Eigen::MatrixXd tangent_by_values(const Rig& rig, const std::vector<bool>& held) {
+  const auto p = static_cast<Eigen::Index>(held.size());
+  Eigen::MatrixXd by_value = Eigen::MatrixXd::Identity(p, p);
+  for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
+    const int i = pose_index(rig, static_cast<int>(c));
+    // Where the rotation is wholly free any basis will do; the plain one keeps its rows readable.
+    if (!held[i] && !held[i + 1] && !held[i + 2]) continue;
+    by_value.block<3, 3>(i, i) = left_jacobian(vector_from_rotation(rig.T_camera_first[c].R));
+  }
+  return by_value;
+}
+
 Eigen::MatrixXd free_directions(const Rig& rig, const std::vector<bool>& held) {
-  return tangent_by_value(rig, held)(Eigen::all, free_places(held));
+  return tangent_by_values(rig, held)(Eigen::all, free_places(held));
 }
 
 Eigen::MatrixXd values_by_tangent(const Rig& rig, const std::vector<bool>& held) {
-  Eigen::MatrixXd inverse = tangent_by_value(rig, held);
+  Eigen::MatrixXd inverse = tangent_by_values(rig, held);
   for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
     const int i = pose_index(rig, static_cast<int>(c));
     inverse.block<3, 3>(i, i) = inverse.block<3, 3>(i, i).inverse().eval();
@@ -123,8 +121,10 @@ Eigen::MatrixXd values_by_tangent(const Rig& rig, const std::vector<bool>& held)
 Eigen::MatrixXd covariance_of_free(const Eigen::MatrixXd& C,
                                    const Rig& rig,
                                    const std::vector<bool>& held) {
-  const Eigen::MatrixXd by_tangent = values_by_tangent(rig, held)(free_places(held), Eigen::all);
-  return by_tangent * C * by_tangent.transpose();
+  const std::vector<Eigen::Index> free = free_places(held);
+  const Eigen::MatrixXd by_tangent = values_by_tangent(rig, held);
+  if (by_tangent.isIdentity(0)) return C(free, free);
+  return (by_tangent * C * by_tangent.transpose())(free, free);
 }
 
 std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held) {

@@ -31,9 +31,10 @@ Rig with_held_values(const Rig& rig, const std::vector<HeldParameter>& held);
 /// belong to the free components of its rotation vector r.
 Eigen::MatrixXd free_directions(const Rig& rig, const std::vector<bool>& held);
 
-/// The derivative of the parameters' values by the rig's tangent where a rotation that is held in
-/// part counts by its rotation vector, J_l⁻¹, and all else as it stands in the tangent: parameters
-/// x parameters. Its rows of free parameters are the left inverse of the free directions.
+/// The derivative of the rig's tangent by the parameters' values, J_l for a rotation that is held
+/// in part (its rotation vector is its value) and the identity for all else, and its inverse:
+/// parameters x parameters. The free directions are columns of the first.
+Eigen::MatrixXd tangent_by_values(const Rig& rig, const std::vector<bool>& held);
 Eigen::MatrixXd values_by_tangent(const Rig& rig, const std::vector<bool>& held);
 
 /// A covariance C of the tangent, zero along what is held, as one of the free parameters' values:

@@ -187,7 +187,9 @@ CalibrationSummary summary_of(const Joint& joint,
                                              6 * static_cast<double>(joint.state.frames.size())));
   for (const RigPrior& prior : joint.cost.priors) {
     summary.prior_chi2 += prior_chi2(prior, joint.state.rig);
-    summary.prior_dof += static_cast<int>((prior.information.diagonal().array() > 0).count());
+  }
+  for (const RigKnowledge& prior : evidence.priors) {
+    summary.prior_dof += static_cast<int>(prior.covariance.names.size());
   }
   return summary;
 }
@@ -336,10 +338,8 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                 fmt::format("{} pairs for {} free parameters", pairs.size(), free),
                 "match more corners, or hold parameters");
   }
-  const std::vector<bool> unknown = held_mask(prior.rig, held_by(prior));
-  const Eigen::MatrixXd E = free_directions(prior.rig, unknown);
-  const Eigen::MatrixXd C = E * prior.covariance.matrix * E.transpose();
-  const ObservationDiagnosis said = check_scene(pairs, prior.rig, C, place);
+  const ObservationDiagnosis said =
+      check_scene(pairs, prior.rig, whole_covariance(prior).matrix, place);
   JointEvidence evidence;
   evidence.priors.push_back(prior);
   evidence.pairs = pairs;

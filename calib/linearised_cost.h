@@ -20,8 +20,8 @@ struct LinearisedCost {
   ReducedNormalEquations equations;  ///< of z, at the problem's noise
 };
 
-/// Corner weights are left aside. Throws Error where every parameter is held, or as
-/// check_problem and reduced_normal_equations do. minimum_variance_bound(equations, names) then
+/// Corner weights and matched pairs are left aside. Throws Error where every parameter is held, or
+/// as check_problem and reduced_normal_equations do. minimum_variance_bound(equations, names) then
 /// says whether z is determined.
 LinearisedCost linearised_cost(const BoardObservations& observations,
                                const BoardState& state,

@@ -105,6 +105,7 @@ void check_cameras(const BoardObservations& observations,
                        [&](const RigPrior& prior) { return prior.information(i, i) > 0; });
   };
   for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
+    if (c < 2 && problem.pairs.size() > 0) continue;
     const auto sees = [&](const BoardView& view) { return view.camera == c; };
     if (std::any_of(observations.views.begin(), observations.views.end(), sees)) continue;
     const std::vector<int> own = parameters_of(rig, c);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/board_warp.h"
+#include "calib/loss.h"
 #include "calib/observation_checks.h"
 #include "calib/view_linearisation.h"
 
@@ -19,15 +20,6 @@ namespace {
 using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
 
 constexpr double least_sigma_px = 1e-6;  // residuals below are rounding
-
-/// Huber's weight: 1 up to two standard deviations, then falling as the inverse of the distance.
-double huber_weight(double in_sigmas) { return in_sigmas < 2 ? 1 : 2 / in_sigmas; }
-
-/// Tukey's weight, zero beyond `limit`.
-double tukey_weight(double in_sigmas, double limit) {
-  const double t = in_sigmas / limit;
-  return t < 1 ? (1 - t * t) * (1 - t * t) : 0;
-}
 
 /// Robust standard deviation of a coordinate, one a camera: lenses and images differ.
 std::vector<double> camera_sigmas(const BoardObservations& observations,
@@ -43,16 +35,18 @@ std::vector<double> camera_sigmas(const BoardObservations& observations,
   return sigmas;
 }
 
-template <typename Weight>
+/// Weights by the length of a residual in robust standard deviations, none below `least`.
 PerCorner weights_of(const BoardObservations& observations,
                      const CornerResiduals& residuals,
-                     Weight weight) {
+                     const Loss& loss,
+                     double least) {
   const std::vector<double> sigmas = camera_sigmas(observations, residuals);
   PerCorner weights;
   for (std::size_t v = 0; v < residuals.size(); ++v) {
     const double sigma = sigmas[static_cast<std::size_t>(observations.views[v].camera)];
     std::vector<double>& own = weights.emplace_back();
-    for (const Eigen::Vector2d& r : residuals[v]) own.push_back(weight(r.norm() / sigma));
+    for (const Eigen::Vector2d& r : residuals[v])
+      own.push_back(std::max(least, weight_of(loss, r.norm() / sigma)));
   }
   return weights;
 }
@@ -76,9 +70,9 @@ BoardState redescending_minimum(const BoardObservations& observations,
   problem.must_converge = false;
   for (int round = 0; round < huber_rounds + tukey_rounds; ++round) {
     const CornerResiduals residuals = corner_residuals(observations, state);
-    PerCorner weights = weights_of(observations, residuals, [&](double d) {
-      return round < huber_rounds ? huber_weight(d) : std::max(1e-6, tukey_weight(d, limit));
-    });
+    const Loss loss =
+        round < huber_rounds ? Loss{LossShape::huber, 2} : Loss{LossShape::tukey, limit};
+    PerCorner weights = weights_of(observations, residuals, loss, 1e-6);
     if (round > huber_rounds && largest_change(weights, problem.corner_weights) < 1e-3) break;
     problem.corner_weights = std::move(weights);
     state = minimise_reprojection(observations, state, problem);

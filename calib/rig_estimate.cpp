@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/error.h"
+#include "calib/held_parameters.h"
 
 namespace vernier {
 namespace {

@@ -66,12 +66,11 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
 /// Where the estimate has no covariance none is. A rig file lists the others.
 std::vector<bool> held_parameters(const RigEstimate& estimate);
 
+/// The covariance over the parameters that are not held. Throws Error(`place`) where there is none.
+RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place);
+
 /// Names the cameras otherwise, one name a camera, wherever the estimate says them: the covariance
 /// and the held parameters too. Throws Error where they are too few or many, or not different.
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names);
-
-/// What the estimate says about its free parameters, as a prior for another calibration. Throws
-/// Error(`place`) where it has no covariance.
-RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place);
 
 }  // namespace vernier

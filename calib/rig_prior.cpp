@@ -32,6 +32,12 @@ std::vector<Eigen::Index> places_of(const std::vector<std::string>& names, const
   return places;
 }
 
+std::vector<bool> all_but(const std::vector<Eigen::Index>& places, const Rig& rig) {
+  std::vector<bool> others(static_cast<std::size_t>(parameter_count(rig)), true);
+  for (const Eigen::Index i : places) others[static_cast<std::size_t>(i)] = false;
+  return others;
+}
+
 /// Inverse of a covariance, scaled before it is factored.
 Eigen::MatrixXd inverse_of(const Covariance& covariance) {
   const ScaledDecomposition decomposition(covariance);  // says what is wrong with it
@@ -66,14 +72,21 @@ RigPrior prior_at(const Rig& like,
   const std::vector<Eigen::Index> places = places_of(covariance.names, like);
   const Eigen::MatrixXd P = inverse_of(covariance);
   RigPrior prior{with_held_values(like, values), {}};
-  std::vector<bool> unnamed(static_cast<std::size_t>(parameter_count(like)), true);
-  for (const Eigen::Index i : places) unnamed[static_cast<std::size_t>(i)] = false;
-  const Eigen::MatrixXd K = values_by_tangent(prior.mean, unnamed)(places, Eigen::all);
+  const Eigen::MatrixXd K =
+      values_by_tangent(prior.mean, all_but(places, like))(places, Eigen::all);
   prior.information = K.transpose() * (0.5 * (P + P.transpose())) * K;
   return prior;
 }
 
 }  // namespace
+
+Covariance whole_covariance(const RigKnowledge& known) {
+  const std::vector<Eigen::Index> places = places_of(known.covariance.names, known.rig);
+  const Eigen::MatrixXd E =
+      tangent_by_values(known.rig, all_but(places, known.rig))(Eigen::all, places);
+  return {known.covariance.kind, parameter_names(known.rig),
+          E * known.covariance.matrix * E.transpose()};
+}
 
 RigPrior rig_prior(const Rig& like, const RigKnowledge& known) {
   const std::vector<Eigen::Index> places = places_of(known.covariance.names, known.rig);

@@ -26,6 +26,9 @@ struct RigKnowledge {
   Covariance covariance;
 };
 
+/// Its covariance over all parameters of its rig, in the tangent: zero along what it does not name.
+Covariance whole_covariance(const RigKnowledge& known);
+
 /// The same as a prior for a rig like `like`, whose models may be others (the named parameters
 /// must be there). Throws Error where the covariance is not symmetric or not positive
 /// semi-definite, naming the direction, and where it is singular: a direction known exactly is to

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/board_observations.h"
+#include "calib/board_pose.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
@@ -44,6 +45,24 @@ TEST(SimulatedBoard, NoiseDiffersByTrialAndPosesDoNot) {
   const SimulatedBoard a = simulate_board(rig, {}, 5, 0), b = simulate_board(rig, {}, 5, 1);
   EXPECT_EQ(a.truth.T_first_board[3].t, b.truth.T_first_board[3].t);
   EXPECT_NE(a.observations.views[3].pixels_px[0], b.observations.views[3].pixels_px[0]);
+}
+
+TEST_F(BadBoard, CornersWithoutAPoseAreAnError) {
+  const Camera camera = test::stereo_rig().cameras[0];
+  BoardView view = good_.views[0];
+  view.ids.resize(3);
+  view.pixels_px.resize(3);
+  EXPECT_EQ(test::error_message([&] { board_pose(good_.target_m, view, camera); }),
+            "frame 0, camera 0: no pose fits its corners; leave the view out");
+}
+
+TEST(EvenlySpaced, AreAsManyAsWantedAndTheFirstIsOneOfThem) {
+  const std::vector<int> frames{2, 3, 5, 7, 11, 13, 17};
+  EXPECT_EQ(evenly_spaced(frames, 3), (std::vector<int>{2, 5, 11}));
+  EXPECT_EQ(evenly_spaced(frames, 6), (std::vector<int>{2, 3, 5, 7, 11, 13}));
+  EXPECT_EQ(evenly_spaced(frames, 7), frames);
+  EXPECT_EQ(evenly_spaced(frames, 100), frames);
+  EXPECT_TRUE(evenly_spaced(frames, 0).empty());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "calib/error.h"
 #include "calib/joint_information.h"
+#include "calib/scaled_root.h"
 #include "calib/simulated_board.h"
 #include "calib/view_linearisation.h"
 #include "tests/support/error_message.h"
@@ -148,6 +149,31 @@ TEST(NormalEquations, ARowOfCornersFixesNoPose) {
               expected)
         << seed;
   }
+}
+
+// Rank two of four, in units twelve powers of ten apart, one row without variance.
+TEST(ScaledRoot, IsARootAndItsPseudoInverse) {
+  Eigen::MatrixXd half(4, 2);
+  half << 1e3, -2e3, 3e-3, 1e-3, 0, 0, -2e-9, 4e-9;
+  const Eigen::MatrixXd A = half * half.transpose();
+  const ScaledRoot found(A);
+  ASSERT_EQ(found.root.cols(), 2);
+  EXPECT_LT((found.white * found.root - Eigen::Matrix2d::Identity()).norm(), 1e-12);
+  const Eigen::VectorXd sd = half.rowwise().norm();
+  for (const Eigen::Index i : {0, 1, 3}) {
+    for (const Eigen::Index k : {0, 1, 3}) {
+      EXPECT_NEAR((found.root * found.root.transpose())(i, k) / (sd[i] * sd[k]),
+                  A(i, k) / (sd[i] * sd[k]), 1e-12);
+    }
+  }
+  EXPECT_TRUE(found.root.row(2).isZero(0));
+}
+
+TEST(ScaledEigen, KeepsTheOrderOfEqualDirections) {
+  const Eigen::Vector3d variances(4, 9, 1e-4);
+  const ScaledEigen eigen(variances.asDiagonal().toDenseMatrix());
+  EXPECT_LT((eigen.directions.cwiseAbs() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+  EXPECT_EQ(eigen.deviations, Eigen::Vector3d(2, 3, 1e-2));
 }
 
 }  // namespace

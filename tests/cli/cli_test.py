@@ -640,6 +640,49 @@ class Doubt(Case):
         self.assertTrue((self.folder / 'rig.json').exists())
 
 
+class HeldInPart(Case):
+    """A component of a rotation that is held, through files and into a prior."""
+
+    def calibrate(self, lines, output, *more):
+        (self.folder / 'o.csv').write_text('\n'.join(lines))
+        self.works('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
+                   '--no-model-check', '-o', self.folder / output, *more)
+        return json.loads((self.folder / output).read_text())
+
+    def test_a_held_component_is_not_listed_and_the_file_is_a_prior(self):
+        header, *lines = board_lines(frames=16)
+        halves = [[header] + [line for line in lines if int(line.split(',')[0]) % 2 == half]
+                  for half in range(2)]
+        first = self.calibrate(halves[0], 'a.json', '--hold', 'right.wy_rad')
+        self.assertEqual(len(first['parameter_names']), 15)
+        self.assertNotIn('right.wy_rad', first['parameter_names'])
+        self.assertEqual(len(first['covariance']['matrix']), 15)
+        value = first['cameras'][1]['from_first']['rotation_rad'][1]
+        both = self.calibrate(halves[1], 'b.json', '--hold', f'right.wy_rad={value}',
+                              '--prior', self.folder / 'a.json')
+        self.assertEqual(both['parameter_names'], first['parameter_names'])
+        self.assertEqual(both['calibration']['prior_dof'], 15)
+        for i in range(15):  # twice the views; their noise is estimated anew
+            self.assertLess(both['covariance_mvb']['matrix'][i][i],
+                            0.9 * first['covariance_mvb']['matrix'][i][i])
+
+
+class ModelCheck(Case):
+    def test_a_camera_without_views_among_those_compared_ends_in_a_warning(self):
+        """Of 70 frames 60 are compared, and none of those that the right camera saw."""
+        header, *lines = board_lines(frames=70)
+        seen = [line for line in lines
+                if line.split(',')[1] == '0' or line.split(',')[0] in ('6', '13', '20')]
+        (self.folder / 'o.csv').write_text('\n'.join([header] + seen))
+        done = self.works('calibrate', '--observations', self.folder / 'o.csv', '--size',
+                          '640x480', '-o', self.folder / 'rig.json')
+        words = ('models were not compared: with some views left out, camera 1 ("right"): no view '
+                 'of the board is left of it')
+        self.assertIn(words, done.stderr)
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertTrue(any(w.startswith(words) for w in rig['calibration']['warnings']))
+
+
 class Check(Case):
     """The shipped rig holds its corners; mrcal may be absent, in whole or in part."""
 
@@ -672,6 +715,15 @@ class Check(Case):
             self.skipTest(mrcal['projection_reason'])
         self.assertLessEqual(mrcal['max_projection_covariance_diff'], 1e-6)
         self.assertLessEqual(mrcal['max_triangulation_covariance_diff'], 1e-6)
+
+    def test_boards_left_out_are_counted(self):
+        done = self.works('check', 'nominal', '--trials', '40', '--no-mrcal', '--holdout',
+                          '--splits', '3', '--json')
+        found = json.loads(done.stdout)['holdout']
+        self.assertEqual(found['splits'], 3)
+        self.assertGreater(found['boards'], 0)
+        self.assertEqual(found['boards_left_out'], 0)
+        self.assertEqual(found['corners_left_out'], 0)
 
     def test_noisy_copies_without_mrcal(self):
         words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--json', '--threads')

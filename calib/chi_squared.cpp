@@ -47,6 +47,32 @@ double upper_by_fraction(double a, double x) {
   }
 }
 
+/// Regularised incomplete beta function I_x(a, b).
+double incomplete_beta(double x, double a, double b) {
+  if (x <= 0) return 0;
+  if (x >= 1) return 1;
+  if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(1 - x, b, a);
+  constexpr double tiny = 1e-300;
+  double C = 1, D = 1 - (a + b) * x / (a + 1);
+  D = 1 / (std::abs(D) < tiny ? tiny : D);
+  double fraction = D;
+  for (int m = 1; m < 10000; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+    for (const double d : {even, odd}) {
+      D = 1 + d * D;
+      D = 1 / (std::abs(D) < tiny ? tiny : D);
+      C = 1 + d / C;
+      if (std::abs(C) < tiny) C = tiny;
+      fraction *= C * D;
+    }
+    if (std::abs(C * D - 1) < 1e-15) break;
+  }
+  return std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) +
+                  b * std::log1p(-x)) *
+         fraction / a;
+}
+
 }  // namespace
 
 double chi_squared_survival(double x, double dof) {
@@ -58,6 +84,15 @@ double chi_squared_survival(double x, double dof) {
   if (std::isinf(x)) return 0;
   const double a = 0.5 * dof, half = 0.5 * x;
   return half < a + 1 ? 1 - lower_by_series(a, half) : upper_by_fraction(a, half);
+}
+
+double fisher_survival(double x, double d1, double d2) {
+  if (!(d1 > 0 && d2 > 0) || std::isnan(x)) {
+    throw Error("F distribution", "its degrees of freedom must be above 0 and x a number", "");
+  }
+  if (x <= 0) return 1;
+  if (std::isinf(x)) return 0;
+  return incomplete_beta(d2 / (d2 + d1 * x), 0.5 * d2, 0.5 * d1);
 }
 
 }  // namespace vernier

@@ -14,4 +14,10 @@ namespace vernier {
 /// for infinite x. Throws Error unless dof > 0 and x is a number.
 double chi_squared_survival(double x, double dof);
 
+/// Probability that a variable of Fisher's F distribution with d1 and d2 degrees of freedom exceeds
+/// x, by the regularised incomplete beta function (continued fraction by Lentz's recursion;
+/// Abramowitz and Stegun, Eqs. 26.5.8 and 26.6.2). Throws Error unless d1, d2 > 0 and x is a
+/// number.
+double fisher_survival(double x, double d1, double d2);
+
 }  // namespace vernier

@@ -8,9 +8,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
 #include <optional>
 
+#include "calib/bent_plane.h"
 #include "calib/error.h"
 
 namespace vernier {
@@ -45,10 +45,11 @@ std::optional<double> before_infinity_px(const Rig& rig, const Eigen::Vector4d& 
   return (y.tail<2>() - far->pixel_px).dot(far->nearer);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double quantile(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImagePair& image) {
@@ -60,17 +61,18 @@ std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImageP
   return some;
 }
 
-/// Median distance before infinity; nothing where most pairs have none.
-std::optional<double> median_before_px(const Rig& rig, const std::vector<Eigen::Vector4d>& some) {
+/// Lower quartile of the distances before infinity; nothing where most pairs have none. The offset
+/// that a rough rig adds is common to all corners, so near ones show it best whose side is wrong.
+std::optional<double> quartile_before_px(const Rig& rig, const std::vector<Eigen::Vector4d>& some) {
   std::vector<double> before;
   for (const Eigen::Vector4d& y : some) {
     if (const auto b = before_infinity_px(rig, y)) before.push_back(*b);
   }
   if (2 * before.size() <= some.size()) return std::nullopt;
-  return median(std::move(before));
+  return quantile(std::move(before), 0.25);
 }
 
-/// Standard deviation of that median as far as the rig decides it, by central differences.
+/// Standard deviation of that quartile as far as the rig decides it, by central differences.
 double sigma_before_px(const Rig& rig,
                        const Eigen::MatrixXd& covariance,
                        const std::vector<Eigen::Vector4d>& some) {
@@ -79,8 +81,8 @@ double sigma_before_px(const Rig& rig,
   for (Eigen::Index i = 0; i < p; ++i) {
     const double h = 1e-3 * std::sqrt(covariance(i, i));
     if (!(h > 0)) continue;
-    const auto up = median_before_px(retract(rig, h * Eigen::VectorXd::Unit(p, i)), some);
-    const auto down = median_before_px(retract(rig, -h * Eigen::VectorXd::Unit(p, i)), some);
+    const auto up = quartile_before_px(retract(rig, h * Eigen::VectorXd::Unit(p, i)), some);
+    const auto down = quartile_before_px(retract(rig, -h * Eigen::VectorXd::Unit(p, i)), some);
     if (up && down) gradient[i] = (*up - *down) / (2 * h);
   }
   return std::sqrt(gradient.dot(covariance * gradient));
@@ -89,31 +91,23 @@ double sigma_before_px(const Rig& rig,
 bool swapped(const Rig& rig,
              const Eigen::MatrixXd& covariance,
              const std::vector<Eigen::Vector4d>& some) {
-  const auto before = median_before_px(rig, some);
+  const auto before = quartile_before_px(rig, some);
   if (!before || *before > 0) return false;
+  const double limit = 3 * sigma_before_px(rig, covariance, some);
+  if (*before > -limit) return false;
   std::vector<Eigen::Vector4d> other;
   for (const Eigen::Vector4d& y : some) {
     other.emplace_back();
     other.back() << y.tail<2>(), y.head<2>();
   }
-  const auto exchanged_before = median_before_px(rig, other);
-  if (!exchanged_before || *exchanged_before < 0) return false;
-  return -*before > 4 * sigma_before_px(rig, covariance, some);
+  const auto exchanged_before = quartile_before_px(rig, other);
+  return exchanged_before && *exchanged_before > -limit;
 }
 
-double median_transfer_px(const cv::Mat& H,
-                          const std::vector<cv::Point2d>& left,
-                          const std::vector<cv::Point2d>& right) {
-  std::vector<cv::Point2d> moved;
-  cv::perspectiveTransform(left, moved, H);
-  std::vector<double> distances;
-  for (std::size_t i = 0; i < moved.size(); ++i) distances.push_back(cv::norm(moved[i] - right[i]));
-  return median(std::move(distances));
-}
-
-/// Whether a homography explains nearly all pairs within their noise.
+/// Whether a plane explains nearly all pairs within their noise. A rough rig's lenses bend it, in
+/// directions that pairs of a plane cannot see, so both are let bend by an r² of their own.
 bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig& rig) {
-  std::vector<cv::Point2d> left, right;
+  std::vector<PointPair> points;
   const double f = rig.cameras[1].f_px();
   double sigma = 0;
   const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
@@ -121,19 +115,12 @@ bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig
     const auto l = try_unproject(rig.cameras[0], pairs.pixels_px[i].head<2>());
     const auto r = try_unproject(rig.cameras[1], pairs.pixels_px[i].tail<2>());
     if (!l || !r) continue;
-    left.emplace_back(f * l->x(), f * l->y());
-    right.emplace_back(f * r->x(), f * r->y());
+    points.push_back({l->head<2>(), r->head<2>()});
     sigma = std::max(sigma, pairs.sigma_of(i));
   }
-  if (left.size() < fewest_pairs) return false;
+  if (points.size() < fewest_pairs) return false;
   // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
-  const double limit = 4 * std::sqrt(2.0) * sigma;
-  // A scene with depth shows in the plain fit, which saves the robust one.
-  const cv::Mat rough = cv::findHomography(left, right, 0);
-  if (rough.empty() || median_transfer_px(rough, left, right) > 3 * limit) return false;
-  cv::Mat inside;
-  const cv::Mat H = cv::findHomography(left, right, cv::RANSAC, limit, inside);
-  return !H.empty() && cv::countNonZero(inside) >= 0.95 * static_cast<double>(left.size());
+  return share_on_bent_plane(points, 4 * std::sqrt(2.0) * sigma / f) >= 0.95;
 }
 
 void check_rays(const PairObservations& pairs, const Rig& rig, const std::string& place) {
@@ -154,27 +141,34 @@ void check_rays(const PairObservations& pairs, const Rig& rig, const std::string
 
 }  // namespace
 
-ObservationDiagnosis check_scene(const PairObservations& pairs,
-                                 const Rig& rig,
-                                 const Eigen::MatrixXd& covariance,
-                                 const std::string& place) {
+void check_sides(const PairObservations& pairs,
+                 const Rig& rig,
+                 const Eigen::MatrixXd& covariance,
+                 const std::string& place) {
   check_rays(pairs, rig, place);
   std::vector<int> exchanged_pairs;
-  std::size_t judged = 0, flat = 0;
+  std::size_t judged = 0;
   for (const ImagePair& image : pairs.image_pairs) {
     if (image.count < fewest_pairs) continue;
     ++judged;
     if (swapped(rig, covariance, some_of(pairs, image))) exchanged_pairs.push_back(image.number);
-    flat += on_a_plane(pairs, image, rig);
   }
-  if (!exchanged_pairs.empty()) {
-    const bool all = exchanged_pairs.size() == judged;
-    throw Error(place.empty() ? "pairs" : place,
-                all ? "left and right are swapped: the corners lie behind the rig"
-                    : fmt::format("left and right are swapped in image pairs {}: their corners "
-                                  "lie behind the rig",
-                                  fmt::join(exchanged_pairs, ", ")),
-                "exchange the images, or the cameras of the prior");
+  if (exchanged_pairs.empty()) return;
+  throw Error(place.empty() ? "pairs" : place,
+              exchanged_pairs.size() == judged
+                  ? "left and right are swapped: the corners lie behind the rig"
+                  : fmt::format("left and right are swapped in image pairs {}: their corners lie "
+                                "behind the rig",
+                                fmt::join(exchanged_pairs, ", ")),
+              "exchange the images, or the cameras of the prior");
+}
+
+ObservationDiagnosis check_scene(const PairObservations& pairs, const Rig& rig) {
+  std::size_t judged = 0, flat = 0;
+  for (const ImagePair& image : pairs.image_pairs) {
+    if (image.count < fewest_pairs) continue;
+    ++judged;
+    flat += on_a_plane(pairs, image, rig);
   }
   ObservationDiagnosis said;
   if (judged > 0 && flat == judged) {

@@ -8,18 +8,19 @@
 namespace vernier {
 
 /// Looks at matched pairs with a rough rig in hand before they are solved; `covariance` says how
-/// rough, over all parameters of the rig (calib/rig.h).
-///
-/// Throws Error where most pairs of an image pair lie behind the rig by more than four of the
-/// standard deviations that the rig allows them, and before it once left and right are exchanged;
-/// names the image pairs. Throws Error where a pixel has no ray in the rough rig.
-///
-/// Doubts: the corners of every image pair lie on one plane, or farther than parallax can tell (a
-/// homography explains 95 % of them within their noise), which leaves more directions unseen
-/// (unseen_directions, calib/observability.h). Warnings: most image pairs do.
-ObservationDiagnosis check_scene(const PairObservations& pairs,
-                                 const Rig& rig,
-                                 const Eigen::MatrixXd& covariance,
-                                 const std::string& place = "");
+/// rough, over all parameters of the rig (calib/rig.h). Throws Error where a quarter of an image
+/// pair's corners lie behind the rig by more than three of the standard deviations that the rig
+/// allows them, and do not once left and right are exchanged; names the image pairs. Throws Error
+/// where a pixel has no ray in the rough rig.
+void check_sides(const PairObservations& pairs,
+                 const Rig& rig,
+                 const Eigen::MatrixXd& covariance,
+                 const std::string& place = "");
+
+/// Looks at the scene with the solved rig. Doubts: the corners of every image pair lie on one
+/// plane, or farther than parallax can tell (a homography explains 95 % of them within their
+/// noise), which leaves more directions unseen (unseen_directions, calib/observability.h).
+/// Warnings: most image pairs do.
+ObservationDiagnosis check_scene(const PairObservations& pairs, const Rig& rig);
 
 }  // namespace vernier

@@ -15,7 +15,8 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                                const std::vector<std::string>& names,
                                const Eigen::MatrixXd& prior,
                                const Eigen::MatrixXd& bound,
-                               const Eigen::MatrixXd& honest) {
+                               const Eigen::MatrixXd& honest,
+                               int clusters) {
   constexpr double least_share = 0.05;
   const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
   const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
@@ -49,7 +50,11 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
     agreement.in_sigma = std::abs(z);
     agreement.words = describe_direction((root * eigen.eigenvectors().col(i)).normalized(), names);
   }
-  if (agreement.dof > 0) agreement.p_value = chi_squared_survival(agreement.chi2, agreement.dof);
+  if (agreement.dof > 0) {
+    agreement.p_value =
+        clusters > 1 ? fisher_survival(agreement.chi2 / agreement.dof, agreement.dof, clusters - 1)
+                     : chi_squared_survival(agreement.chi2, agreement.dof);
+  }
   return agreement;
 }
 

@@ -26,13 +26,16 @@ struct PriorAgreement {
 ///
 /// (the estimate is the prior's mean moved by C_mvb times the score of the data there, whose noise
 /// has the scatter B). χ² is of δ over the eigenvectors of C_0^(-1/2) D C_0^(-1/2) with eigenvalues
-/// above 0.05, that is where the data say something. Bar-Shalom, Li and Kirubarajan, "Estimation
+/// above 0.05, that is where the data say something. Where B was estimated from `clusters` of data
+/// (0: it is known), χ² over its degrees of freedom is referred to Fisher's F with clusters − 1
+/// below, as of a variance with that many. Bar-Shalom, Li and Kirubarajan, "Estimation
 /// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the
 /// normalised innovation squared. Throws Error where C_0 is singular.
 PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                                const std::vector<std::string>& names,
                                const Eigen::MatrixXd& prior,
                                const Eigen::MatrixXd& bound,
-                               const Eigen::MatrixXd& honest);
+                               const Eigen::MatrixXd& honest,
+                               int clusters = 0);
 
 }  // namespace vernier

@@ -280,14 +280,7 @@ void require_finite(const Json& json, const std::string& place) {
 Json prior_json(const RigKnowledge& prior) {
   RigEstimate estimate;
   estimate.rig = prior.rig;
-  std::vector<bool> held;
-  for (const std::string& name : parameter_names(prior.rig)) {
-    const std::vector<std::string>& known = prior.covariance.names;
-    held.push_back(std::find(known.begin(), known.end(), name) == known.end());
-  }
-  const Eigen::MatrixXd E = free_directions(prior.rig, held);
-  estimate.covariance = Covariance{prior.covariance.kind, parameter_names(prior.rig),
-                                   E * prior.covariance.matrix * E.transpose()};
+  estimate.covariance = whole_covariance(prior);
   return Json::parse(format_rig(estimate, KeepEvidence::no));
 }
 

@@ -179,11 +179,8 @@ void run(const Options& options, Session& session) {
     const FilteredRig filtered = information_filter(inputs, combination, how);
     say_filter(filtered, json, tail);
     estimate.rig = filtered.rig;
-    const std::vector<bool> held =
-        held_mask(filtered.rig, held_by({filtered.rig, filtered.covariance}));
-    const Eigen::MatrixXd E = free_directions(filtered.rig, held);
-    estimate.covariance = Covariance{CovarianceKind::combined, parameter_names(filtered.rig),
-                                     E * filtered.covariance.matrix * E.transpose()};
+    estimate.covariance = whole_covariance({filtered.rig, filtered.covariance});
+    estimate.covariance->kind = CovarianceKind::combined;
     estimate.covariance_mvb = estimate.covariance->matrix;
     estimate.evidence.reset();
   }

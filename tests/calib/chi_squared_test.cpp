@@ -55,5 +55,19 @@ TEST(ChiSquared, RefusesWhatIsNoNumber) {
             std::string::npos);
 }
 
+TEST(Fisher, SurvivalIsThatOfTheTables) {
+  // Upper 5 % and 1 % points (Pearson and Hartley, Biometrika Tables, Table 18).
+  EXPECT_NEAR(fisher_survival(4.9646, 1, 10), 0.05, 2e-6);
+  EXPECT_NEAR(fisher_survival(3.3258, 5, 10), 0.05, 1e-5);
+  EXPECT_NEAR(fisher_survival(5.6363, 5, 10), 0.01, 1e-5);
+  EXPECT_NEAR(fisher_survival(2.2033, 15, 20), 0.05, 1e-5);
+  // An F of one degree above is Student's t squared; of many below, χ².
+  EXPECT_NEAR(fisher_survival(2.0 * 2.0, 1, 1), 2 * (0.5 - std::atan(2.0) / std::acos(-1.0)),
+              1e-12);
+  EXPECT_NEAR(fisher_survival(1.5, 12, 1e7), chi_squared_survival(18, 12), 1e-6);
+  EXPECT_EQ(fisher_survival(0, 3, 4), 1);
+  EXPECT_EQ(fisher_survival(std::numeric_limits<double>::infinity(), 3, 4), 0);
+}
+
 }  // namespace
 }  // namespace vernier

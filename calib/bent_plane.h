@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace vernier {
+
+/// The normalised points of one corner in two images.
+struct PointPair {
+  Eigen::Vector2d left, right;
+};
+
+/// The share of points that one plane explains within `limit` (normalised units, in the right
+/// image), where each image may be bent by x (1 + c r²) besides: a homography, fitted robustly,
+/// then with the two c by least squares over what is near it. 0 where there is no homography.
+double share_on_bent_plane(const std::vector<PointPair>& points, double limit);
+
+}  // namespace vernier

@@ -64,9 +64,9 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
                                    const JointOptions& options = {});
 
 /// The calibration of a pair of cameras from matched corners of any scene and what was known
-/// before, with its input looked at first (check_pairs, check_sides, check_scene); starts at the prior's rig. A
-/// parameter that the prior does not name is known exactly. `place` names the pairs in messages.
-/// Throws Error where there are fewer pairs than free parameters.
+/// before, with its input looked at first (check_pairs, check_sides, check_scene); starts at the
+/// prior's rig. A parameter that the prior does not name is known exactly. `place` names the pairs
+/// in messages. Throws Error where there are fewer pairs than free parameters.
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const RigKnowledge& prior,
                                       const JointOptions& options = {},

@@ -67,9 +67,10 @@ TEST(PairsOfRealImages, VerticalDisparityFallsToTheBoardsLevelAndDepthStaysThePr
       detect_images({left, right}, Chessboard{9, 6, 0.025}).observations;
   const RigEstimate board = calibrate(corners, {.model = OpenCv4{}});
   const PairObservations judges = board_pairs(board.evidence->observations);
-  // Signs in turn: most of a standard deviation away in every parameter but the baseline's length.
+  // Most of a standard deviation away in every parameter but the baseline's length.
   Eigen::VectorXd offset(22);
-  for (Eigen::Index i = 0; i < 22; ++i) offset[i] = (i % 2 ? 0.7 : -0.7) * (i == 19 ? 0 : 1);
+  for (Eigen::Index i = 0; i < 22; ++i)
+    offset[i] = (7 * i % 5 < 2 ? 0.7 : -0.7) * (i == 19 ? 0 : 1);
   const RigKnowledge prior = wide_prior(board.rig, offset);
   RigEstimate wide;
   wide.rig = prior.rig;
@@ -90,8 +91,8 @@ TEST(PairsOfRealImages, VerticalDisparityFallsToTheBoardsLevelAndDepthStaysThePr
   RecordProperty("baseline_sd_mm",
                  std::to_string(1e3 * found.observability->baseline_sd_before_m) + " before, " +
                      std::to_string(1e3 * found.observability->baseline_sd_after_m));
-  EXPECT_GT(before, 5);
-  EXPECT_LT(after, 1.5 * boards);  // corners that the board calibration was fitted to
+  EXPECT_GT(before, 3);
+  EXPECT_LT(after, 1.2 * boards);  // corners that the board calibration was fitted to
   EXPECT_NEAR(found.observability->scale_information_ratio, 1, 1e-3);
   EXPECT_NEAR(found.observability->baseline_sd_after_m / found.observability->baseline_sd_before_m,
               1, 1e-3);

@@ -33,6 +33,11 @@ step "calibrate them again, five distortion parameters a camera"
 $vernier calibrate "${images[@]}" --model opencv5 -o "$out/rig_opencv5.json"
 step "sample 1000 rigs from the first calibration's covariance"
 $vernier sample "$out/rig.json" --psi-c 1 -n 1000 --seed 1 -o "$out/samples.csv"
+step "calibrate again without a board: matched corners of the scene and a datasheet"
+$vernier match "${images[@]:0:4}" --prior docs/examples/datasheet.json --nearest-m 0.3 \
+  -o "$out/pairs.csv"
+$vernier calibrate --pairs "$out/pairs.csv" --prior docs/examples/datasheet.json \
+  -o "$out/rig_scene.json"
 step "the world"
 $vernier world info workshop
 step "what the nominal rig sees from one place in it"

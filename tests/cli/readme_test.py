@@ -36,7 +36,7 @@ def main():
         return
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / 'study.toml').write_text(block(text, 'toml', 'study'))
-        environment = dict(os.environ, IMAGES=IMAGES,
+        environment = dict(os.environ, IMAGES=IMAGES, EXAMPLES=str(ROOT / "docs/examples"),
                            PATH=f'{os.path.dirname(program)}:{os.environ["PATH"]}')
         subprocess.run(['bash', '-euo', 'pipefail', '-c', block(text, 'sh', 'run')], cwd=folder,
                        env=environment, check=True)

@@ -71,7 +71,14 @@ PriorAgreement agreement_of_pairs(const RigKnowledge& before,
                                   const PairObservations& pairs,
                                   const CombineInput& input,
                                   const JointOptions& options) {
-  const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
+  JointOptions how = options;
+  if (how.pair_sigma_scale == 0) {
+    // Against a prior ten times as wide: pairs that disagree must not pass for noisy ones.
+    RigKnowledge loose = before;
+    loose.covariance.matrix *= 100;
+    how.pair_sigma_scale = calibrate_from_pairs(pairs, loose, options, input.name).pair_sigma_scale;
+  }
+  const JointCalibration with = calibrate_from_pairs(pairs, before, how, input.name);
   return agreement_with(before, with.estimate);
 }
 

@@ -103,18 +103,15 @@ struct Geometry {
 struct PackLoss {
   Pack cost, weight;
 };
-HWY_INLINE PackLoss loss_of(const Loss& loss, Weighting weighting, Pack r) {
+HWY_INLINE PackLoss loss_of(const Loss& loss, Pack r) {
   const Pack one(1.0), c(loss.limit), gain(loss.gain), r2 = r * r, zero(0.0);
   if (loss.shape == LossShape::square) return {gain * r2, gain};
   if (loss.shape == LossShape::huber) {
-    const Pack a = magnitude(r), inside = at_most(a, c), w = at_most(one, c / a);
-    const Pack curvature(hn::IfThenElseZero(hn::Lt(a.lanes, c.lanes), one.lanes));
-    return {gain * inside * (a + a - inside),
-            gain * (weighting == Weighting::weight ? w : curvature)};
+    const Pack a = magnitude(r), inside = at_most(a, c);
+    return {gain * inside * (a + a - inside), gain * at_most(one, c / a)};
   }
-  const Pack share = r2 / (c * c), t = at_least(zero, one - share);
-  const Pack cost = c * c * Pack(1.0 / 3.0) * (one - t * t * t);
-  return {gain * cost, gain * t * (weighting == Weighting::weight ? t : one - Pack(5.0) * share)};
+  const Pack t = at_least(zero, one - r2 / (c * c));
+  return {gain * c * c * Pack(1.0 / 3.0) * (one - t * t * t), gain * t * t};
 }
 
 constexpr int tile = 4;           // columns of a square of sums
@@ -143,7 +140,6 @@ double sum_pairs(const EpipolarView& view,
                  const Lanes* packed,
                  std::size_t eights,
                  const Loss& loss,
-                 Weighting weighting,
                  double* sums) {
   const Geometry geometry(view);
   const int columns = epipolar_columns(view), stride = (columns + tile - 1) / tile * tile;
@@ -162,7 +158,7 @@ double sum_pairs(const EpipolarView& view,
         Pack* const row = rows + k * stride;
         const Pack r = geometry.row(
             packed + (first + static_cast<std::size_t>(k)) * packed_pair_lanes, lane, row);
-        const PackLoss of = loss_of(loss, weighting, r);
+        const PackLoss of = loss_of(loss, r);
         total = total + of.cost;
         for (int i = 0; i < columns; ++i) weighted[k * stride + i] = of.weight * row[i];
       }
@@ -235,9 +231,8 @@ double sum_pairs(const EpipolarView& view,
                  const Lanes* packed,
                  std::size_t eights,
                  const Loss& loss,
-                 Weighting weighting,
                  double* sums) {
-  return HWY_DYNAMIC_DISPATCH(sum_pairs)(view, packed, eights, loss, weighting, sums);
+  return HWY_DYNAMIC_DISPATCH(sum_pairs)(view, packed, eights, loss, sums);
 }
 
 void pair_residuals(const EpipolarView& view,

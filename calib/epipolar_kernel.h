@@ -27,18 +27,13 @@ inline int epipolar_columns(const EpipolarView& view) {
   return parameter_count(view.models[0]) + parameter_count(view.models[1]) + 7;
 }
 
-/// What multiplies the products of rows: ρ'/2r, or ρ''/2 for the matrix of second derivatives
-/// of the cost (the residual's own curvature left out).
-enum class Weighting { weight, curvature };
-
-/// Adds Σ w [J r]ᵀ [J r] over `eights` x 8 pairs to `sums`, packed upper triangle of
+/// Adds Σ w [J r]ᵀ [J r], w = ρ'/2r, over `eights` x 8 pairs to `sums`, packed upper triangle of
 /// epipolar_columns(), and returns Σ ρ(r). Lane by lane, so that sums do not depend on the width
 /// of the registers.
 double sum_pairs(const EpipolarView& view,
                  const Lanes* packed,
                  std::size_t eights,
                  const Loss& loss,
-                 Weighting weighting,
                  double* sums);
 
 /// The residuals r alone, `eights` x 8 of them. Not a number where a pixel's ray is beyond the

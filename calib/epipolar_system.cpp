@@ -8,11 +8,10 @@ EpipolarSums scaled_sums(const PackedPairs& packed,
                          const PackedPairs::Group* group,
                          const Rig& rig,
                          Loss loss,
-                         double scale,
-                         Weighting weighting) {
+                         double scale) {
   loss.limit *= scale;
-  EpipolarSums sums = group ? epipolar_sums(packed, *group, rig, loss, weighting)
-                            : epipolar_sums(packed, rig, loss, weighting);
+  EpipolarSums sums =
+      group ? epipolar_sums(packed, *group, rig, loss) : epipolar_sums(packed, rig, loss);
   const double by = 1 / (scale * scale);
   sums.information *= by;
   sums.gradient *= by;
@@ -23,10 +22,8 @@ EpipolarSums scaled_sums(const PackedPairs& packed,
 EpipolarSystem epipolar_system(const PackedPairs& packed,
                                const Rig& rig,
                                const EpipolarProblem& problem,
-                               const Eigen::MatrixXd& E,
-                               Weighting weighting) {
-  EpipolarSums sums =
-      scaled_sums(packed, nullptr, rig, problem.loss, problem.sigma_scale, weighting);
+                               const Eigen::MatrixXd& E) {
+  EpipolarSums sums = scaled_sums(packed, nullptr, rig, problem.loss, problem.sigma_scale);
   EpipolarSystem system;
   system.cost = sums.cost;
   for (const RigPrior& prior : problem.priors) {

@@ -16,15 +16,13 @@ struct EpipolarSystem {
 EpipolarSystem epipolar_system(const PackedPairs& packed,
                                const Rig& rig,
                                const EpipolarProblem& problem,
-                               const Eigen::MatrixXd& E,
-                               Weighting weighting = Weighting::weight);
+                               const Eigen::MatrixXd& E);
 
 /// Sums with every residual divided by `scale`, and the loss's limit in those units.
 EpipolarSums scaled_sums(const PackedPairs& packed,
                          const PackedPairs::Group* group,
                          const Rig& rig,
                          Loss loss,
-                         double scale,
-                         Weighting weighting);
+                         double scale);
 
 }  // namespace vernier

@@ -108,7 +108,11 @@ ReducedNormalEquations data_equations(const Joint& joint,
                                       const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss) {
-  ReducedNormalEquations sum;
+  const int p = parameter_count(joint.state.rig);
+  ReducedNormalEquations sum;  // of nothing
+  sum.information = Eigen::MatrixXd::Zero(p, p);
+  sum.held_poses_diagonal = Eigen::VectorXd::Zero(p);
+  sum.scores = Eigen::MatrixXd::Zero(p, 0);
   for (std::size_t b = 0; b < evidence.boards.size(); ++b) {
     const BoardTerm& term = evidence.boards[b];
     add_equations(sum,
@@ -180,7 +184,7 @@ CalibrationSummary summary_of(const Joint& joint,
   if (n > 0) {
     summary.pixel_sigma_px = sigma / n;
     summary.rms_px = std::sqrt(squares_px / n);
-  } else {
+  } else if (!evidence.boards.empty()) {
     summary.pixel_sigma_px = evidence.boards.front().pixel_sigma_px;
     summary.rms_px = summary.pixel_sigma_px * std::sqrt(plain.chi2 / plain.residuals);
   }
@@ -202,6 +206,7 @@ CalibrationSummary summary_of(const Joint& joint,
 void warn(const JointCalibration& joint,
           std::size_t pairs,
           double fixed_scale,
+          bool white_noise,
           CalibrationSummary& summary) {
   const std::size_t out = summary.pair_outliers.size();
   if (3 * out > pairs) {
@@ -213,9 +218,16 @@ void warn(const JointCalibration& joint,
   }
   const double scale = joint.pair_sigma_scale;
   if (fixed_scale == 0 && pairs > 0 && (scale > 2 || scale < 0.5)) {
-    summary.warnings.push_back(fmt::format(
-        "the noise of the pairs is {:.2g} times what they state; the result goes by the residuals",
-        scale));
+    summary.warnings.push_back(
+        fmt::format("the noise of the pairs is {:.2g} times what they state, or the prior holds "
+                    "the rig away from "
+                    "them; the result goes by the residuals",
+                    scale));
+  }
+  if (pairs > 0 && joint.estimate.covariance->kind == CovarianceKind::mvb && !white_noise) {
+    summary.warnings.push_back(
+        "fewer than three views: the covariance is the minimum variance bound, which is too small "
+        "on real images");
   }
   if (joint.observability && joint.observability->mostly_prior()) {
     summary.warnings.push_back(
@@ -304,7 +316,10 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   const ReducedNormalEquations robust =
       free_equations(joint, evidence, clustered_pairs(joint), joint.loss, free);
   Covariance honest{CovarianceKind::mvb, names, bound};
-  if (!options.white_noise) {
+  const std::size_t clusters = robust.frame_information.size();
+  if (clusters == 0) {
+    honest.kind = CovarianceKind::combined;  // of priors
+  } else if (!options.white_noise && clusters >= 3) {
     honest = honest_covariance(robust, minimum_variance_bound(robust, names), names);
   }
   const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
@@ -322,7 +337,8 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   for (const HeldParameter& held : options.held) {
     estimate.calibration->held.push_back(held.name);
   }
-  warn(result, evidence.pairs.size(), options.pair_sigma_scale, *estimate.calibration);
+  warn(result, evidence.pairs.size(), options.pair_sigma_scale, options.white_noise,
+       *estimate.calibration);
   estimate.evidence = merged_evidence(joint.boards, joint.state);
   estimate.evidence->pairs = evidence.pairs;
   estimate.evidence->priors = evidence.priors;

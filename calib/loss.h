@@ -21,7 +21,7 @@ struct Loss {
 /// robust loss as it stands gives them less (Tukey's at 5 a fifth less).
 Loss balanced(LossShape shape, double limit);
 
-/// ρ(r), its weight ρ'(r) / 2r, and ρ''(r) / 2, which Tukey's loss takes below zero.
+/// ρ(r), and its weight ρ'(r) / 2r.
 double cost_of(const Loss& loss, double r);
 double weight_of(const Loss& loss, double r);
 

@@ -20,12 +20,11 @@ EpipolarSums unpacked(const std::vector<double>& sums, int columns, double cost)
   return result;
 }
 
-EpipolarSums sums_of(
-    const Lanes* lanes, std::size_t eights, const Rig& rig, const Loss& loss, Weighting weighting) {
+EpipolarSums sums_of(const Lanes* lanes, std::size_t eights, const Rig& rig, const Loss& loss) {
   const EpipolarView view(rig);
   const int columns = epipolar_columns(view);
   std::vector<double> sums(packed_size(columns), 0.0);
-  const double cost = sum_pairs(view, lanes, eights, loss, weighting, sums.data());
+  const double cost = sum_pairs(view, lanes, eights, loss, sums.data());
   return unpacked(sums, columns, cost);
 }
 
@@ -61,16 +60,12 @@ std::vector<double> PackedPairs::residuals(const Rig& rig) const {
 EpipolarSums epipolar_sums(const PackedPairs& packed,
                            const PackedPairs::Group& group,
                            const Rig& rig,
-                           const Loss& loss,
-                           Weighting weighting) {
-  return sums_of(packed.lanes(group), group.eights, rig, loss, weighting);
+                           const Loss& loss) {
+  return sums_of(packed.lanes(group), group.eights, rig, loss);
 }
 
-EpipolarSums epipolar_sums(const PackedPairs& packed,
-                           const Rig& rig,
-                           const Loss& loss,
-                           Weighting weighting) {
-  return sums_of(packed.lanes({}), packed.eights(), rig, loss, weighting);
+EpipolarSums epipolar_sums(const PackedPairs& packed, const Rig& rig, const Loss& loss) {
+  return sums_of(packed.lanes({}), packed.eights(), rig, loss);
 }
 
 }  // namespace vernier

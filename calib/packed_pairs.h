@@ -46,11 +46,7 @@ struct EpipolarSums {
 EpipolarSums epipolar_sums(const PackedPairs& packed,
                            const PackedPairs::Group& group,
                            const Rig& rig,
-                           const Loss& loss,
-                           Weighting weighting);
-EpipolarSums epipolar_sums(const PackedPairs& packed,
-                           const Rig& rig,
-                           const Loss& loss,
-                           Weighting weighting = Weighting::weight);
+                           const Loss& loss);
+EpipolarSums epipolar_sums(const PackedPairs& packed, const Rig& rig, const Loss& loss);
 
 }  // namespace vernier

@@ -107,7 +107,7 @@ void CompressedPairs::PrepareForEvaluation(bool jacobians, bool new_point) {
       continue;
     }
     std::fill_n(sums, packed_size(columns_), 0.0);
-    sum_pairs(view, packed_.lanes(group), group.eights, {}, Weighting::weight, sums);
+    sum_pairs(view, packed_.lanes(group), group.eights, {}, sums);
     for (std::size_t i = 0; i < packed_size(columns_); ++i) sums[i] *= unit_ * unit_;
     factor_triangle(columns_, sums);
   }

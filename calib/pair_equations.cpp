@@ -13,6 +13,11 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
                                       const Loss& loss,
                                       double sigma_scale) {
   const PackedPairs packed(pairs);
+  std::vector<double> counted;  // 1 where a pair counts at all
+  for (const double r : packed.residuals(rig)) {
+    counted.push_back(weight_of(loss, r / sigma_scale) > 0 ? 1 : 0);
+  }
+  const PackedPairs inliers(pairs, counted);
   const auto groups = static_cast<Eigen::Index>(packed.groups().size());
   const int p = parameter_count(rig);
   ReducedNormalEquations equations;
@@ -20,14 +25,10 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
   equations.scores = Eigen::MatrixXd::Zero(p, groups);
   for (Eigen::Index g = 0; g < groups; ++g) {
     const PackedPairs::Group& group = packed.groups()[static_cast<std::size_t>(g)];
-    const EpipolarSums weighted =
-        scaled_sums(packed, &group, rig, loss, sigma_scale, Weighting::weight);
-    const EpipolarSums bent =
-        loss.shape == LossShape::square
-            ? weighted
-            : scaled_sums(packed, &group, rig, loss, sigma_scale, Weighting::curvature);
-    equations.information += bent.information;
-    equations.frame_information.push_back(bent.information);
+    const EpipolarSums weighted = scaled_sums(packed, &group, rig, loss, sigma_scale);
+    const EpipolarSums plain = scaled_sums(inliers, &group, rig, {}, sigma_scale);
+    equations.information += plain.information;
+    equations.frame_information.push_back(plain.information);
     equations.scores.col(g) = weighted.gradient;
     equations.chi2 += weighted.cost;
     equations.frame_chi2.push_back(weighted.cost);
@@ -38,10 +39,6 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
 }
 
 void add_equations(ReducedNormalEquations& equations, const ReducedNormalEquations& more) {
-  if (equations.information.size() == 0) {
-    equations = more;
-    return;
-  }
   equations.information += more.information;
   equations.held_poses_diagonal += more.held_poses_diagonal;
   Eigen::MatrixXd scores(equations.scores.rows(), equations.scores.cols() + more.scores.cols());

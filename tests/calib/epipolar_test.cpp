@@ -71,8 +71,7 @@ TEST(Epipolar, GradientWithItsWeightIsTheNumericDerivativeForEveryPairOfModels) 
           },
           Eigen::VectorXd::Zero(parameter_count(rig)), 1e-5);
       for (std::size_t i = 0; i < 4; ++i) {
-        const EpipolarSums sums =
-            epipolar_sums(packed, packed.groups()[i], rig, {}, Weighting::weight);
+        const EpipolarSums sums = epipolar_sums(packed, packed.groups()[i], rig, {});
         const Eigen::VectorXd row = J.row(static_cast<Eigen::Index>(i));
         EXPECT_NEAR(sums.cost, r[i] * r[i], 1e-12 * (1 + r[i] * r[i]));
         for (Eigen::Index k = 0; k < row.size(); ++k) {
@@ -97,7 +96,7 @@ TEST(Epipolar, SumsAreTheSumsOfThePairs) {
     double cost = 0;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(all.gradient.size());
     for (const PackedPairs::Group& group : packed.groups()) {
-      const EpipolarSums one = epipolar_sums(packed, group, rig, loss, Weighting::weight);
+      const EpipolarSums one = epipolar_sums(packed, group, rig, loss);
       gradient += one.gradient;
       for (std::size_t i = group.row; i < group.row + group.count; ++i) {
         cost += cost_of(loss, r[i]);
@@ -114,27 +113,6 @@ TEST(Epipolar, SumsAreTheSumsOfThePairs) {
     for (Eigen::Index k = 0; k < zero.size(); ++k) {
       EXPECT_NEAR(numeric[k], all.gradient[k], 1e-3 * (1 + std::abs(all.gradient[k]))) << k;
     }
-  }
-}
-
-TEST(Epipolar, CurvatureIsTheSecondDerivativeOfTheLoss) {
-  const Rig rig = rig_of("radial1", "radial1");
-  PairObservations pairs = simulate_pairs(rig, 5, 0, {.image_pairs = 40, .pairs_per_image = 1});
-  const PackedPairs packed(pairs);
-  const std::vector<double> r = packed.residuals(rig);
-  const Loss tukey{LossShape::tukey, 1.5};
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const EpipolarSums plain =
-        epipolar_sums(packed, packed.groups()[i], rig, {}, Weighting::weight);
-    const EpipolarSums bent =
-        epipolar_sums(packed, packed.groups()[i], rig, tukey, Weighting::curvature);
-    const double h = 1e-4;
-    const double second =
-        (cost_of(tukey, r[i] + h) - 2 * cost_of(tukey, r[i]) + cost_of(tukey, r[i] - h)) / (h * h);
-    if (std::abs(std::abs(r[i]) - 1.5) < 2 * h) continue;
-    EXPECT_LT((bent.information - 0.5 * second * plain.information).norm(),
-              1e-5 * plain.information.norm())
-        << r[i];
   }
 }
 

@@ -127,6 +127,21 @@ Eigen::MatrixXd covariance_of_free(const Eigen::MatrixXd& C,
   return (by_tangent * C * by_tangent.transpose())(free, free);
 }
 
+std::vector<bool> without_variance(const Rig& rig, const Eigen::MatrixXd& C) {
+  constexpr double rounding = 1e-12;  // of a rotation's largest
+  std::vector<bool> none(static_cast<std::size_t>(C.rows()));
+  for (Eigen::Index i = 0; i < C.rows(); ++i) none[static_cast<std::size_t>(i)] = !(C(i, i) > 0);
+  for (int c = 1; c < static_cast<int>(rig.cameras.size()); ++c) {
+    const int i = pose_index(rig, c);
+    const Eigen::Matrix3d by_tangent =
+        left_jacobian(vector_from_rotation(rig.T_camera_first[c].R)).inverse();
+    const Eigen::Vector3d variance =
+        (by_tangent * C.block<3, 3>(i, i) * by_tangent.transpose()).diagonal();
+    for (int k = 0; k < 3; ++k) none[i + k] = !(variance[k] > rounding * variance.maxCoeff());
+  }
+  return none;
+}
+
 std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held) {
   std::vector<std::string> free;
   const std::vector<std::string> names = parameter_names(rig);

@@ -43,6 +43,10 @@ Eigen::MatrixXd covariance_of_free(const Eigen::MatrixXd& C,
                                    const Rig& rig,
                                    const std::vector<bool>& held);
 
+/// One flag a parameter that a covariance C of the tangent gives no variance; a component of a
+/// rotation has it as one of the rotation vector.
+std::vector<bool> without_variance(const Rig& rig, const Eigen::MatrixXd& C);
+
 /// Names of the parameters that are not held.
 std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held);
 

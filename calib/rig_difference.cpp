@@ -12,6 +12,7 @@
 #include "calib/chi_squared.h"
 #include "calib/corner_difference.h"
 #include "calib/error.h"
+#include "calib/held_parameters.h"
 #include "calib/scaled_root.h"
 
 namespace vernier {
@@ -67,18 +68,63 @@ CommonParameters common_parameters(const Rig& a, const Rig& b, RigDifference& re
   return common;
 }
 
-/// b's parameters less a's, rotations in the left tangent at a, in b's order.
-Eigen::VectorXd tangent_difference(const Rig& a, const Rig& b, const CommonParameters& common) {
+/// Flags, one a parameter of each rig, of those that neither covariance gives a variance.
+struct HeldInBoth {
+  std::vector<bool> in_a, in_b;
+};
+
+HeldInBoth held_in_both(const Rig& a,
+                        const Covariance& covariance_a,
+                        const Rig& b,
+                        const Covariance& covariance_b,
+                        const CommonParameters& common) {
+  const std::vector<bool> held_a = without_variance(a, covariance_a.matrix),
+                          held_b = without_variance(b, covariance_b.matrix);
+  HeldInBoth held{std::vector<bool>(held_a.size()), std::vector<bool>(held_b.size())};
+  for (std::size_t k = 0; k < common.names.size(); ++k) {
+    const auto i = static_cast<std::size_t>(common.in_a[k]);
+    const auto j = static_cast<std::size_t>(common.in_b[k]);
+    held.in_a[i] = held.in_b[j] = held_a[i] && held_b[j];
+  }
+  return held;
+}
+
+/// b's parameters less a's, rotations in the left tangent at a; those of which both hold a part by
+/// their rotation vectors.
+Eigen::VectorXd difference_of(const Rig& a,
+                              const Rig& b,
+                              const CommonParameters& common,
+                              const HeldInBoth& held) {
   const Eigen::VectorXd values_a = parameters(a), values_b = parameters(b);
   Eigen::VectorXd in_order_of_b = values_b;  // of what a lacks, nothing is used
   for (std::size_t k = 0; k < common.names.size(); ++k) {
     in_order_of_b[common.in_b[k]] -= values_a[common.in_a[k]];
   }
   for (std::size_t c = 1; c < b.cameras.size(); ++c) {
-    in_order_of_b.segment<3>(pose_index(b, static_cast<int>(c))) =
+    const int i = pose_index(b, static_cast<int>(c));
+    if (held.in_b[i] || held.in_b[i + 1] || held.in_b[i + 2]) continue;
+    in_order_of_b.segment<3>(i) =
         vector_from_rotation(b.T_camera_first[c].R * a.T_camera_first[c].R.transpose());
   }
   return in_order_of_b(common.in_b);
+}
+
+/// Its covariance; zero for what both hold.
+Eigen::MatrixXd covariance_of_difference(const Rig& a,
+                                         const Covariance& covariance_a,
+                                         const Rig& b,
+                                         const Covariance& covariance_b,
+                                         const CommonParameters& common,
+                                         const HeldInBoth& held) {
+  const Eigen::MatrixXd A = values_by_tangent(a, held.in_a), B = values_by_tangent(b, held.in_b);
+  Eigen::MatrixXd sum = (A * covariance_a.matrix * A.transpose())(common.in_a, common.in_a) +
+                        (B * covariance_b.matrix * B.transpose())(common.in_b, common.in_b);
+  for (Eigen::Index k = 0; k < sum.rows(); ++k) {
+    if (!held.in_a[static_cast<std::size_t>(common.in_a[static_cast<std::size_t>(k)])]) continue;
+    sum.row(k).setZero();
+    sum.col(k).setZero();
+  }
+  return sum;
 }
 
 void check_covariance(const Rig& rig, const Covariance& covariance, const char* place) {
@@ -165,9 +211,10 @@ RigDifference rig_difference(const Rig& a,
   check_covariance(b, covariance_b, "second rig");
   RigDifference result;
   const CommonParameters common = common_parameters(a, b, result);
-  const Eigen::VectorXd delta = tangent_difference(a, b, common);
+  const HeldInBoth held = held_in_both(a, covariance_a, b, covariance_b, common);
+  const Eigen::VectorXd delta = difference_of(a, b, common, held);
   const Eigen::MatrixXd sum =
-      covariance_a.matrix(common.in_a, common.in_a) + covariance_b.matrix(common.in_b, common.in_b);
+      covariance_of_difference(a, covariance_a, b, covariance_b, common, held);
   const Eigen::VectorXd values_a = parameters(a), values_b = parameters(b);
   std::vector<Eigen::Index> known;
   std::vector<std::string> known_names;

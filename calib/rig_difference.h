@@ -25,7 +25,8 @@ struct DirectionDifference {
 };
 
 /// Whether two calibrations agree within their uncertainties. With δ = b ⊖ a over the parameters
-/// that both have by name and meaning, in the tangent of calib/rig.h,
+/// that both have by name and meaning, in the tangent of calib/rig.h (a rotation of which both hold
+/// a part, by its rotation vector),
 ///
 ///     d² = δᵀ (C_a + C_b)⁻¹ δ     (Mahalanobis 1936)
 ///

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_estimate.h"
 
-#include "calib/held_parameters.h"
-
-#include <Eigen/LU>
 #include <algorithm>
 #include <set>
 
@@ -12,12 +9,6 @@
 #include "calib/held_parameters.h"
 
 namespace vernier {
-namespace {
-
-constexpr double no_variance = 1e-12;  // of a rotation's largest: rounding
-
-}  // namespace
-
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.covariance) {
     throw Error(place, "the rig has no covariance, so there is nothing to sample from",
@@ -32,19 +23,7 @@ std::vector<bool> held_parameters(const RigEstimate& estimate) {
   const std::vector<std::string> names = parameter_names(rig);
   std::vector<bool> held(names.size(), false);
   if (!estimate.covariance) return held;
-  const Eigen::MatrixXd& C = estimate.covariance->matrix;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    held[i] = !(C(k, k) > 0);
-  }
-  for (int c = 1; c < static_cast<int>(rig.cameras.size()); ++c) {
-    const int i = pose_index(rig, c);
-    const Eigen::Matrix3d by_tangent =
-        left_jacobian(vector_from_rotation(rig.T_camera_first[c].R)).inverse();
-    const Eigen::Vector3d variance =
-        (by_tangent * C.block<3, 3>(i, i) * by_tangent.transpose()).diagonal();
-    for (int k = 0; k < 3; ++k) held[i + k] = !(variance[k] > no_variance * variance.maxCoeff());
-  }
+  held = without_variance(rig, estimate.covariance->matrix);
   if (!estimate.calibration) return held;
   for (const std::string& name : estimate.calibration->held) {
     const auto found = std::find(names.begin(), names.end(), name);

@@ -121,6 +121,22 @@ TEST(Outliers, AWholeViewMayBeOne) {
   }
 }
 
+// Plain least squares with views numbered the wrong way round, or swapped, ends so far away that
+// least squares without them, begun there, finds another valley.
+TEST(Outliers, LeastSquaresBeginsAgainAtTheRobustMinimum) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 25, 0, {.frames = 12});
+  BoardObservations turned = board.observations, swapped = board.observations;
+  test::half_turn(test::view_of(turned, 1, 1));
+  test::exchange(swapped, 1);
+  for (const BoardObservations& spoilt : {turned, swapped}) {
+    const RigEstimate e = calibrate(spoilt, {.check_input = false});
+    const BoardObservations kept = without_views_of(e.calibration->outliers, spoilt);
+    EXPECT_LT(kept.views.size(), spoilt.views.size());
+    EXPECT_LT(worst_sigmas(e.rig, calibrate(kept).rig, *e.covariance_mvb), 1e-4);
+    EXPECT_LT(worst_sigmas(e.rig, test::stereo_rig(), *e.covariance_mvb), 4.5);
+  }
+}
+
 TEST(Outliers, ALensThatTheModelDoesNotFitLosesNoCorner) {
   const Rig truth = test::stereo_rig(OpenCv5{});
   const auto board = simulate_board(truth, {}, 20, 0, {.pixel_sigma_px = 0.05});

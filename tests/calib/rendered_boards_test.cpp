@@ -94,13 +94,14 @@ BoardCamera usual_camera(const BoardTarget& target, double distance, double turn
                        turn);
 }
 
-// Bounds: 1.5 times what was measured at 0.7 px of blur and noise of 2 grey values in 195.
+// Bounds: at most 1.5 times the worst that was measured, which stands behind them, at 0.7 px of
+// blur and noise of 2 grey values in 195.
 
 TEST_F(RenderedBoards, ChessboardIsFoundWithinItsBound) {
   const BoardCamera camera = usual_camera(chessboard, 0.4);
   const BoardDetection found = detect(photograph(draw(chessboard), camera), chessboard);
   ASSERT_EQ(found.ids.size(), 54u) << found.reason;
-  EXPECT_LT(told_rms(found, chessboard, camera, "rms_1"), 0.06);
+  EXPECT_LT(told_rms(found, chessboard, camera, "rms_1"), 0.047);  // 0.0316
 }
 
 TEST_F(RenderedBoards, SquaresNeedNotBeSquare) {
@@ -108,7 +109,7 @@ TEST_F(RenderedBoards, SquaresNeedNotBeSquare) {
   const BoardCamera camera = usual_camera(board, 0.4);
   const BoardDetection found = detect(photograph(draw(board), camera), board);
   ASSERT_EQ(found.ids.size(), 54u) << found.reason;
-  EXPECT_LT(told_rms(found, board, camera, "rms_2"), 0.06);
+  EXPECT_LT(told_rms(found, board, camera, "rms_2"), 0.055);  // 0.0372
 }
 
 TEST_F(RenderedBoards, CharucoIsFoundWithinItsBoundAtAnyTurn) {
@@ -117,7 +118,7 @@ TEST_F(RenderedBoards, CharucoIsFoundWithinItsBoundAtAnyTurn) {
     const BoardDetection found =
         detect(photograph(draw(charuco, cv::aruco::DICT_5X5_100), camera), charuco);
     ASSERT_EQ(found.ids.size(), 35u) << found.reason;
-    EXPECT_LT(told_rms(found, charuco, camera, "rms_3"), 0.06) << turn;
+    EXPECT_LT(told_rms(found, charuco, camera, "rms_3"), 0.06) << turn;  // 0.0585
   }
 }
 
@@ -134,9 +135,10 @@ TEST_F(RenderedBoards, KalibrsGridIsFoundWithinItsBoundAtAnyTurn) {
       const BoardDetection found = detect(photograph(draw(april, border_bits), camera), april);
       EXPECT_GE(found.ids.size(), 116u) << found.reason << " border " << border_bits;
       ASSERT_FALSE(found.ids.empty());
-      EXPECT_LT(told_rms(found, april, camera, "rms_4_" + std::to_string(border_bits)), 0.1)
+      EXPECT_LT(told_rms(found, april, camera, "rms_4_" + std::to_string(border_bits)),
+                0.08)  // 0.053
           << border_bits << " " << turn;
-      EXPECT_LT(worst_error(found, april, camera), 0.5);
+      EXPECT_LT(worst_error(found, april, camera), 0.5);  // 0.331
     }
   }
 }
@@ -145,7 +147,7 @@ TEST_F(RenderedBoards, TagsWithoutSquaresBetweenAreBiasedByBlurButFound) {
   const BoardCamera camera = usual_camera(april, 0.5);
   const BoardDetection found = detect(photograph(draw(april, 2, false), camera), april);
   EXPECT_EQ(found.ids.size(), 120u) << found.reason;
-  EXPECT_LT(told_rms(found, april, camera, "rms_5"), 0.3);
+  EXPECT_LT(told_rms(found, april, camera, "rms_5"), 0.18);  // 0.119
 }
 
 TEST_F(RenderedBoards, WideLensDoesNotConfuseMarkers) {
@@ -154,14 +156,14 @@ TEST_F(RenderedBoards, WideLensDoesNotConfuseMarkers) {
   camera.k1 = -0.22;
   const BoardDetection tags = detect(photograph(draw(april, 2), camera), april);
   EXPECT_GE(tags.ids.size(), 100u) << tags.reason;
-  EXPECT_LT(told_rms(tags, april, camera, "rms_6"), 0.1);
+  EXPECT_LT(told_rms(tags, april, camera, "rms_6"), 0.053);  // 0.0355
   camera = usual_camera(charuco, 0.3);
   camera.f_px = 330;
   camera.k1 = -0.22;
   const BoardDetection corners =
       detect(photograph(draw(charuco, cv::aruco::DICT_5X5_100), camera), charuco);
   EXPECT_GE(corners.ids.size(), 33u) << corners.reason;
-  EXPECT_LT(told_rms(corners, charuco, camera, "rms_7"), 0.1);
+  EXPECT_LT(told_rms(corners, charuco, camera, "rms_7"), 0.07);  // 0.047
 }
 
 /// Covers a part of the image as a hand would: mid grey, with an edge.
@@ -181,8 +183,8 @@ TEST_F(RenderedBoards, CoveredCornersAreNotUsed) {
     const std::size_t all = target_points(target).size();
     EXPECT_GT(found.ids.size(), all / 3) << found.reason;
     EXPECT_LT(found.ids.size(), all);
-    EXPECT_LT(told_rms(found, target, camera, "rms_8"), 0.1) << name_of(target);
-    EXPECT_LT(worst_error(found, target, camera), 0.6) << name_of(target);
+    EXPECT_LT(told_rms(found, target, camera, "rms_8"), 0.06) << name_of(target);  // 0.0401
+    EXPECT_LT(worst_error(found, target, camera), 0.32) << name_of(target);        // 0.214
   }
 }
 
@@ -196,7 +198,7 @@ TEST_F(RenderedBoards, HalfOfABoardOutsideTheImageIsUsedAsItIs) {
     const std::size_t all = target_points(target).size();
     EXPECT_GE(found.ids.size(), 8u) << found.reason;
     EXPECT_LT(found.ids.size(), 3 * all / 4);
-    EXPECT_LT(told_rms(found, target, camera, "rms_9"), 0.1) << name_of(target);
+    EXPECT_LT(told_rms(found, target, camera, "rms_9"), 0.063) << name_of(target);  // 0.0426
     EXPECT_TRUE(std::is_sorted(found.ids.begin(), found.ids.end()));
   }
 }

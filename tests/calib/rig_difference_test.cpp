@@ -115,6 +115,23 @@ TEST(RigDifference, HoldsApartWhatIsHeldAtDifferentValues) {
   EXPECT_NEAR(of(a, b).mahalanobis2, 1, 1e-6);
 }
 
+TEST(RigDifference, ComparesTheRestOfARotationThatBothHoldInPart) {
+  const auto calibrated_with = [](std::uint64_t seed, double wy_rad) {
+    const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 12});
+    return calibrate(
+        board.observations,
+        {.pixel_sigma_px = 0.2, .held = {{"right.wy_rad", wy_rad}}, .white_noise = true});
+  };
+  const RigEstimate a = calibrated_with(1, -0.02), b = calibrated_with(2, -0.02);
+  const RigDifference d = of(a, b);
+  EXPECT_EQ(d.dof, 15);
+  EXPECT_TRUE(d.parameters[11].held);
+  EXPECT_FALSE(d.parameters[10].held);
+  EXPECT_TRUE(d.held_apart.empty());
+  EXPECT_GT(d.p_value, 1e-3);
+  EXPECT_TRUE(says(of(a, calibrated_with(2, -0.0201)).held_apart, "right.wy_rad is held at"));
+}
+
 TEST(RigDifference, NamesADirectionThatNeitherGivesAVariance) {
   RigEstimate a = calibrated(1), b = a;
   const auto n = a.covariance->matrix.rows();

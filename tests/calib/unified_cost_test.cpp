@@ -6,6 +6,7 @@
 
 #include "calib/board_warp.h"
 #include "calib/calibrate.h"
+#include "calib/combine.h"
 #include "calib/model_nesting.h"
 #include "calib/rig_file.h"
 #include "calib/simulated_board.h"
@@ -98,6 +99,21 @@ TEST(HeldParameters, ARotationHeldInPartSurvivesItsFileAndIsAPrior) {
   // Of the held component it says nothing where that is free.
   options.held.clear();
   EXPECT_GT(calibrate(second, options).covariance_mvb->diagonal()[11], 0);
+}
+
+TEST(HeldParameters, AreHeldInACombination) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 13, 0, {.frames = 24});
+  BoardObservations first = board.observations, second = board.observations;
+  std::erase_if(first.views, [](const BoardView& view) { return view.frame % 2 == 1; });
+  std::erase_if(second.views, [](const BoardView& view) { return view.frame % 2 == 0; });
+  const CalibrationOptions options{.pixel_sigma_px = 0.2,
+                                   .held = {{"right.wy_rad", -0.02}, {"left.ax", 1.002}}};
+  const RigEstimate a = calibrate(first, options), b = calibrate(second, options),
+                    whole = calibrate(board.observations, options);
+  const Combination both = combine({{"a.json", a, {}}, {"b.json", b, {}}});
+  EXPECT_TRUE(both.inputs[1].used);
+  EXPECT_EQ(both.inputs[1].agreement.dof, 14);
+  EXPECT_LT(worst_sigmas(both.joint.estimate.rig, whole.rig, *whole.covariance_mvb), 1e-4);
 }
 
 TEST(HeldParameters, AreNamedWhereTheyAreWrong) {

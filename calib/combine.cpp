@@ -73,10 +73,15 @@ PriorAgreement agreement_of_pairs(const RigKnowledge& before,
                                   const JointOptions& options) {
   JointOptions how = options;
   if (how.pair_sigma_scale == 0) {
-    // Against a prior ten times as wide: pairs that disagree must not pass for noisy ones.
+    // Against a prior five times as wide: pairs that disagree must not pass for noisy ones.
     RigKnowledge loose = before;
-    loose.covariance.matrix *= 100;
-    how.pair_sigma_scale = calibrate_from_pairs(pairs, loose, options, input.name).pair_sigma_scale;
+    loose.covariance.matrix *= 25;
+    try {
+      how.pair_sigma_scale =
+          calibrate_from_pairs(pairs, loose, options, input.name).pair_sigma_scale;
+    } catch (const Error&) {
+      // The pairs do not determine the rig against so little knowledge: by the prior as it is.
+    }
   }
   const JointCalibration with = calibrate_from_pairs(pairs, before, how, input.name);
   return agreement_with(before, with.estimate);

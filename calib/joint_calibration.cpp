@@ -67,6 +67,7 @@ void minimise_robustly(Joint& joint, double fixed_scale) {
     return fixed_scale > 0 ? (first ? std::max(found, fixed_scale) : fixed_scale) : found;
   };
   joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
+  joint.cost.must_converge = false;  // before the weights have settled
   for (int round = 0; round < huber_rounds; ++round) {
     joint.cost.pair_sigma_scale = scale(true);
     if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2) break;
@@ -78,6 +79,8 @@ void minimise_robustly(Joint& joint, double fixed_scale) {
     if (reweigh(joint, joint.loss) < 1e-7) break;
     minimise(joint);
   }
+  joint.cost.must_converge = true;
+  minimise(joint);
 }
 
 /// The scale of the pairs' noise from their residuals, with their degrees of freedom.

@@ -38,4 +38,12 @@ double weight_of(const Loss& loss, double r) {
   return loss.gain * t * t;
 }
 
+double curvature_of(const Loss& loss, double r) {
+  const double c = loss.limit, a = std::abs(r);
+  if (loss.shape == LossShape::square) return loss.gain;
+  if (loss.shape == LossShape::huber) return a <= c ? loss.gain : 0;
+  const double share = r * r / (c * c), t = std::max(0.0, 1 - share);
+  return loss.gain * t * (1 - 5 * share);
+}
+
 }  // namespace vernier

@@ -21,8 +21,9 @@ struct Loss {
 /// robust loss as it stands gives them less (Tukey's at 5 a fifth less).
 Loss balanced(LossShape shape, double limit);
 
-/// ρ(r), and its weight ρ'(r) / 2r.
+/// ρ(r), its weight ρ'(r) / 2r, and ρ''(r) / 2, which Tukey's loss takes below zero.
 double cost_of(const Loss& loss, double r);
 double weight_of(const Loss& loss, double r);
+double curvature_of(const Loss& loss, double r);
 
 }  // namespace vernier

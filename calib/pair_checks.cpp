@@ -93,7 +93,7 @@ bool swapped(const Rig& rig,
              const std::vector<Eigen::Vector4d>& some) {
   const auto before = quartile_before_px(rig, some);
   if (!before || *before > 0) return false;
-  const double limit = 3 * sigma_before_px(rig, covariance, some);
+  const double limit = 3 + 3 * sigma_before_px(rig, covariance, some);  // px: noise of the corners
   if (*before > -limit) return false;
   std::vector<Eigen::Vector4d> other;
   for (const Eigen::Vector4d& y : some) {

@@ -9,9 +9,9 @@ namespace vernier {
 
 /// Looks at matched pairs with a rough rig in hand before they are solved; `covariance` says how
 /// rough, over all parameters of the rig (calib/rig.h). Throws Error where a quarter of an image
-/// pair's corners lie behind the rig by more than three of the standard deviations that the rig
-/// allows them, and do not once left and right are exchanged; names the image pairs. Throws Error
-/// where a pixel has no ray in the rough rig.
+/// pair's corners lie behind the rig by more than 3 px and three of the standard deviations that
+/// the rig allows them, and do not once left and right are exchanged; names the image pairs. Throws
+/// Error where a pixel has no ray in the rough rig.
 void check_sides(const PairObservations& pairs,
                  const Rig& rig,
                  const Eigen::MatrixXd& covariance,

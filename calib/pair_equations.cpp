@@ -13,9 +13,18 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
                                       const Loss& loss,
                                       double sigma_scale) {
   const PackedPairs packed(pairs);
-  std::vector<double> counted;  // 1 where a pair counts at all
-  for (const double r : packed.residuals(rig)) {
-    counted.push_back(weight_of(loss, r / sigma_scale) > 0 ? 1 : 0);
+  const std::vector<double> residuals = packed.residuals(rig);
+  double bend = 0, count = 0;
+  for (const double r : residuals) {
+    if (!(weight_of(loss, r / sigma_scale) > 0)) continue;
+    bend += curvature_of(loss, r / sigma_scale);
+    ++count;
+  }
+  constexpr double least_bend = 0.3;  // below, the residuals have no shape that a loss is for
+  const double mean_bend = count > 0 ? std::max(least_bend, bend / count) : 1;
+  std::vector<double> counted;
+  for (const double r : residuals) {
+    counted.push_back(weight_of(loss, r / sigma_scale) > 0 ? mean_bend : 0);
   }
   const PackedPairs inliers(pairs, counted);
   const auto groups = static_cast<Eigen::Index>(packed.groups().size());

@@ -9,9 +9,9 @@
 namespace vernier {
 
 /// The pairs' part of the normal equations at `rig`, a cluster for every image pair, with residuals
-/// divided by `sigma_scale`: scores Σ ρ'/2 J, and as information Σ J Jᵀ over the pairs that count,
-/// which is what the second derivatives of a balanced loss (calib/loss.h) are expected to be. Those
-/// themselves need not be positive where pairs are few.
+/// divided by `sigma_scale`: scores Σ ρ'/2 J, and as information m Σ J Jᵀ over the pairs that
+/// count, m the mean of ρ''/2 over them (Huber 1981, section 7.6). The second derivatives pair by
+/// pair need not be positive where pairs are few.
 ReducedNormalEquations pair_equations(const PairObservations& pairs,
                                       const Rig& rig,
                                       const Loss& loss,

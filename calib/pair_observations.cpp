@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "calib/error.h"
 
@@ -76,11 +77,18 @@ void add_pair(PairObservations& pairs,
 }
 
 void append(PairObservations& pairs, const PairObservations& more) {
-  int offset = 0;
-  for (const ImagePair& image : pairs.image_pairs) offset = std::max(offset, image.number + 1);
+  std::set<int> taken;
+  for (const ImagePair& image : pairs.image_pairs) taken.insert(image.number);
+  int next = 0;
   for (const ImagePair& image : more.image_pairs) {
+    int number = image.number;
+    if (taken.count(number)) {
+      while (taken.count(next)) ++next;
+      number = next;
+    }
+    taken.insert(number);
     for (std::size_t i = image.first; i < image.first + image.count; ++i) {
-      add_pair(pairs, offset + image.number, more.pixels_px[i], more.sigma_of(i));
+      add_pair(pairs, number, more.pixels_px[i], more.sigma_of(i));
     }
   }
 }

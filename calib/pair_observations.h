@@ -37,8 +37,8 @@ void add_pair(PairObservations& pairs,
               const Eigen::Vector4d& pixels_px,
               double sigma_px);
 
-/// Adds all of `more` as image pairs of their own, numbered on from the largest number of `pairs`
-/// where numbers would meet.
+/// Adds all of `more` as image pairs of their own; one whose number is taken gets the least that is
+/// free.
 void append(PairObservations& pairs, const PairObservations& more);
 
 /// The rows with `kept`, image pairs without any left out.

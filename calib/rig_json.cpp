@@ -225,8 +225,8 @@ CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   if (node.has("pairs")) {
     evidence.pairs = parse_pairs(node.at("pairs"));
     check_pairs(evidence.pairs, rig);
-    if (!node.has("board")) return evidence;
   }
+  if (!node.has("board") && (node.has("pairs") || node.has("priors"))) return evidence;
   const Node points = node.at("board").at("points_m");
   for (std::size_t i = 0; i < points.array().size(); ++i) {
     observations.target_m.push_back(points.at(i).vector3());

@@ -21,10 +21,13 @@ void calibrate_pairs(const std::string& pairs_file,
     throw Error("--pairs", "pairs alone do not determine a rig (never its scale)",
                 "give --prior with a rig file, a calibration or a datasheet's values");
   }
-  spare_inputs({pairs_file, solver.prior}, output);
-  const RigFile prior = read_rig(find_rig(solver.prior));
+  const std::filesystem::path prior_file = find_rig(solver.prior);
+  spare_inputs({pairs_file, prior_file}, output);
+  const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
-  const CalibrationOptions how = calibration_options(solver, session);
+  SolverInput rest = solver;
+  rest.prior.clear();  // it is read already
+  const CalibrationOptions how = calibration_options(rest, session);
   JointOptions options;
   options.held = how.held;
   options.reject_outliers = how.reject_outliers;

@@ -160,6 +160,12 @@ void run(const Options& options, Session& session) {
   std::vector<std::filesystem::path> files(options.inputs.begin(), options.inputs.end());
   files.emplace_back(options.prior);
   spare_inputs(files, options.output);
+  if (!options.drift.empty()) {
+    spare_inputs(files, options.drift);
+    if (std::filesystem::path(options.drift) == std::filesystem::path(options.output)) {
+      throw Error("--drift", "it is the rig file too", "name another file");
+    }
+  }
   const std::vector<CombineInput> inputs = load(options, session);
   CombineOptions how;
   how.keep_disagreeing = options.keep_disagreeing;

@@ -68,9 +68,9 @@ double incomplete_beta(double x, double a, double b) {
     }
     if (std::abs(C * D - 1) < 1e-15) break;
   }
-  return std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) +
-                  b * std::log1p(-x)) *
-         fraction / a;
+  int sign = 0;
+  const double log_beta = ::lgamma_r(a, &sign) + ::lgamma_r(b, &sign) - ::lgamma_r(a + b, &sign);
+  return std::exp(a * std::log(x) + b * std::log1p(-x) - log_beta) * fraction / a;
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "calib/error.h"
 #include "calib/rig_difference.h"
@@ -30,9 +32,49 @@ std::string kind_of(const CombineInput& input) {
   return "prior";
 }
 
+/// The same knowledge but for the rounding of a file.
 bool same(const RigKnowledge& a, const RigKnowledge& b) {
-  return a.covariance.names == b.covariance.names && a.covariance.matrix == b.covariance.matrix &&
-         parameters(a.rig) == parameters(b.rig);
+  constexpr double rounding = 1e-9;
+  if (a.covariance.names != b.covariance.names) return false;
+  const Eigen::MatrixXd &A = a.covariance.matrix, &B = b.covariance.matrix;
+  const Eigen::VectorXd sd = A.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    for (Eigen::Index k = 0; k < A.cols(); ++k) {
+      if (std::abs(A(i, k) - B(i, k)) > rounding * sd[i] * sd[k]) return false;
+    }
+  }
+  const Eigen::VectorXd x = parameters(a.rig), y = parameters(b.rig);
+  return ((x - y).array().abs() <= rounding * (1e-3 + x.array().abs())).all();
+}
+
+/// The first match of every image pair.
+std::set<std::array<double, 4>> first_matches(const PairObservations& pairs) {
+  std::set<std::array<double, 4>> first;
+  for (const ImagePair& image : pairs.image_pairs) {
+    const Eigen::Vector4d& y = pairs.pixels_px[image.first];
+    first.insert({y[0], y[1], y[2], y[3]});
+  }
+  return first;
+}
+
+/// Data that stand twice would count twice.
+void refuse_repeated(const JointEvidence& so_far,
+                     const JointEvidence& more,
+                     const Rig& rig,
+                     const std::string& name) {
+  const auto before = first_matches(so_far.pairs);
+  for (const auto& first : first_matches(more.pairs)) {
+    if (!before.count(first)) continue;
+    throw Error(name, "it holds image pairs that an input before it holds",
+                "give every batch once, by itself or within a rig file");
+  }
+  for (const BoardTerm& b : more.boards) {
+    for (const BoardTerm& a : so_far.boards) {
+      if (shared_views(a.evidence, rig, b.evidence, rig) == 0) continue;
+      throw Error(name, "it holds views of a board that an input before it holds",
+                  "give every view once");
+    }
+  }
 }
 
 void add(JointEvidence& to, const JointEvidence& more) {
@@ -159,8 +201,13 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
     CombinedInput& said = result.inputs.emplace_back();
     said.name = input.name;
     said.kind = kind_of(input);
+    refuse_repeated(result.evidence, evidence, start, input.name);
     if (before) {
-      said.agreement = agreement_of(*before, input, evidence, joint);
+      try {
+        said.agreement = agreement_of(*before, input, evidence, joint);
+      } catch (const Error& error) {  // it tells nothing by itself, so it is not taken in
+        said.agreement = {0, 0, 0, 0, error.what()};
+      }
       said.used = options.keep_disagreeing || said.agreement.p_value >= options.least_p;
       if (!said.used) continue;
     }
@@ -229,7 +276,7 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
     batch.offset = difference(alone.estimate.rig, all.rig);
     const double sign = combination.inputs[i].used ? -1 : 1;
     const Eigen::VectorXd variance =
-        alone.estimate.covariance->matrix.diagonal() + sign * all.covariance->matrix.diagonal();
+        alone.estimate.covariance_mvb->diagonal() + sign * all.covariance_mvb->diagonal();
     batch.sigma = variance.cwiseMax(0).cwiseSqrt();
     batch.agreement = combination.inputs[i].agreement;
   }

@@ -72,13 +72,13 @@ struct MonitoredBatch {
   double rms_px = 0;
   Eigen::VectorXd offset;    ///< from the combined rig, in its tangent
   Eigen::VectorXd sigma;     ///< standard deviation of that offset; 0 where the batch says nothing
-  Eigen::VectorXd sd_ratio;  ///< standard deviation after the batch over the prior's
-  PriorAgreement agreement;  ///< of the batch with all the others
+  PriorAgreement agreement;  ///< with the inputs before it
 };
 
 /// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the
-/// combined rig. The offset of a batch that is part of the combination has the covariance
-/// C_batch − C_all; of one that was left out, the same with a plus.
+/// combined rig. By the bounds, the offset of a batch that is part of the combination has the
+/// covariance C_batch − C_all; of one that was left out, at most C_batch + C_all (what both had
+/// from before the pairs counts twice, so that directions which pairs do not see look quieter).
 std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
                                     const Combination& combination,
                                     const CombineOptions& options = {});

@@ -22,6 +22,7 @@ namespace {
 
 constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
 constexpr int huber_rounds = 12, tukey_rounds = 40;
+constexpr double least_scale = 0.01;  // of the stated noise: no corner is better than that
 
 /// A joint calibration while it is made.
 struct Joint {
@@ -60,11 +61,31 @@ double reweigh(Joint& joint, const Loss& loss) {
   return change;
 }
 
+/// How many parameters the pairs determine at this scale, tr(C H).
+double determined_by_pairs(const Joint& joint) {
+  const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
+  const Eigen::MatrixXd H =
+      E.transpose() *
+      pair_equations(joint.cost.pairs, joint.state.rig, joint.loss, joint.cost.pair_sigma_scale)
+          .information *
+      E;
+  Eigen::MatrixXd all = H;
+  for (const RigPrior& prior : joint.cost.priors) {
+    const Eigen::MatrixXd J = prior_offset(prior, joint.state.rig).by_rig * E;
+    all += J.transpose() * prior.information * J;
+  }
+  const Eigen::VectorXd d = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = d.asDiagonal() * all * d.asDiagonal();
+  const Eigen::MatrixXd scaled_H = d.asDiagonal() * H * d.asDiagonal();
+  return scaled.ldlt().solve(scaled_H).trace();
+}
+
 /// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
 void minimise_robustly(Joint& joint, double fixed_scale) {
   const auto scale = [&](bool first) {
     const double found = median_length(joint.residuals) / normal_median;
-    return fixed_scale > 0 ? (first ? std::max(found, fixed_scale) : fixed_scale) : found;
+    if (fixed_scale > 0) return first ? std::max(found, fixed_scale) : fixed_scale;
+    return std::max(found, least_scale);
   };
   joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
   joint.cost.must_converge = false;  // before the weights have settled
@@ -79,11 +100,17 @@ void minimise_robustly(Joint& joint, double fixed_scale) {
     if (reweigh(joint, joint.loss) < 1e-7) break;
     minimise(joint);
   }
+  if (!(fixed_scale > 0)) {  // fitted parameters make residuals smaller than the noise
+    const auto n = static_cast<double>(joint.residuals.size());
+    const double share = std::min(0.9, determined_by_pairs(joint) / n);
+    joint.cost.pair_sigma_scale /= std::sqrt(1 - share);
+    reweigh(joint, joint.loss);
+  }
   joint.cost.must_converge = true;
   minimise(joint);
 }
 
-/// The scale of the pairs' noise from their residuals, with their degrees of freedom.
+/// Least squares, with the scale of the pairs' noise from their residuals.
 void minimise_plainly(Joint& joint, double fixed_scale) {
   joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
   constexpr int polish_rounds = 2;  // Ceres stops where χ² falls no more: 1e-6 σ off
@@ -95,7 +122,9 @@ void minimise_plainly(Joint& joint, double fixed_scale) {
     }
     double squares = 0;
     for (const double r : joint.residuals) squares += r * r;
-    const double scale = std::sqrt(squares / static_cast<double>(joint.residuals.size()));
+    const double dof =
+        std::max(1.0, static_cast<double>(joint.residuals.size()) - determined_by_pairs(joint));
+    const double scale = std::max(least_scale, std::sqrt(squares / dof));
     if (std::abs(scale / joint.cost.pair_sigma_scale - 1) < 1e-9) return;
     joint.cost.pair_sigma_scale = scale;
   }
@@ -184,12 +213,13 @@ CalibrationSummary summary_of(const Joint& joint,
     sigma += joint.cost.pairs.sigma_of(i) * joint.cost.pair_sigma_scale;
   }
   const auto n = static_cast<double>(inliers.size());
-  if (n > 0) {
+  if (!evidence.boards.empty()) {  // of the corners; the pairs state their own
+    const ReducedNormalEquations boards = data_equations(joint, evidence, {}, {});
+    summary.pixel_sigma_px = joint.boards.pixel_sigma_px;
+    summary.rms_px = summary.pixel_sigma_px * std::sqrt(boards.chi2 / boards.residuals);
+  } else if (n > 0) {
     summary.pixel_sigma_px = sigma / n;
     summary.rms_px = std::sqrt(squares_px / n);
-  } else if (!evidence.boards.empty()) {
-    summary.pixel_sigma_px = evidence.boards.front().pixel_sigma_px;
-    summary.rms_px = summary.pixel_sigma_px * std::sqrt(plain.chi2 / plain.residuals);
   }
   double from_data = static_cast<double>(bound.rows());
   if (plain.prior_information.size() > 0) from_data -= (bound * plain.prior_information).trace();
@@ -218,6 +248,12 @@ void warn(const JointCalibration& joint,
         out, pairs));
   } else if (out > 0) {
     summary.warnings.push_back(fmt::format("{} of {} pairs were left out as outliers", out, pairs));
+  }
+  if (joint.observability && static_cast<double>(pairs) < 3 * joint.observability->from_data) {
+    summary.doubts.push_back(fmt::format(
+        "{} pairs are few for the {:.1f} parameters they determine: neither their noise nor wrong "
+        "ones among them can be told; match more corners",
+        pairs, joint.observability->from_data));
   }
   const double scale = joint.pair_sigma_scale;
   if (fixed_scale == 0 && pairs > 0 && (scale > 2 || scale < 0.5)) {
@@ -359,6 +395,12 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                    [&](const HeldParameter& h) { return h.name == held.name; });
     if (!twice) with_held.held.push_back(held);
   }
+  const std::vector<std::string> names = parameter_names(prior.rig);
+  for (HeldParameter& held : with_held.held) {  // where the prior has them
+    const auto at = std::find(names.begin(), names.end(), held.name);
+    if (held.value || at == names.end()) continue;
+    held.value = parameters(prior.rig)[at - names.begin()];
+  }
   const std::vector<bool> mask = held_mask(prior.rig, with_held.held);
   const auto free = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), false));
   if (pairs.size() < free) {
@@ -371,7 +413,10 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
   evidence.priors.push_back(prior);
   evidence.pairs = pairs;
   JointCalibration result = calibrate_jointly(evidence, prior.rig, with_held);
-  const ObservationDiagnosis said = check_scene(pairs, result.estimate.rig);
+  std::vector<bool> inlier(pairs.size(), true);
+  for (const PairOutlier& out : result.estimate.calibration->pair_outliers) inlier[out.row] = false;
+  const ObservationDiagnosis said =
+      check_scene(selected(pairs, inlier), result.estimate.rig, result.pair_sigma_scale);
   auto& summary = *result.estimate.calibration;
   const PriorAgreement agreement = agreement_with(prior, result.estimate);
   if (agreement.p_value < 1e-4) {

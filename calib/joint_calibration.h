@@ -52,7 +52,8 @@ struct JointCalibration {
 /// the pairs (calib/epipolar_formulas.h). Pairs count by Huber's loss first, then by Tukey's with
 /// limit 5, both by iterated weights and balanced against the quadratic terms (calib/loss.h); one
 /// whose weight is 0 in the end is an outlier, listed and not counted. Covariance: the sandwich A⁻¹
-/// (B + P) A⁻¹ of that minimum, A the second derivatives, B the scatter of the scores clustered by
+/// (B + P) A⁻¹ of that minimum, A = P + m Σ J Jᵀ
+/// (calib/pair_equations.h), B the scatter of the scores clustered by
 /// frame and image pair; its small-sample form (calib/small_sample_covariance.h) below three
 /// clusters a parameter. Fewer than three image pairs and no board are split into cells of 4 x 4 of
 /// the left image, which takes noise of different cells for independent. `covariance_mvb` is the

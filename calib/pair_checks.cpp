@@ -106,21 +106,24 @@ bool swapped(const Rig& rig,
 
 /// Whether a plane explains nearly all pairs within their noise. A rough rig's lenses bend it, in
 /// directions that pairs of a plane cannot see, so both are let bend by an r² of their own.
-bool on_a_plane(const PairObservations& pairs, const ImagePair& image, const Rig& rig) {
+bool on_a_plane(const PairObservations& pairs,
+                const ImagePair& image,
+                const Rig& rig,
+                double sigma_scale) {
   std::vector<PointPair> points;
   const double f = rig.cameras[1].f_px();
-  double sigma = 0;
+  std::vector<double> sigmas;
   const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
   for (std::size_t i = image.first; i < image.first + image.count; i += step) {
     const auto l = try_unproject(rig.cameras[0], pairs.pixels_px[i].head<2>());
     const auto r = try_unproject(rig.cameras[1], pairs.pixels_px[i].tail<2>());
     if (!l || !r) continue;
     points.push_back({l->head<2>(), r->head<2>()});
-    sigma = std::max(sigma, pairs.sigma_of(i));
+    sigmas.push_back(sigma_scale * pairs.sigma_of(i));
   }
   if (points.size() < fewest_pairs) return false;
   // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
-  return share_on_bent_plane(points, 4 * std::sqrt(2.0) * sigma / f) >= 0.95;
+  return share_on_bent_plane(points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5) / f) >= 0.95;
 }
 
 void check_rays(const PairObservations& pairs, const Rig& rig, const std::string& place) {
@@ -163,12 +166,14 @@ void check_sides(const PairObservations& pairs,
               "exchange the images, or the cameras of the prior");
 }
 
-ObservationDiagnosis check_scene(const PairObservations& pairs, const Rig& rig) {
+ObservationDiagnosis check_scene(const PairObservations& pairs,
+                                 const Rig& rig,
+                                 double sigma_scale) {
   std::size_t judged = 0, flat = 0;
   for (const ImagePair& image : pairs.image_pairs) {
     if (image.count < fewest_pairs) continue;
     ++judged;
-    flat += on_a_plane(pairs, image, rig);
+    flat += on_a_plane(pairs, image, rig, sigma_scale);
   }
   ObservationDiagnosis said;
   if (judged > 0 && flat == judged) {

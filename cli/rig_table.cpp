@@ -53,7 +53,7 @@ std::string rig_table(const RigEstimate& estimate) {
         s.source == "board"   ? "views"
         : s.source == "pairs" ? "image pairs"
                               : "views",
-        s.rms_px, s.source == "board" ? " a coordinate" : " from the epipolar line",
+        s.rms_px, s.source == "pairs" ? " from the epipolar line" : " a coordinate",
         s.pixel_sigma_px, s.chi2, s.dof);
     if (s.prior_dof > 0) {
       text +=

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 
 #include "calib/atomic_file.h"
 #include "calib/corner_lines.h"
@@ -105,11 +106,12 @@ class CornerReader {
 
  private:
   void number_frames(const std::filesystem::path& file) {
-    if (views_.size() > 4 && cameras_.size() == views_.size()) {
+    const std::size_t frames = std::set<std::int64_t>(numbers_.begin(), numbers_.end()).size();
+    if (cameras_.size() >= 5 && cameras_.size() >= 2 * frames) {  // no rig is calibrated like that
       throw Error(file.string(),
-                  fmt::format("by their names all {} images are of different cameras: the last "
+                  fmt::format("by their names the images are of {} cameras and {} frames: the last "
                               "number in a name is the frame, the rest is the camera",
-                              views_.size()),
+                              cameras_.size(), frames),
                   "name images like cam0_frame01.png, cam1_frame01.png");
     }
     const FrameNumbering numbering(numbers_);

@@ -92,6 +92,7 @@ Solved solve(const Options& options, Session& session) {
   BoardObservations observations = load(options.board, session);
   check_holdout(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
+  for (const std::string& doubt : solved.estimate.calibration->doubts) session.doubt(doubt);
   return solved;
 }
 

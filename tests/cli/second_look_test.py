@@ -111,6 +111,12 @@ class RealCorners(cli_test.Case):
                                       'parameters\' scaled condition is [1-9].*; use --model opencv5')
         self.calibrate('--model', 'opencv5')
 
+    def test_check_repeats_the_doubts_of_the_calibration(self):
+        done = vernier('check', '--corners', self.corners, '--size', '640x480', '--board', '9x6',
+                       '--square-m', '25', '--no-mrcal', '--trials', '60')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('did you mean 0.025?', done.stderr)
+
     def test_a_board_in_millimetres_is_doubtful(self):
         done = self.calibrate('--no-model-check', square='25', code=3)
         self.assertIn('the board measures 200 m, its points stand 25 m apart: did you mean 0.025?',

@@ -9,6 +9,7 @@
 
 #include "calib/chessboard_finder.h"
 #include "calib/error.h"
+#include "calib/frame_numbering.h"
 #include "calib/grey_image.h"
 #include "calib/marker_board.h"
 #include "calib/observations_file.h"
@@ -18,7 +19,7 @@ namespace {
 
 BoardView view_of(const BoardDetection& found) {
   BoardView view;
-  view.frame = parse_image_name(found.image).frame;
+  view.frame = found.frame;
   view.camera = found.camera;
   view.image = found.image.string();  // with its folder, which may be what tells the cameras apart
   view.ids = found.ids;
@@ -26,13 +27,21 @@ BoardView view_of(const BoardDetection& found) {
   return view;
 }
 
-/// Throws Error where a camera has no frame number in common with the cameras before it.
-void check_frames_meet(const std::vector<std::vector<std::filesystem::path>>& images) {
-  std::set<int> before;
+/// The images' numbers. Throws Error where a camera has no frame number in common with the cameras
+/// before it, or two images of one.
+std::vector<std::int64_t> frame_numbers(
+    const std::vector<std::vector<std::filesystem::path>>& images) {
+  std::set<std::int64_t> before;
   for (std::size_t camera = 0; camera < images.size(); ++camera) {
-    std::set<int> frames;
-    for (const auto& image : images[camera]) frames.insert(parse_image_name(image).frame);
-    const auto met = [&](int frame) { return before.count(frame) > 0; };
+    std::set<std::int64_t> frames;
+    for (const auto& image : images[camera]) {
+      const std::int64_t number = parse_image_name(image).frame;
+      if (frames.insert(number).second) continue;
+      throw Error(image.string(),
+                  "another image of its camera has the number " + std::to_string(number) + " too",
+                  "the last number in a name is the frame: name images like cam0_frame01.png");
+    }
+    const auto met = [&](std::int64_t frame) { return before.count(frame) > 0; };
     if (camera > 0 && std::none_of(frames.begin(), frames.end(), met)) {
       const auto& first = images.front().front();
       const auto& own = images[camera].front();
@@ -44,6 +53,7 @@ void check_frames_meet(const std::vector<std::vector<std::filesystem::path>>& im
     }
     before.insert(frames.begin(), frames.end());
   }
+  return {before.begin(), before.end()};
 }
 
 void add_detection(const BoardDetection& found, ImageDetections& result) {
@@ -115,7 +125,7 @@ ImageDetections detect_images(const std::vector<std::string>& patterns, const Bo
   check_target(target);
   std::vector<std::vector<std::filesystem::path>> images;
   for (const std::string& pattern : patterns) images.push_back(matching_files(pattern));
-  check_frames_meet(images);
+  const FrameNumbering numbering(frame_numbers(images));
   ImageDetections result;
   result.observations.target_m = target_points(target);
   result.observations.size_px.assign(images.size(), Eigen::Vector2i::Zero());
@@ -123,6 +133,7 @@ ImageDetections detect_images(const std::vector<std::string>& patterns, const Bo
     for (const auto& image : images[camera]) {
       BoardDetection found = detect_board(image, target);
       found.camera = static_cast<int>(camera);
+      found.frame = numbering.frame(parse_image_name(image).frame);
       add_detection(found, result);
     }
   }

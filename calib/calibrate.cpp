@@ -17,12 +17,14 @@
 #include "calib/observation_checks.h"
 #include "calib/refined_minimum.h"
 #include "calib/residual_diagnosis.h"
+#include "calib/result_checks.h"
 #include "calib/view_checks.h"
 
 namespace vernier {
 namespace {
 
 constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
+constexpr int few_frames = 8;                  // below, their scatter says little
 
 /// A minimum of the cost and what surrounds it.
 struct Solution {
@@ -281,7 +283,29 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
                                          "blurred images"
                                        : ""));
   }
+  const auto frames = static_cast<double>(s.state.frames.size());
+  if (frames < few_frames && frames > 1) {
+    warnings.push_back(
+        fmt::format("only {:.0f} views: the standard deviations themselves are uncertain by about "
+                    "{:.0f} %, and "
+                    "lean on the shape of the minimum variance bound; take 15 or more",
+                    frames, 100 / std::sqrt(2 * (frames - 1))));
+  }
   return warnings;
+}
+
+/// What the result says against itself, more strongly.
+void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimate& estimate) {
+  std::vector<std::string>& doubts = estimate.calibration->doubts;
+  const auto add = [&](const std::optional<std::string>& doubt) {
+    if (doubt) doubts.push_back(*doubt);
+  };
+  add(doubt_of_condition({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
+  const int clusters = options.white_noise ? 0 : estimate.calibration->views;
+  for (const RigPrior& prior : s.problem.priors) {
+    add(doubt_of_prior(prior, estimate.rig, *estimate.covariance_mvb, estimate.covariance->matrix,
+                       clusters));
+  }
 }
 
 }  // namespace
@@ -315,6 +339,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
+  if (options.check_input) add_doubts(s, options, estimate);
   estimate.evidence = CalibrationEvidence{
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};
   return estimate;

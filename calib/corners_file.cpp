@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 
 #include "calib/atomic_file.h"
 #include "calib/corner_lines.h"
 #include "calib/error.h"
+#include "calib/frame_numbering.h"
 #include "calib/observations_file.h"
 #include "calib/text_lines.h"
 
@@ -93,6 +95,7 @@ class CornerReader {
                               grid_.prod()),
                   "check the board's size (of a chessboard, inner corners)");
     }
+    number_frames(file);
     std::erase_if(views_, [](const BoardView& view) { return view.ids.size() < 4; });
     if (views_.empty()) {
       throw Error(file.string(), "no board in it", "give a corners file with data");
@@ -102,11 +105,25 @@ class CornerReader {
   }
 
  private:
+  void number_frames(const std::filesystem::path& file) {
+    const std::size_t frames = std::set<std::int64_t>(numbers_.begin(), numbers_.end()).size();
+    if (cameras_.size() >= 5 && cameras_.size() >= 2 * frames) {  // no rig is calibrated like that
+      throw Error(file.string(),
+                  fmt::format("by their names the images are of {} cameras and {} frames: the last "
+                              "number in a name is the frame, the rest is the camera",
+                              cameras_.size(), frames),
+                  "name images like cam0_frame01.png, cam1_frame01.png");
+    }
+    const FrameNumbering numbering(numbers_);
+    for (std::size_t i = 0; i < views_.size(); ++i) views_[i].frame = numbering.frame(numbers_[i]);
+  }
+
   BoardView& view_of(const std::string& image, const std::string& place) {
     if (count_.try_emplace(image, 0).second) {
       const ImageName name = parse_image_name(image);
       // Images without a board count too, or a first one would hand its camera's place to another.
-      views_.push_back({name.frame, cameras_.index(name.camera), image, {}, {}});
+      views_.push_back({0, cameras_.index(name.camera), image, {}, {}});
+      numbers_.push_back(name.frame);
     } else if (views_.back().image != image) {
       throw Error(place, image + " appears a second time", "keep an image's lines together");
     }
@@ -117,6 +134,7 @@ class CornerReader {
   Eigen::Vector2i grid_;  // columns, rows
   const std::vector<Eigen::Vector2i>& size_px_;
   std::vector<BoardView> views_;
+  std::vector<std::int64_t> numbers_;  // one a view, in its image's name
   CameraOrder cameras_;
   std::map<std::string, int> count_;  // corners read of each image, found or not
 };
@@ -132,10 +150,10 @@ ImageName parse_image_name(const std::filesystem::path& image) {
   }
   std::size_t first = last;
   while (first > 0 && std::isdigit(static_cast<unsigned char>(stem[first - 1]))) --first;
-  int frame = 0;
+  std::int64_t frame = 0;
   const auto parsed = std::from_chars(stem.data() + first, stem.data() + last + 1, frame);
   if (parsed.ec != std::errc()) {
-    throw Error(image.string(), "its frame number is too large", "use numbers below 2147483648");
+    throw Error(image.string(), "its frame number is too large", "use up to 18 digits");
   }
   return {(image.parent_path() / (stem.substr(0, first) + "#" + stem.substr(last + 1))).string(),
           frame};

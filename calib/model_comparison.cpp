@@ -230,7 +230,16 @@ ModelComparison compare_models(const RigEstimate& estimate,
   }
   const CalibrationEvidence& evidence = *estimate.evidence;
   const auto models = candidates(estimate.rig);
-  if (models.empty() || evidence.frames.size() < fewest_frames) return comparison;
+  if (models.empty()) {
+    comparison.not_compared =
+        "there is none richer than " + name_of(models_of(estimate.rig)) + " here";
+    return comparison;
+  }
+  if (evidence.frames.size() < fewest_frames) {
+    comparison.not_compared =
+        fmt::format("{} frames are too few, it takes {}", evidence.frames.size(), fewest_frames);
+    return comparison;
+  }
 
   const std::vector<int> frames = evenly_spaced(evidence.frames, most_frames);
   const BoardState whole{estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};

@@ -30,12 +30,12 @@ struct ModelComparison {
   std::vector<ModelScore> richer;     ///< the next two, those that the views can determine
   int frames = 0;                     ///< compared
   std::vector<std::string> warnings;  ///< what a person should do about it
-  std::string not_compared;  ///< why there are no scores, where that is no matter of course
+  std::string not_compared;  ///< why there are no scores
 };
 
 /// `estimate` is calibrate(observations, options)'s result. Nothing to compare (no richer model, or
-/// fewer than six frames) gives no scores and no warnings; where the model in use cannot be
-/// calibrated without some group, `not_compared` says so. Throws Error for an estimate without
+/// fewer than six frames) gives no scores and no warnings, nor does a model in use that cannot be
+/// calibrated without some group; `not_compared` says so. Throws Error for an estimate without
 /// evidence, covariance or summary.
 ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,

@@ -138,6 +138,15 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
   }
 }
 
+/// Between the first point and the nearest of the others.
+double least_side_m(const std::vector<Eigen::Vector3d>& target_m) {
+  double least = INFINITY;
+  for (std::size_t i = 1; i < target_m.size(); ++i) {
+    least = std::min(least, (target_m[i] - target_m[0]).norm());
+  }
+  return least;
+}
+
 void check_sizes(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
   for (int c = 0; c < static_cast<int>(observations.size_px.size()); ++c) {
     Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
@@ -160,10 +169,12 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
   }
   const double extent = (high - low).maxCoeff();
   if (extent > 20 || extent < 0.005) {
-    diagnosis.warnings.push_back(
-        fmt::format("the board measures {:.3g} m: are its corners given in metres? Views of one "
-                    "board cannot show a wrong scale",
-                    extent));
+    const double side = least_side_m(observations.target_m);
+    diagnosis.doubts.push_back(
+        fmt::format("the board measures {:.3g} m, its points stand {:.3g} m apart: did you mean "
+                    "{:.3g}? Lengths "
+                    "are in metres, and views of one board cannot show a wrong scale",
+                    extent, side, extent > 20 ? 1e-3 * side : 1e3 * side));
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -42,11 +43,11 @@ void write_corners(const BoardObservations& observations,
 
 /// How an image belongs to a rig by its name.
 struct ImageName {
-  std::string camera;  ///< the name without its last number
-  int frame = 0;       ///< the last number
+  std::string camera;      ///< the name without its last number
+  std::int64_t frame = 0;  ///< the last number (calib/frame_numbering.h)
 };
 
-/// Throws Error for a name without a number.
+/// Throws Error for a name without a number, or with one of more than 18 digits.
 ImageName parse_image_name(const std::filesystem::path& image);
 
 }  // namespace vernier

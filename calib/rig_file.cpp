@@ -296,20 +296,16 @@ std::vector<RigKnowledge> parse_priors(const Node& evidence) {
   return priors;
 }
 
-int line_of(const std::string& text, std::size_t byte) {
-  const auto end = text.begin() + static_cast<long>(std::min(byte, text.size()));
-  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
-}
-
 }  // namespace
+
+std::string said_of_itself(const std::string& place) { return place + " says of itself: "; }
 
 RigFile parse_rig(const std::string& text, const std::string& place) {
   Json json;
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    throw Error(fmt::format("{}:{}", place, line_of(text, error.byte)),
-                "is not JSON: a comma, quote or bracket is wrong here", "correct it");
+    throw rig_json::not_json(text, place, error.byte);
   }
   const Node root(json, place + ":");
   if (!root.has("format") || root.at("format").text() != "vernier/rig") {
@@ -338,6 +334,9 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (root.has("calibration")) {
     estimate.calibration = parse_summary(root.at("calibration"), estimate.rig);
+    for (const std::string& doubt : estimate.calibration->doubts) {
+      file.warnings.push_back(said_of_itself(place) + doubt);
+    }
   }
   if (root.has("evidence")) {
     estimate.evidence = rig_json::parse_evidence(root.at("evidence"), estimate.rig);

@@ -11,13 +11,17 @@
 
 namespace vernier {
 
-/// A rig file as read, with what deserves a warning (unknown keys, which are kept).
+/// A rig file as read, with what deserves a warning: unknown keys, which are kept, and
+/// what its calibration doubts.
 struct RigFile {
   RigEstimate estimate;
   std::vector<std::string> warnings;
   std::vector<std::string> listed;  ///< its parameter_names; the rest of the rig has no variance
   std::vector<Eigen::Index> listed_places;  ///< where they stand among the rig's parameters
 };
+
+/// "rig.json says of itself: ", how a warning begins that repeats a doubt of the file's calibration.
+std::string said_of_itself(const std::string& place);
 
 /// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it
 /// has no covariance.

@@ -4,11 +4,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/error.h"
 
 namespace vernier::rig_json {
+namespace {
+
+int line_of(const std::string& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<long>(std::min(byte, text.size()));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+}  // namespace
+
+Error not_json(const std::string& text, const std::string& place, std::size_t byte) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return Error(place, "is empty", "write a rig file with vernier calibrate");
+  }
+  if (text.find("vernier/rig") == std::string::npos) {
+    return Error(place, "is not a rig file",
+                 "vernier convert reads Kalibr's, OpenCV's, ROS's and mrcal's files");
+  }
+  return Error(fmt::format("{}:{}", place, line_of(text, byte)),
+               "is not JSON: a comma, quote or bracket is wrong here", "correct it");
+}
 
 Node Node::at(const std::string& key) const {
   if (!json_.is_object()) throw Error(place_, "is not an object", "");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "calib/error.h"
 #include "calib/rig_estimate.h"
 
 /// Internal to calib/: JSON of the parts of a rig file. Not installed.
@@ -37,6 +38,9 @@ class Node {
   const Json& json_;
   std::string place_;
 };
+
+/// Why a text is no JSON: it is empty, of another kind or broken at `byte`.
+Error not_json(const std::string& text, const std::string& place, std::size_t byte);
 
 Json to_json(const Eigen::VectorXd& v);
 Json to_json(const Eigen::MatrixXd& m);

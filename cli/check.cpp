@@ -67,8 +67,12 @@ struct Solved {
 
 /// The calibration that a rig file's evidence is of, solved again from its corners.
 Solved solve_again(const Options& options, Session& session) {
-  RigFile file = read_rig(find_rig(options.rig));
-  for (const std::string& warning : file.warnings) session.warn(warning);
+  const std::filesystem::path path = find_rig(options.rig);
+  RigFile file = read_rig(path);
+  for (const std::string& warning : file.warnings) {
+    const bool doubt = warning.starts_with(said_of_itself(path.string()));
+    doubt ? session.doubt(warning) : session.warn(warning);
+  }
   if (!file.estimate.evidence || !file.estimate.calibration) {
     throw Error(options.rig, "it holds no evidence to solve again",
                 "calibrate without --no-evidence, or give the corners");
@@ -88,6 +92,7 @@ Solved solve(const Options& options, Session& session) {
   BoardObservations observations = load(options.board, session);
   check_holdout(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
+  for (const std::string& doubt : solved.estimate.calibration->doubts) session.doubt(doubt);
   return solved;
 }
 

@@ -31,10 +31,13 @@ double cpu_ms(const F& run) {
 struct LikeWithLike {
   RefinedMinimum ours;
   ReprojectionProblem problem;
+  BoardState start;  ///< with the board as bent as at our minimum
 };
 
 LikeWithLike like_with_like(const CheckedProblem& p, const Session& session) {
   LikeWithLike like;
+  like.start = p.start;
+  like.start.warp_m = p.state.warp_m;
   like.problem = p.problem;
   like.problem.priors.clear();
   like.problem.warp = BoardWarp::known;
@@ -80,10 +83,11 @@ std::vector<Gate> gates_of(const MrcalComparison& solved, const UncertaintyCompa
 }
 
 /// Left out, with the reason, where the script is missing or the Python has no mrcal.
-MrcalAnswers ask_both(const CheckedProblem& p, const RefinedMinimum& ours) {
+MrcalAnswers ask_both(const CheckedProblem& p, const LikeWithLike& like) {
+  const RefinedMinimum& ours = like.ours;
   MrcalAnswers answers;
   const double sigma = p.problem.pixel_sigma_px;
-  answers.solved = check_against_mrcal(p.observations, p.start, ours, sigma, p.problem.held);
+  answers.solved = check_against_mrcal(p.observations, like.start, ours, sigma, p.problem.held);
   try {
     answers.propagated = compare_uncertainty(shipped_script("mrcal_uncertainty.py"), p.observations,
                                              ours, sigma, p.problem.held);
@@ -134,10 +138,11 @@ CheckPart check_by_mrcal(const CheckedProblem& p, const Session& session) {
       MrcalProblem(p.observations, p.start);
       possible = true;
       const LikeWithLike like = like_with_like(p, session);
-      const MrcalAnswers answers = ask_both(p, like.ours);
-      const Resolver resolver(p.observations, p.start, like.problem);
+      const MrcalAnswers answers = ask_both(p, like);
+      const BoardState& start = like.start;
+      const Resolver resolver(p.observations, start, like.problem);
       return part_of(answers,
-                     cpu_ms([&] { minimise_reprojection(p.observations, p.start, like.problem); }),
+                     cpu_ms([&] { minimise_reprojection(p.observations, start, like.problem); }),
                      cpu_ms([&] { resolver.resolve(); }));
     } catch (const Error& error) {
       part.reason = error.what();

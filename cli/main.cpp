@@ -2,12 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 
 #include "calib/error.h"
 #include "cli/session.h"
+
+namespace {
+
+/// What stands on the command line without an option; the shell puts files in an open pattern's
+/// place.
+std::string not_expected(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return "an argument was not expected";
+  std::string text = "\"" + words.front() + "\"";
+  if (words.size() == 1) return text + " was not expected";
+  text += fmt::format(" and {} more were not expected", words.size() - 1);
+  const bool images = std::all_of(words.begin(), words.end(), [](const std::string& word) {
+    return word.front() != '-' && std::filesystem::path(word).has_extension();
+  });
+  return images ? text + "; quote the pattern, like 'left*.png'" : text;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace vernier;
@@ -49,6 +68,9 @@ int main(int argc, char** argv) {
     session.action();
   } catch (const CLI::Success& done) {  // --help, --version
     return app.exit(done);
+  } catch (const CLI::ExtrasError& error) {
+    fmt::print(stderr, "vernier: {} (see vernier --help)\n", not_expected(app));
+    return static_cast<int>(cli::Exit::bad_input);
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "vernier: {} (see vernier --help)\n", error.what());
     return static_cast<int>(cli::Exit::bad_input);

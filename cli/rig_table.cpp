@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace vernier::cli {
 namespace {
@@ -28,6 +29,31 @@ std::string pair_outlier_lines(std::vector<PairOutlier> outliers) {
         std::abs(o.residual_px));
   }
   if (outliers.size() > most) text += fmt::format("… and {} more\n", outliers.size() - most);
+  return text;
+}
+
+/// How the board is bent, where that was estimated.
+std::optional<Eigen::Vector2d> estimated_warp_m(const RigEstimate& estimate) {
+  if (!estimate.evidence || estimate.evidence->warp_m.isZero(0)) return {};
+  return estimate.evidence->warp_m;
+}
+
+std::string parameter_lines(const RigEstimate& estimate) {
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  const Eigen::VectorXd values = parameters(estimate.rig);
+  const std::vector<bool> held = held_parameters(estimate);
+  std::string text =
+      fmt::format("{:<14} {:>14} {:>12} {:>12}\n", "parameter", "value", "sigma", "bound's sigma");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto sigma = [&](const Eigen::MatrixXd* C) {
+      if (!C) return std::string("unknown");
+      return held[i] ? "held" : fmt::format("{:.3g}", std::sqrt((*C)(k, k)));
+    };
+    text += fmt::format("{:<14} {:>14.8g} {:>12} {:>12}\n", names[i], values[k],
+                        sigma(estimate.covariance ? &estimate.covariance->matrix : nullptr),
+                        sigma(estimate.covariance_mvb ? &*estimate.covariance_mvb : nullptr));
+  }
   return text;
 }
 
@@ -65,23 +91,13 @@ std::string rig_table(const RigEstimate& estimate) {
     }
     text += pair_outlier_lines(s.pair_outliers);
   }
-  const std::vector<std::string> names = parameter_names(estimate.rig);
-  const Eigen::VectorXd values = parameters(estimate.rig);
-  const bool known = estimate.covariance.has_value();
-  text +=
-      fmt::format("{:<14} {:>14} {:>12} {:>12}\n", "parameter", "value", "sigma", "bound's sigma");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const auto sigma = [&](bool there, const Eigen::MatrixXd* C) {
-      return there ? fmt::format("{:.3g}", std::sqrt((*C)(k, k))) : std::string("unknown");
-    };
-    text += fmt::format("{:<14} {:>14.8g} {:>12} {:>12}\n", names[i], values[k],
-                        sigma(known, known ? &estimate.covariance->matrix : nullptr),
-                        sigma(estimate.covariance_mvb.has_value(),
-                              estimate.covariance_mvb ? &*estimate.covariance_mvb : nullptr));
+  if (const auto warp_m = estimated_warp_m(estimate)) {
+    text += fmt::format("board bent by {:.3f} / {:.3f} mm along its x / y\n", 1e3 * warp_m->x(),
+                        1e3 * warp_m->y());
   }
-  if (known) {
-    const ScaledDecomposition decomposition(*estimate.covariance);
+  text += parameter_lines(estimate);
+  if (estimate.covariance) {
+    const ScaledDecomposition decomposition(knowledge_of(estimate, "rig").covariance);
     text += fmt::format("covariance: {}; condition {:.1e}, scaled {:.1e}; directions:\n",
                         name(estimate.covariance->kind), decomposition.raw_condition(),
                         decomposition.scaled_condition());
@@ -115,12 +131,17 @@ Json rig_json(const RigEstimate& estimate) {
                                   {"residual_px", o.residual_px}});
     }
   }
+  if (const auto warp_m = estimated_warp_m(estimate)) {
+    json["board_warp_m"] = {warp_m->x(), warp_m->y()};
+  }
   if (estimate.covariance_mvb) json["sigma_mvb"] = list(deviations(*estimate.covariance_mvb));
   if (estimate.covariance) {
     json["covariance_kind"] = name(estimate.covariance->kind);
     json["sigma"] = list(deviations(estimate.covariance->matrix));
     json["directions"] = Json::array();
-    const ScaledDecomposition decomposition(*estimate.covariance);
+    const ScaledDecomposition decomposition(knowledge_of(estimate, "rig").covariance);
+    json["raw_condition"] = decomposition.raw_condition();
+    json["scaled_condition"] = decomposition.scaled_condition();
     for (const CovarianceDirection& d : decomposition.directions()) {
       json["directions"].push_back({{"share", d.variance_share}, {"words", d.words}});
     }

@@ -92,7 +92,8 @@ std::pair<int, int> parse_size(const std::string& text, const std::string& optio
     good = second.ec == std::errc() && second.ptr == end && a > 0 && b > 0;
   }
   if (!good) {
-    throw Error(option, "\"" + text + "\" is not two whole numbers", "write it like 9x6");
+    throw Error(option, "\"" + text + "\" is not two whole numbers",
+                option == "--size" ? "write it like 640x480" : "write it like 9x6");
   }
   return {a, b};
 }

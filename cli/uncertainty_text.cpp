@@ -8,6 +8,9 @@
 namespace vernier::cli {
 namespace {
 
+constexpr std::string_view where_corners_are =
+    "(top left … bottom right: 10 % of the image's width and height in from that corner)\n";
+
 std::string number(double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "inf";
@@ -21,7 +24,8 @@ std::string percent(double share) { return share > 0 ? fmt::format("{:.2g} %", 1
 std::string projection_text(const UncertaintyReport& report) {
   std::string text =
       "\nprojection: standard deviation of the pixel in its worst direction, px (linear / "
-      "sampled)\n";
+      "sampled)\n" +
+      std::string(where_corners_are);
   text += fmt::format("{:<8} {:<13} {:>8} {:>15} {:>15} {:>15} {:>15} {:>15} {:>7} {:>7} {:>6}\n",
                       "camera", "fixed to", "distance", "centre", "top left", "top right",
                       "bottom left", "bottom right", "mean", "worst", "n-p");
@@ -65,7 +69,8 @@ std::string triangulation_text(const UncertaintyReport& report) {
 
 std::string disparity_text(const UncertaintyReport& report) {
   std::string text =
-      "\nrectification: standard deviation of the vertical disparity, px (linear / sampled)\n";
+      "\nrectification: standard deviation of the vertical disparity, px (linear / sampled)\n" +
+      std::string(where_corners_are);
   text += fmt::format("{:<8} {:>8} {:>15} {:>15} {:>15} {:>15} {:>15} {:>7} {:>7} {:>9} {:>11}\n",
                       "camera", "distance", "centre", "top left", "top right", "bottom left",
                       "bottom right", "rms", "worst", "less mean", "less affine");

@@ -86,15 +86,16 @@ std::optional<Eigen::MatrixXd> basis_of(const RefinedMinimum& ours, const std::v
   return basis;
 }
 
+/// Rig and boards with the board's shape held where it is, as mrcal has it here.
 RigAndBoards joint_of(const BoardObservations& observations,
                       const RefinedMinimum& ours,
                       double pixel_sigma_px) {
-  return {ours.state.rig,
-          ours.state.frames,
-          ours.state.T_first_board,
-          pixel_sigma_px * pixel_sigma_px * ours.unit_bound,
-          board_poses_given_rig(observations, ours.state),
-          pixel_sigma_px};
+  BoardPosesGivenRig given = board_poses_given_rig(observations, ours.state);
+  given.warp_by_rig.setZero();
+  given.warp_factor.setZero();
+  return {ours.state.rig,           ours.state.frames,
+          ours.state.T_first_board, pixel_sigma_px * pixel_sigma_px * ours.unit_bound,
+          std::move(given),         pixel_sigma_px};
 }
 
 void compare_projection(const MrcalProjectionQuery& query,

@@ -214,9 +214,8 @@ TEST_F(ObservationChecks, AnImageSizeTwiceTooLargeIsDoubted) {
 
 TEST_F(ObservationChecks, MillimetresAreSuspected) {
   for (auto& X : good_.target_m) X *= 1000;
-  EXPECT_TRUE(holds(diagnosis_of(good_).warnings,
-                    "the board measures 200 m: are its corners given "
-                    "in metres?"));
+  EXPECT_TRUE(holds(diagnosis_of(good_).doubts,
+                    "the board measures 200 m, its points stand 25 m apart: did you mean 0.025?"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
+#include "calib/frame_numbering.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
@@ -163,6 +164,34 @@ TEST(ImageName, LastNumberIsTheFrame) {
   EXPECT_EQ(parse_image_name("x/left07.png").camera, parse_image_name("x/left12.jpg").camera);
   EXPECT_NE(parse_image_name("x/left07.png").camera, parse_image_name("x/right07.png").camera);
   EXPECT_THROW(parse_image_name("left.png"), Error);
+  EXPECT_EQ(parse_image_name("cam0/1403636579763555584.png").frame, 1403636579763555584);
+  EXPECT_THROW(parse_image_name("cam0/99999999999999999999.png"), Error);
+}
+
+TEST(ImageName, NumbersBeyondAFramesRangeNumberFramesInTheirOrder) {
+  const FrameNumbering small({7, 3, 7, 2147483647});
+  EXPECT_EQ(small.frame(7), 7);
+  EXPECT_EQ(small.frame(2147483647), 2147483647);
+  const FrameNumbering stamps({50'000'000'000, 7, 40'000'000'000, 50'000'000'000, 2147483648});
+  EXPECT_EQ(stamps.frame(7), 0);
+  EXPECT_EQ(stamps.frame(2147483648), 1);
+  EXPECT_EQ(stamps.frame(40'000'000'000), 2);
+  EXPECT_EQ(stamps.frame(50'000'000'000), 3);
+}
+
+// frame01_cam0.png: the number that changes is not the last.
+TEST_F(ObservationsFile, ACameraAfterTheFrameInNamesIsTold) {
+  std::string text;
+  for (int frame = 1; frame < 7; ++frame) {
+    for (int camera = 0; camera < 2; ++camera) {
+      text += "frame0" + std::to_string(frame) + "_cam" + std::to_string(camera) + ".png - - -\n";
+    }
+  }
+  write_atomically(folder_ / "c.vnl", text);
+  EXPECT_NE(test::error_message([&] {
+              read_corners(folder_ / "c.vnl", Chessboard{9, 6, 0.025}, {{640, 480}});
+            }).find("6 cameras and 2 frames: the last number in a name is the frame"),
+            std::string::npos);
 }
 
 }  // namespace

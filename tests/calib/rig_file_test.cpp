@@ -64,6 +64,9 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
   EXPECT_NE(complaint_of("{\n\"format\": \"vernier/rig\",\n oops}").find("rig.json:3: is not JSON"),
             std::string::npos);
   EXPECT_NE(complaint_of("{}").find("is not a rig file"), std::string::npos);
+  EXPECT_NE(complaint_of(" \n").find("rig.json: is empty"), std::string::npos);
+  EXPECT_NE(complaint_of("cam0: 1").find("rig.json: is not a rig file; vernier convert reads"),
+            std::string::npos);
   EXPECT_NE(
       complaint_of(replaced(text, "\"k1\"", "\"k7\"")).find("rig.json: cameras[0].parameters"),
       std::string::npos);

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib/covariance.h"
+#include "calib/rig_prior.h"
+
+namespace vernier {
+
+/// Doubts about a calibration that its own result raises; nothing where there is none.
+
+/// Condition of a scaled covariance (calib/covariance.h) beyond which what the views hardly
+/// determine passes for known: residuals in double precision tell directions apart up to about
+/// 1e13, and model errors far below the noise move such a direction as they like.
+inline constexpr double largest_scaled_condition = 1e11;
+
+/// Do the views determine the rig's free parameters? `bound` is over these.
+std::optional<std::string> doubt_of_condition(const Covariance& bound, const Rig& rig);
+
+/// Do data and prior contradict each other, at p < 1e-4 (calib/prior_agreement.h)? `bound` and
+/// `honest` are over all parameters of the rig, zero where one is held; `clusters` as there. Names
+/// the parameter that moved most in the prior's standard deviations.
+std::optional<std::string> doubt_of_prior(const RigPrior& prior,
+                                          const Rig& rig,
+                                          const Eigen::MatrixXd& bound,
+                                          const Eigen::MatrixXd& honest,
+                                          int clusters);
+
+}  // namespace vernier

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the program says against its own results, and to those who give it the wrong thing.
+
+    second_look_test.py PROGRAM [unittest's options]
+"""
+import json
+import re
+import shutil
+import sys
+import unittest
+
+import cli_test
+from cli_test import IMAGES, ROOT, board_lines, vernier
+
+
+class Corners(cli_test.Case):
+    """Simulated corners of a 9x6 board."""
+
+    def corners(self, frames=12):
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines(frames=frames)))
+        return ('--observations', self.folder / 'o.csv', '--size', '640x480')
+
+    def calibrate(self, *more, frames=12, code=0):
+        done = vernier('calibrate', *self.corners(frames), '-o', self.folder / 'rig.json', *more)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+
+class Result(Corners):
+    def test_a_bent_board_is_shown(self):
+        found = json.loads(self.calibrate('--warp', '--no-model-check', '--json').stdout)
+        x, y = found['board_warp_m']
+        self.assertLess(max(abs(x), abs(y)), 1e-3)  # the board is flat
+        text = self.calibrate('--warp', '--no-model-check').stdout
+        self.assertIn(f'board bent by {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
+        self.assertNotIn('board bent', self.calibrate('--no-model-check').stdout)
+
+    def test_a_held_parameter_is_called_so(self):
+        hold = ('--hold', 'left.ax=1', '--no-model-check')
+        text = self.calibrate(*hold).stdout
+        self.assertRegex(text, r'(?m)^left\.ax +1 +held +held$')
+        self.assertNotRegex(text, 'condition inf|scaled inf')
+        found = json.loads(self.calibrate(*hold, '--json').stdout)
+        self.assertGreater(found['scaled_condition'], 1)
+        self.assertLess(found['scaled_condition'], 1e11)
+
+    def test_data_against_a_prior(self):
+        done = self.calibrate('--know', 'right.tx_m=-0.0700,0.0001', code=3)
+        found = re.search(r'data and prior disagree: right.tx_m moved by ([\d.]+) of its prior',
+                          done.stderr)
+        self.assertGreater(float(found[1]), 10, done.stderr)
+        self.assertIn('data and prior disagree',
+                      json.loads((self.folder / 'rig.json').read_text())['calibration']['doubts'][0])
+        self.calibrate('--know', 'right.tx_m=-0.0600,0.0010')
+
+    def test_few_views_and_models_that_are_not_compared(self):
+        said = self.calibrate(frames=5).stderr
+        self.assertIn('only 5 views: the standard deviations themselves are uncertain', said)
+        self.assertIn('models were not compared: 5 frames are too few, it takes 6', said)
+        self.assertNotIn('views: the standard', self.calibrate('--no-model-check').stderr)
+        said = self.calibrate('--model', 'fisheye4').stderr
+        self.assertIn('models were not compared: there is none richer than fisheye4', said)
+
+    def test_doubts_of_a_file_are_said_by_every_verb(self):
+        self.calibrate('--no-model-check')
+        rig = self.folder / 'rig.json'
+        told = json.loads(rig.read_text())
+        told['calibration']['doubts'] = ['the board was soft']
+        rig.write_text(json.dumps(told))
+        line = f'warning: {rig} says of itself: the board was soft'
+        for words in (('uncertainty', rig, '--samples', '50', '--grid', '4x3'),
+                      ('sample', rig, '-n', '2', '-o', self.folder / 's.csv'),
+                      ('advise', rig), ('diff', rig, 'nominal'),
+                      ('report', rig, '-o', self.folder / 'r.html'),
+                      ('convert', rig, '--to', 'opencv', '-o', self.folder / 'rig.yml')):
+            done = vernier(*words)
+            self.assertIn(done.returncode, (0, 3), done.stderr)
+            said = done.stderr + done.stdout
+            self.assertEqual(said.count('the board was soft'), 1, f'{words[0]}: {said}')
+            self.assertIn(line if words[0] != 'convert' else line[9:], said, words[0])
+        done = vernier('check', rig, '--no-mrcal', '--trials', '60', '--json')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('says of itself: the board was soft', json.loads(done.stdout)['doubts'][0])
+
+
+@unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
+class RealCorners(cli_test.Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = cli_test.tempfile.TemporaryDirectory()
+        cls.corners = cli_test.pathlib.Path(cls.kept.name) / 'corners.vnl'
+        vernier('detect', '--left', IMAGES / 'left[0-9]*.jpg', '--right',
+                IMAGES / 'right[0-9]*.jpg', '--board', '9x6', '-o', cls.corners,
+                '--square-m', '0.025', '-q')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.kept.cleanup()
+
+    def calibrate(self, *more, square='0.025', code=0):
+        done = vernier('calibrate', '--corners', self.corners, '--size', '640x480', '--board',
+                       '9x6', '--square-m', square, '-o', self.folder / 'rig.json', *more)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done
+
+    def test_a_model_too_rich_for_the_views_is_doubtful(self):
+        done = self.calibrate('--model', 'opencv8', code=3)
+        self.assertRegex(done.stderr, 'doubtful: the views hardly determine this model: its '
+                                      'parameters\' scaled condition is [1-9].*; use --model opencv5')
+        self.calibrate('--model', 'opencv5')
+
+    def test_check_repeats_the_doubts_of_the_calibration(self):
+        done = vernier('check', '--corners', self.corners, '--size', '640x480', '--board', '9x6',
+                       '--square-m', '25', '--no-mrcal', '--trials', '60')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('did you mean 0.025?', done.stderr)
+
+    def test_a_board_in_millimetres_is_doubtful(self):
+        done = self.calibrate('--no-model-check', square='25', code=3)
+        self.assertIn('the board measures 200 m, its points stand 25 m apart: did you mean 0.025?',
+                      done.stderr)
+
+    def test_mrcal_agrees_on_a_bent_board(self):
+        self.calibrate('--model', 'opencv4', '--warp', '--no-model-check')
+        done = vernier('check', self.folder / 'rig.json', '--trials', '60', '--json')
+        found = json.loads(done.stdout)
+        if found['mrcal'] is None:
+            self.skipTest(found['mrcal_reason'])
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn('restarted', found['mrcal'])
+        if 'projection_reason' not in found['mrcal']:
+            self.assertLess(found['mrcal']['max_projection_covariance_diff'], 1e-6)
+            self.assertLess(found['mrcal']['max_triangulation_covariance_diff'], 1e-6)
+
+    def stamped(self, name):
+        """Three frames named by `name` of camera and frame."""
+        for camera, side in enumerate(('left', 'right')):
+            for frame in (1, 2, 3):
+                to = self.folder / name.format(camera=camera, frame=frame)
+                to.parent.mkdir(exist_ok=True)
+                shutil.copy(IMAGES / f'{side}0{frame}.jpg', to)
+        return ('--board', '9x6', '--square-m', '0.025')
+
+    def test_time_stamps_number_frames_in_their_order(self):
+        board = self.stamped('cam{camera}/140363657976355558{frame}.jpg')
+        corners = self.folder / 'c.vnl'
+        self.works('detect', '--left', self.folder / 'cam0/*.jpg', '--right',
+                   self.folder / 'cam1/*.jpg', *board, '-o', corners)
+        self.works('calibrate', '--corners', corners, '--size', '640x480', *board,
+                   '--no-model-check', '-o', self.folder / 'rig.json')
+        views = json.loads((self.folder / 'rig.json').read_text())['evidence']['observations']
+        self.assertEqual([v['frame'] for v in views], [0, 0, 1, 1, 2, 2])
+
+    def test_a_camera_after_the_frame_in_names(self):
+        board = self.stamped('frame0{frame}_cam{camera}.jpg')
+        self.complains('detect', '--left', self.folder / '*_cam0.jpg', '--right',
+                       self.folder / '*_cam1.jpg', *board, '-o', self.folder / 'c.vnl',
+                       of='another image of its camera has the number 0 too; the last number in a '
+                          'name is the frame: name images like cam0_frame01.png')
+
+
+class WrongThing(cli_test.Case):
+    def test_files_of_another_kind(self):
+        empty, yaml, mrcal = (self.folder / n for n in ('e.json', 'k.yaml', 'm.cameramodel'))
+        empty.write_text('\n')
+        yaml.write_text('%YAML:1.0\n---\ncam0: 1\n')
+        mrcal.write_text("# generated\n{ 'lensmodel': 'LENSMODEL_OPENCV4' }\n")
+        jpeg = self.folder / 'i.jpg'
+        jpeg.write_bytes(b'\xff\xd8\xff\xe0\x00\x10JFIF')
+        for verb in (('uncertainty',), ('check',), ('diff', 'nominal')):
+            self.complains(*verb, empty, of='e.json: is empty')
+            for file in (yaml, mrcal, jpeg):
+                self.complains(*verb, file, of=f"{file.name}: is not a rig file; vernier convert "
+                                               "reads Kalibr's, OpenCV's, ROS's and mrcal's")
+            self.complains(*verb, self.folder, of='is a folder')
+
+    def test_slips_on_the_command_line(self):
+        board = ('--board', '9x6', '--square-m', '0.025', '-o', self.folder / 'r.json')
+        self.complains('calibrate', '--left', 'a1.png', 'a2.png', 'a3.png', *board,
+                       of='"a2.png" and 1 more were not expected; quote the pattern')
+        self.complains('calibrate', 'rubbish', *board, of='"rubbish" was not expected')
+        (self.folder / 'o.csv').write_text('\n'.join(board_lines(frames=4)))
+        self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size', '640',
+                       '-o', self.folder / 'r.json', of='write it like 640x480')
+
+    def test_the_table_says_where_its_corners_are(self):
+        text = self.works('uncertainty', 'nominal', '--samples', '50', '--grid', '4x3').stdout
+        self.assertIn("10 % of the image's width and height in from that corner", text)
+
+
+if __name__ == '__main__':
+    cli_test.PROGRAM = sys.argv.pop(1)
+    unittest.main()

@@ -113,20 +113,18 @@ PriorAgreement agreement_of_pairs(const RigKnowledge& before,
                                   const PairObservations& pairs,
                                   const CombineInput& input,
                                   const JointOptions& options) {
-  JointOptions how = options;
-  if (how.pair_sigma_scale == 0) {
-    // Against a prior five times as wide: pairs that disagree must not pass for noisy ones.
-    RigKnowledge loose = before;
-    loose.covariance.matrix *= 25;
-    try {
-      how.pair_sigma_scale =
-          calibrate_from_pairs(pairs, loose, options, input.name).pair_sigma_scale;
-    } catch (const Error&) {
-      // The pairs do not determine the rig against so little knowledge: by the prior as it is.
-    }
+  // Against a prior so much wider that, wrong, it does not hold the rig away from the pairs; as it
+  // is where they do not determine the rig against so little knowledge.
+  constexpr double wider = 10;
+  RigKnowledge loose = before;
+  loose.covariance.matrix *= wider * wider;
+  try {
+    const JointCalibration with = calibrate_from_pairs(pairs, loose, options, input.name);
+    return agreement_with(before, with.estimate, wider);
+  } catch (const Error&) {
+    const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
+    return agreement_with(before, with.estimate);
   }
-  const JointCalibration with = calibrate_from_pairs(pairs, before, how, input.name);
-  return agreement_with(before, with.estimate);
 }
 
 PriorAgreement agreement_of_rigs(const RigKnowledge& before,

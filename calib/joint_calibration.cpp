@@ -82,21 +82,23 @@ double determined_by_pairs(const Joint& joint) {
 
 /// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
 void minimise_robustly(Joint& joint, double fixed_scale) {
-  const auto scale = [&](bool first) {
-    const double found = median_length(joint.residuals) / normal_median;
-    if (fixed_scale > 0) return first ? std::max(found, fixed_scale) : fixed_scale;
-    return std::max(found, least_scale);
+  const auto median_scale = [&] {
+    return std::max(least_scale, median_length(joint.residuals) / normal_median);
   };
   joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
   joint.cost.must_converge = false;  // before the weights have settled
-  for (int round = 0; round < huber_rounds; ++round) {
-    joint.cost.pair_sigma_scale = scale(true);
-    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2) break;
+  // From the residuals of the start down to the stated noise: a scale that stayed with the
+  // residuals would let a prior that is wrong hold the rig where all pairs look noisy.
+  const double stated = fixed_scale > 0 ? fixed_scale : 1;
+  double scale = std::max(stated, median_scale());
+  for (int round = 0; round < huber_rounds; ++round, scale = std::max(stated, 0.5 * scale)) {
+    joint.cost.pair_sigma_scale = scale;
+    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2 && scale == stated) break;
     minimise(joint);
   }
   joint.loss = balanced(LossShape::tukey, tukey_limit);
   for (int round = 0; round < tukey_rounds; ++round) {
-    joint.cost.pair_sigma_scale = scale(false);
+    joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : median_scale();
     if (reweigh(joint, joint.loss) < 1e-7) break;
     minimise(joint);
   }
@@ -307,7 +309,9 @@ std::optional<Observability> what_pairs_brought(const Joint& joint,
 
 }  // namespace
 
-PriorAgreement agreement_with(const RigKnowledge& prior, const RigEstimate& estimate) {
+PriorAgreement agreement_with(const RigKnowledge& prior,
+                              const RigEstimate& estimate,
+                              double looseness) {
   const std::vector<bool> held = held_parameters(estimate);
   const Rig& rig = estimate.rig;
   const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
@@ -321,9 +325,7 @@ PriorAgreement agreement_with(const RigKnowledge& prior, const RigEstimate& esti
   return prior_agreement(moved(free), prior.covariance.names, prior.covariance.matrix,
                          covariance_of_free(*estimate.covariance_mvb, rig, held),
                          covariance_of_free(estimate.covariance->matrix, rig, held),
-                         known_noise       ? 0
-                         : image_pairs < 3 ? 16 * image_pairs
-                                           : image_pairs);
+                         known_noise ? 0 : (image_pairs < 3 ? 16 : 1) * image_pairs, looseness);
 }
 
 std::vector<HeldParameter> held_by(const RigKnowledge& prior) {

@@ -75,7 +75,10 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
 
 /// Whether pairs and prior agree (calib/prior_agreement.h), of a calibration from both; nothing (p
 /// 1) where parameters that the prior knows were held.
-PriorAgreement agreement_with(const RigKnowledge& prior, const RigEstimate& estimate);
+/// The calibration may have used the prior with standard deviations `looseness` times as large.
+PriorAgreement agreement_with(const RigKnowledge& prior,
+                              const RigEstimate& estimate,
+                              double looseness = 1);
 
 /// The parameters that `prior` does not name, held where its rig has them.
 std::vector<HeldParameter> held_by(const RigKnowledge& prior);

@@ -16,7 +16,8 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                                const Eigen::MatrixXd& prior,
                                const Eigen::MatrixXd& bound,
                                const Eigen::MatrixXd& honest,
-                               int clusters) {
+                               int clusters,
+                               double looseness) {
   constexpr double least_share = 0.05;
   const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
   const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
@@ -34,8 +35,9 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
   // In the prior's own standard deviations, where C_0 = I.
   const Eigen::MatrixXd root = before.operatorSqrt(), inverse_root = before.operatorInverseSqrt();
   const Eigen::MatrixXd C = inverse_root * scaled(bound) * inverse_root;
-  const Eigen::MatrixXd noise = inverse_root * scaled(honest) * inverse_root - C * C;
-  const Eigen::MatrixXd moved = Eigen::MatrixXd::Identity(n, n) - C;  // C H
+  const double p = 1 / (looseness * looseness);  // information of the prior that was used
+  const Eigen::MatrixXd noise = inverse_root * scaled(honest) * inverse_root - p * C * C;
+  const Eigen::MatrixXd moved = Eigen::MatrixXd::Identity(n, n) - p * C;  // C H
   const Eigen::MatrixXd D = noise + moved * moved.transpose();
   const Eigen::VectorXd delta = inverse_root * sd.cwiseInverse().asDiagonal() * offset;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (D + D.transpose()));

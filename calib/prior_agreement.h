@@ -30,12 +30,16 @@ struct PriorAgreement {
 /// (0: it is known), χ² over its degrees of freedom is referred to Fisher's F with clusters − 1
 /// below, as of a variance with that many. Bar-Shalom, Li and Kirubarajan, "Estimation
 /// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the
-/// normalised innovation squared. Throws Error where C_0 is singular.
+/// normalised innovation squared. The estimate
+/// may have been made with the prior `looseness` times as wide, so that a wrong one does not hold
+/// the rig away from the data: then H = C_mvb⁻¹ − C_0⁻¹ / looseness², and likewise in the last
+/// equation. Throws Error where C_0 is singular.
 PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                                const std::vector<std::string>& names,
                                const Eigen::MatrixXd& prior,
                                const Eigen::MatrixXd& bound,
                                const Eigen::MatrixXd& honest,
-                               int clusters = 0);
+                               int clusters = 0,
+                               double looseness = 1);
 
 }  // namespace vernier

@@ -30,7 +30,7 @@ struct ModelComparison {
   std::vector<ModelScore> richer;     ///< the next two, those that the views can determine
   int frames = 0;                     ///< compared
   std::vector<std::string> warnings;  ///< what a person should do about it
-  std::string not_compared;  ///< why there are no scores
+  std::string not_compared;           ///< why there are no scores
 };
 
 /// `estimate` is calibrate(observations, options)'s result. Nothing to compare (no richer model, or

@@ -20,7 +20,8 @@ struct RigFile {
   std::vector<Eigen::Index> listed_places;  ///< where they stand among the rig's parameters
 };
 
-/// "rig.json says of itself: ", how a warning begins that repeats a doubt of the file's calibration.
+/// "rig.json says of itself: ", how a warning begins that repeats a doubt of the file's
+/// calibration.
 std::string said_of_itself(const std::string& place);
 
 /// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it

@@ -51,6 +51,15 @@ TEST(MonteCarloCheck, TheBoundIsRightForWhiteNoise) {
     const Calibrated calibrated(camera_model(model));
     const MonteCarloCheck check = calibrated.check(calibrated.covariance);
     EXPECT_EQ(check.trials, 500) << model;
+    RecordProperty(std::string("nees_") + model,
+                   std::to_string(check.nees_mean) + " of " + std::to_string(check.nees_expected));
+    RecordProperty(std::string("eigenvalues_") + model,
+                   std::to_string(check.eigenvalues[0]) + " " +
+                       std::to_string(check.eigenvalues[check.eigenvalues.size() - 1]) + " in " +
+                       std::to_string(check.eigenvalue_band_99[0]) + " " +
+                       std::to_string(check.eigenvalue_band_99[1]));
+    RecordProperty(std::string("ks_p_") + model, std::to_string(check.ks_p) + ", components " +
+                                                     std::to_string(check.ks_p_components));
     EXPECT_TRUE(check.consistent())
         << model << ": NEES " << check.nees_mean << " of " << check.nees_expected
         << ", eigenvalues " << check.eigenvalues[0] << " " << check.eigenvalues[1] << " in "

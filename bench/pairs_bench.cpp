@@ -10,24 +10,19 @@
 #include "calib/resolve_pairs.h"
 #include "calib/simulated_pairs.h"
 #include "tests/support/jet_sampson.h"
+#include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
 
-Eigen::VectorXd prior_sd() {
-  Eigen::VectorXd sd(16);
-  sd << 10, 0.002, 8, 8, 0.02, 10, 0.002, 8, 8, 0.02, 0.01, 0.01, 0.01, 0.002, 0.002, 0.002;
-  return sd;
-}
-
 RigPrior prior_of(const Rig& mean) {
-  return {mean, Eigen::MatrixXd(prior_sd().cwiseAbs2().cwiseInverse().asDiagonal())};
+  return {mean, Eigen::MatrixXd(test::datasheet_sd().cwiseAbs2().cwiseInverse().asDiagonal())};
 }
 
 /// Half a standard deviation of the prior away in every parameter, signs in turn.
 Rig start_of(const Rig& truth) {
-  Eigen::VectorXd away = 0.5 * prior_sd();
+  Eigen::VectorXd away = 0.5 * test::datasheet_sd();
   for (Eigen::Index i = 0; i < away.size(); i += 2) away[i] = -away[i];
   return retract(truth, away);
 }

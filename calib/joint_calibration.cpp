@@ -10,135 +10,16 @@
 
 #include "calib/error.h"
 #include "calib/honest_covariance.h"
-#include "calib/loss.h"
-#include "calib/merged_boards.h"
-#include "calib/minimise_reprojection.h"
-#include "calib/packed_pairs.h"
+#include "calib/joint_minimum.h"
+#include "calib/linearised_cost.h"
 #include "calib/pair_checks.h"
 #include "calib/pair_equations.h"
 
 namespace vernier {
 namespace {
 
-constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
-constexpr int huber_rounds = 12, tukey_rounds = 40;
-constexpr double least_scale = 0.01;  // of the stated noise: no corner is better than that
-
-/// A joint calibration while it is made.
-struct Joint {
-  MergedBoards boards;
-  ReprojectionProblem cost;
-  BoardState state;
-  Loss loss;                      // of the pairs at the minimum
-  std::vector<double> residuals;  // of the pairs there, in their stated standard deviations
-};
-
-double median_length(std::vector<double> values) {
-  for (double& v : values) v = std::abs(v);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-constexpr double normal_median = 0.6744897501960817;  // of |z|
-
-void minimise(Joint& joint) {
-  joint.state = minimise_reprojection(joint.boards.observations, joint.state, joint.cost);
-  joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
-}
-
-/// One round of iterated weights; returns the largest change of a weight.
-double reweigh(Joint& joint, const Loss& loss) {
-  std::vector<double> weights;
-  double change = joint.cost.pair_weights.empty() ? 1 : 0;
-  for (std::size_t i = 0; i < joint.residuals.size(); ++i) {
-    weights.push_back(weight_of(loss, joint.residuals[i] / joint.cost.pair_sigma_scale));
-    if (!joint.cost.pair_weights.empty()) {
-      change = std::max(change, std::abs(weights[i] - joint.cost.pair_weights[i]));
-    }
-  }
-  joint.cost.pair_weights = std::move(weights);
-  return change;
-}
-
-/// How many parameters the pairs determine at this scale, tr(C H).
-double determined_by_pairs(const Joint& joint) {
-  const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
-  const Eigen::MatrixXd H =
-      E.transpose() *
-      pair_equations(joint.cost.pairs, joint.state.rig, joint.loss, joint.cost.pair_sigma_scale)
-          .information *
-      E;
-  Eigen::MatrixXd all = H;
-  for (const RigPrior& prior : joint.cost.priors) {
-    const Eigen::MatrixXd J = prior_offset(prior, joint.state.rig).by_rig * E;
-    all += J.transpose() * prior.information * J;
-  }
-  const Eigen::VectorXd d = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = d.asDiagonal() * all * d.asDiagonal();
-  const Eigen::MatrixXd scaled_H = d.asDiagonal() * H * d.asDiagonal();
-  return scaled.ldlt().solve(scaled_H).trace();
-}
-
-/// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
-void minimise_robustly(Joint& joint, double fixed_scale) {
-  const auto median_scale = [&] {
-    return std::max(least_scale, median_length(joint.residuals) / normal_median);
-  };
-  joint.residuals = PackedPairs(joint.cost.pairs).residuals(joint.state.rig);
-  joint.cost.must_converge = false;  // before the weights have settled
-  // From the residuals of the start down to the stated noise: a scale that stayed with the
-  // residuals would let a prior that is wrong hold the rig where all pairs look noisy.
-  const double stated = fixed_scale > 0 ? fixed_scale : 1;
-  double scale = std::max(stated, median_scale());
-  for (int round = 0; round < huber_rounds; ++round, scale = std::max(stated, 0.5 * scale)) {
-    joint.cost.pair_sigma_scale = scale;
-    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2 && scale == stated) break;
-    minimise(joint);
-  }
-  joint.loss = balanced(LossShape::tukey, tukey_limit);
-  for (int round = 0; round < tukey_rounds; ++round) {
-    joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : median_scale();
-    if (reweigh(joint, joint.loss) < 1e-7) break;
-    minimise(joint);
-  }
-  if (!(fixed_scale > 0)) {  // fitted parameters make residuals smaller than the noise
-    const auto n = static_cast<double>(joint.residuals.size());
-    const double share = std::min(0.9, determined_by_pairs(joint) / n);
-    joint.cost.pair_sigma_scale /= std::sqrt(1 - share);
-    reweigh(joint, joint.loss);
-  }
-  joint.cost.must_converge = true;
-  minimise(joint);
-}
-
-/// Least squares, with the scale of the pairs' noise from their residuals.
-void minimise_plainly(Joint& joint, double fixed_scale) {
-  joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
-  constexpr int polish_rounds = 2;  // Ceres stops where χ² falls no more: 1e-6 σ off
-  for (int round = 0; round < 20; ++round) {
-    minimise(joint);
-    if (fixed_scale > 0 || joint.residuals.empty()) {
-      if (round >= polish_rounds) return;
-      continue;
-    }
-    double squares = 0;
-    for (const double r : joint.residuals) squares += r * r;
-    const double dof =
-        std::max(1.0, static_cast<double>(joint.residuals.size()) - determined_by_pairs(joint));
-    const double scale = std::max(least_scale, std::sqrt(squares / dof));
-    if (std::abs(scale / joint.cost.pair_sigma_scale - 1) < 1e-9) return;
-    joint.cost.pair_sigma_scale = scale;
-  }
-}
-
-bool is_outlier(const Joint& joint, std::size_t row) {
-  return joint.loss.shape != LossShape::square &&
-         std::abs(joint.residuals[row]) >= joint.loss.limit * joint.cost.pair_sigma_scale;
-}
-
 /// The equations of boards and pairs, in all parameters.
-ReducedNormalEquations data_equations(const Joint& joint,
+ReducedNormalEquations data_equations(const JointMinimum& joint,
                                       const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss) {
@@ -161,33 +42,30 @@ ReducedNormalEquations data_equations(const Joint& joint,
 }
 
 /// The same in the free directions, with the priors.
-ReducedNormalEquations free_equations(const Joint& joint,
+ReducedNormalEquations free_equations(const JointMinimum& joint,
                                       const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss,
                                       const Eigen::MatrixXd& free) {
   ReducedNormalEquations equations = restricted(data_equations(joint, evidence, pairs, loss), free);
-  for (const RigPrior& prior : joint.cost.priors) {
-    const Eigen::MatrixXd J = prior_offset(prior, joint.state.rig).by_rig * free;
-    add_prior(equations, J.transpose() * prior.information * J);
-  }
+  add_priors(equations, joint.cost.priors, joint.state.rig, free);
   return equations;
 }
 
-PairObservations inliers_of(const Joint& joint) {
+PairObservations inliers_of(const JointMinimum& joint) {
   std::vector<bool> kept;
   for (std::size_t i = 0; i < joint.cost.pairs.size(); ++i) kept.push_back(!is_outlier(joint, i));
   return selected(joint.cost.pairs, kept);
 }
 
 /// Clusters of the scores: image pairs, or cells of them where they are fewer than three.
-PairObservations clustered_pairs(const Joint& joint) {
+PairObservations clustered_pairs(const JointMinimum& joint) {
   const PairObservations& pairs = joint.cost.pairs;
   if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
   return split_into_cells(pairs, joint.state.rig.cameras[0].size_px, 4);
 }
 
-std::vector<PairOutlier> outliers_of(const Joint& joint) {
+std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
   std::vector<PairOutlier> outliers;
   for (const ImagePair& image : joint.cost.pairs.image_pairs) {
     for (std::size_t i = image.first; i < image.first + image.count; ++i) {
@@ -199,7 +77,7 @@ std::vector<PairOutlier> outliers_of(const Joint& joint) {
   return outliers;
 }
 
-CalibrationSummary summary_of(const Joint& joint,
+CalibrationSummary summary_of(const JointMinimum& joint,
                               const JointEvidence& evidence,
                               const PairObservations& inliers,
                               const ReducedNormalEquations& plain,
@@ -277,8 +155,10 @@ void warn(const JointCalibration& joint,
   }
 }
 
-Joint start_of(const JointEvidence& evidence, const Rig& start, const JointOptions& options) {
-  Joint joint;
+JointMinimum start_of(const JointEvidence& evidence,
+                      const Rig& start,
+                      const JointOptions& options) {
+  JointMinimum joint;
   joint.boards = merge_boards(evidence.boards, start);
   joint.state = joint.boards.state;
   joint.state.rig = with_held_values(start, options.held);
@@ -286,6 +166,7 @@ Joint start_of(const JointEvidence& evidence, const Rig& start, const JointOptio
   joint.cost.corner_weights = joint.boards.corner_weights;
   joint.cost.held = held_mask(start, options.held);
   joint.cost.pairs = evidence.pairs;
+  joint.packed = PackedPairs(evidence.pairs);
   for (const RigKnowledge& prior : evidence.priors) {
     joint.cost.priors.push_back(rig_prior(start, prior));
   }
@@ -293,7 +174,7 @@ Joint start_of(const JointEvidence& evidence, const Rig& start, const JointOptio
 }
 
 /// What the pairs brought beyond priors and boards, where these alone determine the rig.
-std::optional<Observability> what_pairs_brought(const Joint& joint,
+std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
                                                 const JointEvidence& evidence,
                                                 const Eigen::MatrixXd& free,
                                                 const std::vector<std::string>& names,
@@ -343,7 +224,7 @@ std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
 JointCalibration calibrate_jointly(const JointEvidence& evidence,
                                    const Rig& start,
                                    const JointOptions& options) {
-  Joint joint = start_of(evidence, start, options);
+  JointMinimum joint = start_of(evidence, start, options);
   if (options.reject_outliers && evidence.pairs.size() > 0) {
     minimise_robustly(joint, options.pair_sigma_scale);
   } else {

@@ -7,6 +7,16 @@
 
 namespace vernier {
 
+void add_priors(ReducedNormalEquations& equations,
+                const std::vector<RigPrior>& priors,
+                const Rig& rig,
+                const Eigen::MatrixXd& E) {
+  for (const RigPrior& prior : priors) {
+    const Eigen::MatrixXd J = prior_offset(prior, rig).by_rig * E;
+    add_prior(equations, J.transpose() * prior.information * J);
+  }
+}
+
 LinearisedCost linearised_cost(const BoardObservations& observations,
                                const BoardState& state,
                                const ReprojectionProblem& problem) {
@@ -18,10 +28,7 @@ LinearisedCost linearised_cost(const BoardObservations& observations,
   cost.equations = restricted(
       reduced_normal_equations(observations, state, problem.pixel_sigma_px, problem.warp),
       cost.free);
-  for (const RigPrior& prior : problem.priors) {
-    const Eigen::MatrixXd J = prior_offset(prior, state.rig).by_rig * cost.free;
-    add_prior(cost.equations, J.transpose() * prior.information * J);
-  }
+  add_priors(cost.equations, problem.priors, state.rig, cost.free);
   return cost;
 }
 

@@ -20,6 +20,12 @@ struct LinearisedCost {
   ReducedNormalEquations equations;  ///< of z, at the problem's noise
 };
 
+/// Adds the information that priors have at `rig`, in the directions E.
+void add_priors(ReducedNormalEquations& equations,
+                const std::vector<RigPrior>& priors,
+                const Rig& rig,
+                const Eigen::MatrixXd& E);
+
 /// Corner weights and matched pairs are left aside. Throws Error where every parameter is held, or
 /// as check_problem and reduced_normal_equations do. minimum_variance_bound(equations, names) then
 /// says whether z is determined.

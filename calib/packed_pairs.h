@@ -12,6 +12,7 @@ namespace vernier {
 /// Matched pairs eight at a time, image pair by image pair, the last eight of each padded.
 class PackedPairs {
  public:
+  PackedPairs() = default;  ///< of no pairs
   /// Weights multiply squared residuals; one a row, or none.
   explicit PackedPairs(const PairObservations& pairs, const std::vector<double>& weights = {});
 

@@ -103,19 +103,10 @@ Rig parse_cameras(const Node& node) {
   return rig;
 }
 
-std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
-  std::vector<std::string> texts;
-  if (!node.has(key)) return texts;
-  for (std::size_t i = 0; i < node.at(key).array().size(); ++i) {
-    texts.push_back(node.at(key).at(i).text());
-  }
-  return texts;
-}
-
 /// The rig's parameters that the file lists, by their indices: all, or some in the same order.
 std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
   const std::vector<std::string> all = parameter_names(rig);
-  const std::vector<std::string> stated = parse_texts(root, "parameter_names");
+  const std::vector<std::string> stated = rig_json::parse_texts(root, "parameter_names");
   std::vector<Eigen::Index> places;
   std::size_t next = 0;
   for (std::size_t i = 0; i < all.size() && next < stated.size(); ++i) {
@@ -177,86 +168,6 @@ Covariance parse_covariance(const Node& node,
                             const std::vector<Eigen::Index>& listed) {
   return {covariance_kind(node.at("kind").text()), parameter_names(rig),
           parse_parameter_matrix(node, rig, listed)};
-}
-
-CornerOutlier parse_outlier(const Node& node, const Rig& rig) {
-  CornerOutlier outlier;
-  outlier.frame = node.at("frame").integer();
-  outlier.camera = rig_json::camera_index(node.at("camera"), rig);
-  outlier.id = node.at("corner").integer();
-  if (node.has("image")) outlier.image = node.at("image").text();
-  const Eigen::VectorXd q = node.at("pixel_px").vector();
-  if (q.size() != 2) throw Error(node.at("pixel_px").place(), "is not a pixel", "");
-  outlier.pixel_px = q;
-  outlier.residual_px = node.at("residual_px").json().is_null()
-                            ? std::numeric_limits<double>::quiet_NaN()
-                            : node.at("residual_px").number();
-  return outlier;
-}
-
-/// Names of parameters, each one of the rig's: an unknown one would be freed in silence.
-std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
-  std::vector<std::string> held = parse_texts(node, "held");
-  const std::vector<std::string> names = parameter_names(rig);
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
-    throw Error(node.at("held").at(i).place(), "the rig has no parameter \"" + held[i] + "\"",
-                "name it as parameter_names does, after the camera");
-  }
-  return held;
-}
-
-CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
-  CalibrationSummary summary;
-  summary.source = node.at("source").text();
-  summary.pixel_sigma_px = node.at("pixel_sigma_px").number();
-  summary.rms_px = node.at("rms_px").number();
-  summary.chi2 = node.at("chi2").number();
-  summary.dof = node.at("dof").integer();
-  summary.views = node.at("views").integer();
-  if (node.has("prior_chi2")) summary.prior_chi2 = node.at("prior_chi2").number();
-  if (node.has("prior_dof")) summary.prior_dof = node.at("prior_dof").integer();
-  summary.held = parse_held(node, rig);
-  if (node.has("outliers")) {
-    for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
-      summary.outliers.push_back(parse_outlier(node.at("outliers").at(i), rig));
-    }
-  }
-  if (node.has("pair_outliers")) {
-    const Node list = node.at("pair_outliers");
-    for (std::size_t i = 0; i < list.array().size(); ++i) {
-      summary.pair_outliers.push_back(rig_json::parse_pair_outlier(list.at(i)));
-    }
-  }
-  summary.warnings = parse_texts(node, "warnings");
-  summary.doubts = parse_texts(node, "doubts");
-  return summary;
-}
-
-Json summary_json(const CalibrationSummary& s, const Rig& rig) {
-  Json json{{"source", s.source}, {"pixel_sigma_px", s.pixel_sigma_px},
-            {"rms_px", s.rms_px}, {"chi2", s.chi2},
-            {"dof", s.dof},       {"views", s.views}};
-  if (s.prior_dof > 0) {
-    json["prior_chi2"] = s.prior_chi2;
-    json["prior_dof"] = s.prior_dof;
-  }
-  if (!s.held.empty()) json["held"] = s.held;
-  json["outliers"] = Json::array();
-  for (const CornerOutlier& o : s.outliers) {
-    json["outliers"].push_back({{"frame", o.frame},
-                                {"camera", rig.cameras[o.camera].name},
-                                {"corner", o.id},
-                                {"image", o.image},
-                                {"pixel_px", {o.pixel_px.x(), o.pixel_px.y()}},
-                                {"residual_px", o.residual_px}});  // null where not a number
-  }
-  for (const PairOutlier& o : s.pair_outliers) {
-    json["pair_outliers"].push_back(rig_json::to_json(o));
-  }
-  json["warnings"] = s.warnings;
-  if (!s.doubts.empty()) json["doubts"] = s.doubts;
-  return json;
 }
 
 /// JSON has no NaN: it would be written as null, which no rig file may hold but for the residual of
@@ -333,7 +244,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
         parse_parameter_matrix(root.at("covariance_mvb"), estimate.rig, listed);
   }
   if (root.has("calibration")) {
-    estimate.calibration = parse_summary(root.at("calibration"), estimate.rig);
+    estimate.calibration = rig_json::parse_summary(root.at("calibration"), estimate.rig);
     for (const std::string& doubt : estimate.calibration->doubts) {
       file.warnings.push_back(said_of_itself(place) + doubt);
     }
@@ -384,7 +295,8 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
                           {"matrix", listed(estimate.covariance->matrix)}};
   }
   if (estimate.covariance_mvb) json["covariance_mvb"]["matrix"] = listed(*estimate.covariance_mvb);
-  if (estimate.calibration) json["calibration"] = summary_json(*estimate.calibration, estimate.rig);
+  if (estimate.calibration)
+    json["calibration"] = rig_json::summary_json(*estimate.calibration, estimate.rig);
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
     for (const RigKnowledge& prior : estimate.evidence->priors) {

@@ -48,6 +48,12 @@ Json to_json(const Eigen::MatrixXd& m);
 /// Index of the camera of that name. Throws Error where the rig has none.
 int camera_index(const Node& name, const Rig& rig);
 
+/// The texts listed under `key`, none where it is missing.
+std::vector<std::string> parse_texts(const Node& node, const std::string& key);
+
+Json summary_json(const CalibrationSummary& summary, const Rig& rig);
+CalibrationSummary parse_summary(const Node& node, const Rig& rig);
+
 Json to_json(const PairOutlier& outlier);
 PairOutlier parse_pair_outlier(const Node& node);
 

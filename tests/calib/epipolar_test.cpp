@@ -10,6 +10,7 @@
 #include "calib/simulated_pairs.h"
 #include "tests/support/epipolar.h"
 #include "tests/support/jet_sampson.h"
+#include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -22,13 +23,6 @@ Rig rig_of(const std::string& left, const std::string& right) {
   Rig rig = test::stereo_rig(camera_model(left));
   rig.cameras[1] = test::stereo_rig(camera_model(right)).cameras[1];
   return rig;
-}
-
-/// Of every parameter of a `radial1` pair.
-Eigen::VectorXd prior_sd() {
-  Eigen::VectorXd sd(16);
-  sd << 10, 0.002, 8, 8, 0.02, 10, 0.002, 8, 8, 0.02, 0.01, 0.01, 0.01, 0.002, 0.002, 0.002;
-  return sd;
 }
 
 TEST(Epipolar, ResidualIsTheTextbooksForEveryModel) {
@@ -120,7 +114,7 @@ TEST(Epipolar, ResolverFindsTheTruthWithoutNoise) {
   const Rig truth = rig_of("radial1", "radial1");
   const PairObservations pairs = simulate_pairs(truth, 6, 0, {.pixel_sigma_px = 0});
   const auto n = parameter_count(truth);
-  const Eigen::VectorXd sd = prior_sd();
+  const Eigen::VectorXd sd = test::datasheet_sd();
   const RigPrior prior{truth, Eigen::MatrixXd(sd.cwiseAbs2().cwiseInverse().asDiagonal())};
   Eigen::VectorXd away(n);
   away << 5, -0.001, 4, -6, 0.01, -7, 0.001, 3, 2, -0.01, 0.003, -0.004, 0.002, 0.001, 0.001,
@@ -137,7 +131,7 @@ TEST(Epipolar, ResolverFindsTheTruthWithoutNoise) {
 TEST(Epipolar, ResolverEndsWhereCeresDoes) {
   const Rig truth = rig_of("radial1", "radial1");
   const PairObservations pairs = simulate_pairs(truth, 7);
-  const RigPrior prior{truth, prior_sd().cwiseAbs2().cwiseInverse().asDiagonal()};
+  const RigPrior prior{truth, test::datasheet_sd().cwiseAbs2().cwiseInverse().asDiagonal()};
   const EpipolarMinimum ours = PairResolver(pairs).minimise(truth, {.priors = {prior}});
   const Rig theirs = test::solve_by_jets(pairs, prior, truth);
   const Eigen::MatrixXd E = free_directions(truth, std::vector<bool>(16, false));

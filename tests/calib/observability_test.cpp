@@ -8,16 +8,11 @@
 
 #include "calib/epipolar_system.h"
 #include "calib/simulated_pairs.h"
+#include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
-
-Eigen::VectorXd prior_sd() {
-  Eigen::VectorXd sd(16);
-  sd << 10, 0.002, 8, 8, 0.02, 10, 0.002, 8, 8, 0.02, 0.01, 0.01, 0.01, 0.002, 0.002, 0.002;
-  return sd;
-}
 
 /// The plane of `pairs` without noise, n·X = 1, from three triangulated corners.
 Eigen::Vector3d plane_of(const PairObservations& pairs, const Rig& rig) {
@@ -42,7 +37,7 @@ void expect_rank(const Rig& rig,
                  const Eigen::MatrixXd& unseen,
                  int rank) {
   ASSERT_EQ(unseen.cols(), 16 - rank);
-  const Eigen::VectorXd sd = prior_sd();
+  const Eigen::VectorXd sd = test::datasheet_sd();
   const Eigen::MatrixXd S =
       sd.asDiagonal() * epipolar_sums(PackedPairs(pairs), rig, {}).information * sd.asDiagonal();
   const Eigen::MatrixXd N = sd.cwiseInverse().asDiagonal() * unseen;
@@ -107,7 +102,7 @@ TEST(Observability, AnotherLensAtAnotherScaleIsTheSameLens) {
 TEST(Observability, WhatPairsCannotSeeStaysThePriors) {
   const Rig rig = test::stereo_rig();
   const PairObservations pairs = simulate_pairs(rig, 6);
-  const Eigen::VectorXd sd = prior_sd();
+  const Eigen::VectorXd sd = test::datasheet_sd();
   const Eigen::MatrixXd before = sd.cwiseAbs2().asDiagonal();
   const Eigen::MatrixXd S = epipolar_sums(PackedPairs(pairs), rig, {}).information;
   const Eigen::MatrixXd P = before.inverse();

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/joint_minimum.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/held_parameters.h"
+#include "calib/linearised_cost.h"
+#include "calib/pair_equations.h"
+
+namespace vernier {
+namespace {
+
+constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
+constexpr int huber_rounds = 12, tukey_rounds = 40;
+constexpr double least_scale = 0.01;  // of the stated noise: no corner is better than that
+
+double median_length(std::vector<double> values) {
+  for (double& v : values) v = std::abs(v);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+constexpr double normal_median = 0.6744897501960817;  // of |z|
+
+void minimise(JointMinimum& joint) {
+  joint.state = minimise_reprojection(joint.boards.observations, joint.state, joint.cost);
+  joint.residuals = joint.packed.residuals(joint.state.rig);
+}
+
+/// One round of iterated weights; returns the largest change of a weight.
+double reweigh(JointMinimum& joint, const Loss& loss) {
+  std::vector<double> weights;
+  double change = joint.cost.pair_weights.empty() ? 1 : 0;
+  for (std::size_t i = 0; i < joint.residuals.size(); ++i) {
+    weights.push_back(weight_of(loss, joint.residuals[i] / joint.cost.pair_sigma_scale));
+    if (!joint.cost.pair_weights.empty()) {
+      change = std::max(change, std::abs(weights[i] - joint.cost.pair_weights[i]));
+    }
+  }
+  joint.cost.pair_weights = std::move(weights);
+  return change;
+}
+
+/// How many parameters the pairs determine at this scale, tr(C H).
+double determined_by_pairs(const JointMinimum& joint) {
+  const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
+  ReducedNormalEquations equations = restricted(
+      pair_equations(joint.cost.pairs, joint.state.rig, joint.loss, joint.cost.pair_sigma_scale),
+      E);
+  const Eigen::MatrixXd H = equations.information;
+  add_priors(equations, joint.cost.priors, joint.state.rig, E);
+  const Eigen::MatrixXd& all = equations.information;
+  const Eigen::VectorXd d = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = d.asDiagonal() * all * d.asDiagonal();
+  const Eigen::MatrixXd scaled_H = d.asDiagonal() * H * d.asDiagonal();
+  return scaled.ldlt().solve(scaled_H).trace();
+}
+
+}  // namespace
+
+void minimise_robustly(JointMinimum& joint, double fixed_scale) {
+  const auto median_scale = [&] {
+    return std::max(least_scale, median_length(joint.residuals) / normal_median);
+  };
+  joint.residuals = joint.packed.residuals(joint.state.rig);
+  joint.cost.must_converge = false;  // before the weights have settled
+  // From the residuals of the start down to the stated noise: a scale that stayed with the
+  // residuals would let a prior that is wrong hold the rig where all pairs look noisy.
+  const double stated = fixed_scale > 0 ? fixed_scale : 1;
+  double scale = std::max(stated, median_scale());
+  for (int round = 0; round < huber_rounds; ++round, scale = std::max(stated, 0.5 * scale)) {
+    joint.cost.pair_sigma_scale = scale;
+    if (reweigh(joint, balanced(LossShape::huber, huber_limit)) < 1e-2 && scale == stated) break;
+    minimise(joint);
+  }
+  joint.loss = balanced(LossShape::tukey, tukey_limit);
+  for (int round = 0; round < tukey_rounds; ++round) {
+    joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : median_scale();
+    if (reweigh(joint, joint.loss) < 1e-7) break;
+    minimise(joint);
+  }
+  if (!(fixed_scale > 0)) {  // fitted parameters make residuals smaller than the noise
+    const auto n = static_cast<double>(joint.residuals.size());
+    const double share = std::min(0.9, determined_by_pairs(joint) / n);
+    joint.cost.pair_sigma_scale /= std::sqrt(1 - share);
+    reweigh(joint, joint.loss);
+  }
+  joint.cost.must_converge = true;
+  minimise(joint);
+}
+
+void minimise_plainly(JointMinimum& joint, double fixed_scale) {
+  joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
+  constexpr int polish_rounds = 2;  // Ceres stops where χ² falls no more: 1e-6 σ off
+  for (int round = 0; round < 20; ++round) {
+    minimise(joint);
+    if (fixed_scale > 0 || joint.residuals.empty()) {
+      if (round >= polish_rounds) return;
+      continue;
+    }
+    double squares = 0;
+    for (const double r : joint.residuals) squares += r * r;
+    const double dof =
+        std::max(1.0, static_cast<double>(joint.residuals.size()) - determined_by_pairs(joint));
+    const double scale = std::max(least_scale, std::sqrt(squares / dof));
+    if (std::abs(scale / joint.cost.pair_sigma_scale - 1) < 1e-9) return;
+    joint.cost.pair_sigma_scale = scale;
+  }
+}
+
+bool is_outlier(const JointMinimum& joint, std::size_t row) {
+  return joint.loss.shape != LossShape::square &&
+         std::abs(joint.residuals[row]) >= joint.loss.limit * joint.cost.pair_sigma_scale;
+}
+
+}  // namespace vernier

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calib/merged_boards.h"
+#include "calib/minimise_reprojection.h"
+#include "calib/packed_pairs.h"
+
+namespace vernier {
+
+/// The minimum of the joint cost of boards, pairs and priors (calib/joint_calibration.h), and while
+/// it is sought the state of the search.
+struct JointMinimum {
+  MergedBoards boards;
+  ReprojectionProblem cost;
+  PackedPairs packed;  // those of the cost
+  BoardState state;
+  Loss loss;                      // of the pairs at the minimum
+  std::vector<double> residuals;  // of the pairs there, in their stated standard deviations
+};
+
+/// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
+/// The scale of the pairs' noise is `fixed_scale`, or where that is 0 comes from their residuals.
+void minimise_robustly(JointMinimum& joint, double fixed_scale);
+
+/// Least squares, with the scale likewise.
+void minimise_plainly(JointMinimum& joint, double fixed_scale);
+
+/// Whether a pair does not count at the minimum.
+bool is_outlier(const JointMinimum& joint, std::size_t row);
+
+}  // namespace vernier

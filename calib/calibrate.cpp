@@ -342,6 +342,10 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   if (options.check_input) add_doubts(s, options, estimate);
   estimate.evidence = CalibrationEvidence{
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};
+  if (options.prior) estimate.evidence->priors.push_back(*options.prior);
+  if (!options.known.empty()) {
+    estimate.evidence->priors.push_back(knowledge_of(estimate.rig, options.known));
+  }
   return estimate;
 }
 

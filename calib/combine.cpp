@@ -10,7 +10,9 @@
 #include <set>
 
 #include "calib/error.h"
+#include "calib/pair_checks.h"
 #include "calib/rig_difference.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
@@ -36,6 +38,7 @@ std::string kind_of(const CombineInput& input) {
 bool same(const RigKnowledge& a, const RigKnowledge& b) {
   constexpr double rounding = 1e-9;
   if (a.covariance.names != b.covariance.names) return false;
+  if (parameter_names(a.rig) != parameter_names(b.rig)) return false;
   const Eigen::MatrixXd &A = a.covariance.matrix, &B = b.covariance.matrix;
   const Eigen::VectorXd sd = A.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
@@ -77,12 +80,20 @@ void refuse_repeated(const JointEvidence& so_far,
   }
 }
 
-void add(JointEvidence& to, const JointEvidence& more) {
-  for (const RigKnowledge& prior : more.priors) {
-    const bool known = std::any_of(to.priors.begin(), to.priors.end(),
-                                   [&](const RigKnowledge& p) { return same(p, prior); });
-    if (!known) to.priors.push_back(prior);
+/// The priors of `more` that are not among `so_far`.
+std::vector<RigKnowledge> new_priors(const std::vector<RigKnowledge>& so_far,
+                                     const std::vector<RigKnowledge>& more) {
+  std::vector<RigKnowledge> added;
+  for (const RigKnowledge& prior : more) {
+    const auto is_same = [&](const RigKnowledge& p) { return same(p, prior); };
+    if (std::none_of(so_far.begin(), so_far.end(), is_same)) added.push_back(prior);
   }
+  return added;
+}
+
+void add(JointEvidence& to, const JointEvidence& more) {
+  const std::vector<RigKnowledge> priors = new_priors(to.priors, more.priors);
+  to.priors.insert(to.priors.end(), priors.begin(), priors.end());
   to.boards.insert(to.boards.end(), more.boards.begin(), more.boards.end());
   append(to.pairs, more.pairs);
 }
@@ -132,7 +143,7 @@ PriorAgreement agreement_of_rigs(const RigKnowledge& before,
                                  const std::string& name) {
   const RigDifference d = rig_difference(before.rig, whole_covariance(before), estimate.rig,
                                          required_covariance(estimate, name));
-  PriorAgreement agreement{d.mahalanobis2, d.dof, d.p_value, 0, ""};
+  PriorAgreement agreement{d.mahalanobis2, d.dof, 0, d.p_value, 0, ""};
   if (!d.directions.empty()) {
     agreement.in_sigma = std::abs(d.directions.front().in_sigma);
     agreement.words = d.directions.front().words;
@@ -141,13 +152,55 @@ PriorAgreement agreement_of_rigs(const RigKnowledge& before,
 }
 
 PriorAgreement agreement_of(const RigKnowledge& before,
+                            const JointEvidence& so_far,
                             const CombineInput& input,
                             const JointEvidence& evidence,
                             const JointOptions& options) {
-  if (kind_of(input) == "pairs") {
+  if (kind_of(input) == "pairs" && new_priors(so_far.priors, evidence.priors).empty()) {
     return agreement_of_pairs(before, evidence.pairs, input, options);
   }
   return agreement_of_rigs(before, *input.estimate, input.name);
+}
+
+/// What the inputs said against themselves, and the pairs of all say of their scene and of what was
+/// left out.
+void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
+  CalibrationSummary& summary = *combination.joint.estimate.calibration;
+  const PairObservations& pairs = combination.evidence.pairs;
+  if (pairs.size() > 0 && combination.evidence.boards.empty()) {
+    std::vector<bool> inlier(pairs.size(), true);
+    for (const PairOutlier& out : summary.pair_outliers) inlier[out.row] = false;
+    const ObservationDiagnosis said =
+        check_scene(selected(pairs, inlier), combination.joint.estimate.rig,
+                    combination.joint.pair_sigma_scale);
+    summary.warnings.insert(summary.warnings.end(), said.warnings.begin(), said.warnings.end());
+    summary.doubts.insert(summary.doubts.end(), said.doubts.begin(), said.doubts.end());
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const CombinedInput& input = combination.inputs[i];
+    if (input.used && inputs[i].estimate && inputs[i].estimate->calibration) {
+      for (const std::string& doubt : inputs[i].estimate->calibration->doubts) {
+        summary.doubts.push_back(input.name + ": " + doubt);
+      }
+    }
+    if (input.used) {
+      constexpr double worth_saying = 0.01;
+      if (i > 0 && input.agreement.p_value < worth_saying) {
+        summary.warnings.push_back(
+            fmt::format("{} hardly agrees with what stands before it (p {:.1g})", input.name,
+                        input.agreement.p_value));
+      }
+      continue;
+    }
+    if (input.agreement.dof == 0) {
+      summary.doubts.push_back(input.name + " was left out: " + input.agreement.words);
+      continue;
+    }
+    summary.doubts.push_back(fmt::format(
+        "{} disagrees with what stands before it (chi² {:.1f} for {}, p {:.1g}) and was left out: "
+        "the rig has changed, or one of them states too little uncertainty",
+        input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
+  }
 }
 
 /// Parameters that no input may move: those that the first does not know.
@@ -157,6 +210,34 @@ JointOptions with_held(JointOptions options, const CombineInput& first) {
     options.held.push_back(held);
   }
   return options;
+}
+
+/// The bound C of an estimate and the scatter B of its scores, C B C its honest covariance.
+struct Scatter {
+  Eigen::MatrixXd C, B;
+  explicit Scatter(const RigEstimate& estimate) : C(*estimate.covariance_mvb) {
+    const Eigen::MatrixXd white = ScaledRoot(C).white;
+    const Eigen::MatrixXd inverse = white.transpose() * white;
+    B = inverse * estimate.covariance->matrix * inverse;
+  }
+};
+
+/// Standard deviation of the offset of a batch from all, both with what was known before them:
+/// each source's score g moves the one by C_batch g where it is part of it, and the other by
+/// C_all g.
+Eigen::VectorXd drift_sigma(const Scatter& before,
+                            const Scatter& batch,
+                            const Scatter& all,
+                            bool part_of_all) {
+  const Eigen::MatrixXd own = batch.B - before.B, all_pairs = all.B - before.B;
+  const Eigen::MatrixXd G = batch.C - all.C;
+  Eigen::MatrixXd D = G * before.B * G;
+  if (part_of_all) {
+    D += G * own * G + all.C * (all_pairs - own) * all.C;
+  } else {
+    D += batch.C * own * batch.C + all.C * all_pairs * all.C;
+  }
+  return D.diagonal().cwiseMax(0).cwiseSqrt();
 }
 
 }  // namespace
@@ -202,9 +283,9 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
     refuse_repeated(result.evidence, evidence, start, input.name);
     if (before) {
       try {
-        said.agreement = agreement_of(*before, input, evidence, joint);
+        said.agreement = agreement_of(*before, result.evidence, input, evidence, joint);
       } catch (const Error& error) {  // it tells nothing by itself, so it is not taken in
-        said.agreement = {0, 0, 0, 0, error.what()};
+        said.agreement = {0, 0, 0, 0, 0, error.what()};
       }
       said.used = options.keep_disagreeing || said.agreement.p_value >= options.least_p;
       if (!said.used) continue;
@@ -216,6 +297,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
                  : knowledge_of(calibrate_jointly(result.evidence, before->rig, joint));
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
+  judge(inputs, result);
   return result;
 }
 
@@ -230,20 +312,28 @@ FilteredRig information_filter(const std::vector<CombineInput>& inputs,
     known.covariance.matrix =
         covariance_of_free(*first.covariance_mvb, first.rig, held_parameters(first));
   }
+  std::vector<RigKnowledge> used = evidence_of(inputs.front()).priors;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     if (!batch.inputs[i].used) continue;
     JointEvidence evidence = evidence_of(inputs[i]);
-    const bool prior_only = evidence.boards.empty() && evidence.pairs.size() == 0;
-    if (!prior_only) evidence.priors.clear();
+    evidence.priors = new_priors(used, evidence.priors);
+    used.insert(used.end(), evidence.priors.begin(), evidence.priors.end());
     evidence.priors.push_back(known);
     known = knowledge_of(calibrate_jointly(evidence, known.rig, joint));
   }
-  FilteredRig filtered{known.rig, known.covariance, 0, ""};
+  FilteredRig filtered{known.rig, known.covariance, 0, "", 1, ""};
+  const Eigen::MatrixXd& honest = batch.joint.estimate.covariance->matrix;
+  const Eigen::MatrixXd own = whole_covariance(known).matrix;
   const Eigen::VectorXd d = difference(known.rig, batch.joint.estimate.rig);
   const Eigen::MatrixXd& C = *batch.joint.estimate.covariance_mvb;
   const std::vector<std::string> names = parameter_names(known.rig);
   for (Eigen::Index i = 0; i < d.size(); ++i) {
     if (!(C(i, i) > 0)) continue;
+    const double ratio = std::sqrt(own(i, i) / honest(i, i));
+    if (ratio < filtered.least_sigma_ratio) {
+      filtered.least_sigma_ratio = ratio;
+      filtered.least_parameter = names[static_cast<std::size_t>(i)];
+    }
     const double in_sigma = std::abs(d[i]) / std::sqrt(C(i, i));
     if (in_sigma <= filtered.worst_in_sigma) continue;
     filtered.worst_in_sigma = in_sigma;
@@ -259,6 +349,8 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
   JointEvidence before = combination.evidence;
   before.pairs = {};
   const RigEstimate& all = combination.joint.estimate;
+  const Scatter known_before(calibrate_jointly(before, all.rig, joint).estimate);
+  const Scatter of_all(all);
   std::vector<MonitoredBatch> batches;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const JointEvidence own = evidence_of(inputs[i]);
@@ -272,10 +364,8 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
     batch.outliers = alone.estimate.calibration->pair_outliers.size();
     batch.rms_px = alone.estimate.calibration->rms_px;
     batch.offset = difference(alone.estimate.rig, all.rig);
-    const double sign = combination.inputs[i].used ? -1 : 1;
-    const Eigen::VectorXd variance =
-        alone.estimate.covariance_mvb->diagonal() + sign * all.covariance_mvb->diagonal();
-    batch.sigma = variance.cwiseMax(0).cwiseSqrt();
+    batch.sigma =
+        drift_sigma(known_before, Scatter(alone.estimate), of_all, combination.inputs[i].used);
     batch.agreement = combination.inputs[i].agreement;
   }
   return batches;

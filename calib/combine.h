@@ -57,9 +57,11 @@ JointEvidence evidence_of(const CombineInput& input);
 /// a mean and a covariance only, linearised where each batch left it.
 struct FilteredRig {
   Rig rig;
-  Covariance covariance;        ///< the bound that the filter believes
-  double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
-  std::string worst_parameter;  ///< … in that one's bound, and of which parameter
+  Covariance covariance;         ///< the bound that the filter believes
+  double worst_in_sigma = 0;     ///< its largest distance from the batch solution …
+  std::string worst_parameter;   ///< … in that one's bound, and of which parameter
+  double least_sigma_ratio = 1;  ///< smallest of its standard deviations over the batch's …
+  std::string least_parameter;   ///< … and of which parameter
 };
 FilteredRig information_filter(const std::vector<CombineInput>& inputs,
                                const Combination& batch,
@@ -76,9 +78,13 @@ struct MonitoredBatch {
 };
 
 /// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the
-/// combined rig. By the bounds, the offset of a batch that is part of the combination has the
-/// covariance C_batch − C_all; of one that was left out, at most C_batch + C_all (what both had
-/// from before the pairs counts twice, so that directions which pairs do not see look quieter).
+/// combined rig. With C a bound and B the scatter of the scores behind it (C B C the honest
+/// covariance), of what was before (0), the batch (b) and all (a), the offset has the covariance
+///
+///     G B_0 G + G B_b' G + C_a (B_a − B_b) C_a,       G = C_b − C_a,  B_b' = B_b − B_0
+///     G B_0 G + C_b B_b' C_b + C_a (B_a − B_0) C_a
+///
+/// where the batch is part of the combination, and where it was left out.
 std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
                                     const Combination& combination,
                                     const CombineOptions& options = {});

@@ -3,38 +3,55 @@
 #include "calib/joint_calibration.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "calib/chi_squared.h"
 #include "calib/error.h"
 #include "calib/honest_covariance.h"
 #include "calib/joint_minimum.h"
 #include "calib/linearised_cost.h"
 #include "calib/pair_checks.h"
 #include "calib/pair_equations.h"
+#include "calib/scaled_root.h"
 
 namespace vernier {
 namespace {
+
+constexpr int cells_a_side = 4;  // of an image pair as clusters
+
+ReducedNormalEquations of_nothing(int unknowns) {
+  ReducedNormalEquations sum;
+  sum.information = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  sum.held_poses_diagonal = Eigen::VectorXd::Zero(unknowns);
+  sum.scores = Eigen::MatrixXd::Zero(unknowns, 0);
+  return sum;
+}
+
+/// The equations of the boards, in all parameters; a bend that is free is common to them.
+ReducedNormalEquations board_equations(const JointMinimum& joint,
+                                       const std::vector<BoardTerm>& terms) {
+  const bool bends = joint.boards.warp == BoardWarp::free;
+  ReducedNormalEquations sum = of_nothing(parameter_count(joint.state.rig) + (bends ? 2 : 0));
+  for (std::size_t b = 0; b < terms.size(); ++b) {
+    const BoardObservations& views = terms[b].evidence.observations;
+    const BoardState state = state_of(joint.boards, terms, joint.state, b);
+    const double sigma_px = terms[b].pixel_sigma_px;
+    add_equations(sum, bends ? equations_with_warp(views, state, sigma_px)
+                             : reduced_normal_equations(views, state, sigma_px));
+  }
+  return bends ? without_warp(sum) : sum;
+}
 
 /// The equations of boards and pairs, in all parameters.
 ReducedNormalEquations data_equations(const JointMinimum& joint,
                                       const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss) {
-  const int p = parameter_count(joint.state.rig);
-  ReducedNormalEquations sum;  // of nothing
-  sum.information = Eigen::MatrixXd::Zero(p, p);
-  sum.held_poses_diagonal = Eigen::VectorXd::Zero(p);
-  sum.scores = Eigen::MatrixXd::Zero(p, 0);
-  for (std::size_t b = 0; b < evidence.boards.size(); ++b) {
-    const BoardTerm& term = evidence.boards[b];
-    add_equations(sum,
-                  reduced_normal_equations(term.evidence.observations,
-                                           state_of(joint.boards, evidence.boards, joint.state, b),
-                                           term.pixel_sigma_px));
-  }
+  ReducedNormalEquations sum = board_equations(joint, evidence.boards);
   if (pairs.size() > 0) {
     add_equations(sum, pair_equations(pairs, joint.state.rig, loss, joint.cost.pair_sigma_scale));
   }
@@ -62,7 +79,7 @@ PairObservations inliers_of(const JointMinimum& joint) {
 PairObservations clustered_pairs(const JointMinimum& joint) {
   const PairObservations& pairs = joint.cost.pairs;
   if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
-  return split_into_cells(pairs, joint.state.rig.cameras[0].size_px, 4);
+  return split_into_cells(pairs, joint.state.rig.cameras[0].size_px, cells_a_side);
 }
 
 std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
@@ -94,14 +111,15 @@ CalibrationSummary summary_of(const JointMinimum& joint,
   }
   const auto n = static_cast<double>(inliers.size());
   if (!evidence.boards.empty()) {  // of the corners; the pairs state their own
-    const ReducedNormalEquations boards = data_equations(joint, evidence, {}, {});
+    const ReducedNormalEquations boards = board_equations(joint, evidence.boards);
     summary.pixel_sigma_px = joint.boards.pixel_sigma_px;
     summary.rms_px = summary.pixel_sigma_px * std::sqrt(boards.chi2 / boards.residuals);
   } else if (n > 0) {
     summary.pixel_sigma_px = sigma / n;
     summary.rms_px = std::sqrt(squares_px / n);
   }
-  double from_data = static_cast<double>(bound.rows());
+  double from_data =
+      static_cast<double>(bound.rows()) + (joint.boards.warp == BoardWarp::free ? 2 : 0);
   if (plain.prior_information.size() > 0) from_data -= (bound * plain.prior_information).trace();
   summary.chi2 = plain.chi2;
   summary.dof = static_cast<int>(std::lround(plain.residuals - from_data -
@@ -136,12 +154,29 @@ void warn(const JointCalibration& joint,
         pairs, joint.observability->from_data));
   }
   const double scale = joint.pair_sigma_scale;
-  if (fixed_scale == 0 && pairs > 0 && (scale > 2 || scale < 0.5)) {
+  if (fixed_scale == 0 && pairs > 0 && scale > 2) {
+    constexpr double incredible = 5;
+    (scale > incredible ? summary.doubts : summary.warnings)
+        .push_back(fmt::format(
+            "the residuals of the pairs are {:.2g} times as large as the noise they state: they "
+            "are not of one rig, the prior holds the rig away from them, or their noise is larger; "
+            "the result goes by the residuals",
+            scale));
+  } else if (fixed_scale == 0 && pairs > 0 && scale < 0.5) {
     summary.warnings.push_back(
-        fmt::format("the noise of the pairs is {:.2g} times what they state, or the prior holds "
-                    "the rig away from "
-                    "them; the result goes by the residuals",
+        fmt::format("the residuals of the pairs are {:.2g} times as large as the noise they state; "
+                    "the result goes by the residuals",
                     scale));
+  }
+  if (summary.prior_dof > 0) {  // shrunk by the data's pull: no right prior exceeds it more often
+    const double p = chi_squared_survival(summary.prior_chi2, summary.prior_dof);
+    if (p < 1e-4) {
+      summary.doubts.push_back(fmt::format(
+          "the data move the rig farther from what was known than that allows (chi² {:.1f} for {}, "
+          "p {:.1g}): the prior is of another rig or states too little uncertainty, or the data "
+          "are wrong",
+          summary.prior_chi2, summary.prior_dof, p));
+    }
   }
   if (pairs > 0 && joint.estimate.covariance->kind == CovarianceKind::mvb && !white_noise) {
     summary.warnings.push_back(
@@ -149,9 +184,10 @@ void warn(const JointCalibration& joint,
         "on real images");
   }
   if (joint.observability && joint.observability->mostly_prior()) {
-    summary.warnings.push_back(
-        fmt::format("the answer is mostly prior: the pairs determine {:.1f} of {} parameters",
-                    joint.observability->from_data, joint.observability->directions.size()));
+    summary.warnings.push_back(fmt::format(
+        "the answer is mostly what was known before the pairs: they determine {:.1f} "
+        "of {} parameters",
+        std::max(0.0, joint.observability->from_data), joint.observability->directions.size()));
   }
 }
 
@@ -164,6 +200,7 @@ JointMinimum start_of(const JointEvidence& evidence,
   joint.state.rig = with_held_values(start, options.held);
   joint.cost.pixel_sigma_px = joint.boards.pixel_sigma_px;
   joint.cost.corner_weights = joint.boards.corner_weights;
+  joint.cost.warp = joint.boards.warp;
   joint.cost.held = held_mask(start, options.held);
   joint.cost.pairs = evidence.pairs;
   joint.packed = PackedPairs(evidence.pairs);
@@ -188,25 +225,45 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
   }
 }
 
+/// Clusters of the pairs' scatter (clustered_pairs), 0 where their noise was known.
+int clusters_of(const RigEstimate& estimate) {
+  if (estimate.covariance->kind == CovarianceKind::mvb) return 0;
+  const PairObservations& pairs = estimate.evidence->pairs;
+  if (pairs.image_pairs.size() >= 3) return static_cast<int>(pairs.image_pairs.size());
+  const Eigen::Vector2i& size_px = estimate.rig.cameras[0].size_px;
+  return static_cast<int>(split_into_cells(pairs, size_px, cells_a_side).image_pairs.size());
+}
+
 }  // namespace
 
 PriorAgreement agreement_with(const RigKnowledge& prior,
                               const RigEstimate& estimate,
                               double looseness) {
-  const std::vector<bool> held = held_parameters(estimate);
   const Rig& rig = estimate.rig;
-  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
-  std::vector<Eigen::Index> free;
+  if (parameter_names(prior.rig) != parameter_names(rig)) return {};
+  const std::vector<bool> held = held_parameters(estimate);
+  const Eigen::MatrixXd V = values_by_tangent(rig, held);
+  const Eigen::MatrixXd C = V * whole_covariance(prior).matrix * V.transpose();
+  const Eigen::VectorXd moved = V * difference(rig, prior.rig);
+  std::vector<Eigen::Index> free, given;
   for (std::size_t i = 0; i < held.size(); ++i) {
-    if (!held[i]) free.push_back(static_cast<Eigen::Index>(i));
+    const auto k = static_cast<Eigen::Index>(i);
+    if (held[i] && C(k, k) > 0) given.push_back(k);
+    if (held[i]) continue;
+    if (!(C(k, k) > 0)) return {};  // data alone say it
+    free.push_back(k);
   }
-  if (free_names(rig, held) != prior.covariance.names) return {};
-  const int image_pairs = static_cast<int>(estimate.evidence->pairs.image_pairs.size());
-  const bool known_noise = estimate.covariance->kind == CovarianceKind::mvb;
-  return prior_agreement(moved(free), prior.covariance.names, prior.covariance.matrix,
-                         covariance_of_free(*estimate.covariance_mvb, rig, held),
-                         covariance_of_free(estimate.covariance->matrix, rig, held),
-                         known_noise ? 0 : (image_pairs < 3 ? 16 : 1) * image_pairs, looseness);
+  Eigen::MatrixXd known = C(free, free);
+  Eigen::VectorXd offset = moved(free);
+  if (!given.empty()) {  // where the rest of what the prior knows has the values it was held at
+    const Eigen::MatrixXd white = ScaledRoot(C(given, given)).white;
+    const Eigen::MatrixXd by_given = C(free, given) * white.transpose();
+    offset -= by_given * (white * moved(given));
+    known -= by_given * by_given.transpose();
+  }
+  return prior_agreement(
+      offset, free_names(rig, held), known, covariance_of_free(*estimate.covariance_mvb, rig, held),
+      covariance_of_free(estimate.covariance->matrix, rig, held), clusters_of(estimate), looseness);
 }
 
 std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
@@ -259,6 +316,10 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   for (const HeldParameter& held : options.held) {
     estimate.calibration->held.push_back(held.name);
   }
+  if (joint.boards.bends_taken_as_known) {
+    estimate.calibration->warnings.push_back(
+        "the views are of different boards, and the bend each was found to have is taken as known");
+  }
   warn(result, evidence.pairs.size(), options.pair_sigma_scale, options.white_noise,
        *estimate.calibration);
   estimate.evidence = merged_evidence(joint.boards, joint.state);
@@ -273,10 +334,13 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const std::string& place) {
   check_pairs(pairs, prior.rig, place);
   JointOptions with_held = options;
+  std::vector<std::string> unlisted;
   for (const HeldParameter& held : held_by(prior)) {
     const bool twice = std::any_of(options.held.begin(), options.held.end(),
                                    [&](const HeldParameter& h) { return h.name == held.name; });
-    if (!twice) with_held.held.push_back(held);
+    if (twice) continue;
+    with_held.held.push_back(held);
+    unlisted.push_back(held.name);
   }
   const std::vector<std::string> names = parameter_names(prior.rig);
   for (HeldParameter& held : with_held.held) {  // where the prior has them
@@ -307,6 +371,11 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
         "pairs and prior disagree (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma where {}): the rig "
         "has changed, or one of them states too little uncertainty",
         agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma, agreement.words));
+  }
+  if (!unlisted.empty()) {
+    summary.warnings.push_back(
+        fmt::format("held as known exactly, since the prior gives them no variance: {}",
+                    fmt::join(unlisted, ", ")));
   }
   summary.warnings.insert(summary.warnings.begin(), said.warnings.begin(), said.warnings.end());
   summary.doubts.insert(summary.doubts.begin(), said.doubts.begin(), said.doubts.end());

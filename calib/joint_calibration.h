@@ -73,9 +73,10 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const JointOptions& options = {},
                                       const std::string& place = "");
 
-/// Whether pairs and prior agree (calib/prior_agreement.h), of a calibration from both; nothing (p
-/// 1) where parameters that the prior knows were held.
-/// The calibration may have used the prior with standard deviations `looseness` times as large.
+/// Whether pairs and prior agree (calib/prior_agreement.h), of a calibration from both; where
+/// parameters that the prior knows were held, it is the prior given these values. Nothing (p 1)
+/// where the prior does not know all that is free. The calibration may have used the prior with
+/// standard deviations `looseness` times as large.
 PriorAgreement agreement_with(const RigKnowledge& prior,
                               const RigEstimate& estimate,
                               double looseness = 1);

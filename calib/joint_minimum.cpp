@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/epipolar_system.h"
 #include "calib/held_parameters.h"
 #include "calib/linearised_cost.h"
 #include "calib/pair_equations.h"
@@ -26,8 +27,31 @@ double median_length(std::vector<double> values) {
 
 constexpr double normal_median = 0.6744897501960817;  // of |z|
 
+/// Ceres goes by the cost, which rounding hides within 1e-6 standard deviations of its minimum;
+/// these steps go by the gradient. Of pairs and priors alone.
+void polish(JointMinimum& joint) {
+  if (joint.cost.pairs.size() == 0 || !joint.state.frames.empty()) return;
+  const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
+  const PackedPairs weighted(joint.cost.pairs, joint.cost.pair_weights);
+  EpipolarProblem problem;
+  problem.priors = joint.cost.priors;
+  problem.sigma_scale = joint.cost.pair_sigma_scale;
+  for (int step = 0; step < 2; ++step) {
+    const EpipolarSystem system = epipolar_system(weighted, joint.state.rig, problem, E);
+    const Eigen::VectorXd d = system.information.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = d.asDiagonal() * system.information * d.asDiagonal();
+    const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
+    if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-12)) return;
+    const Eigen::VectorXd z = factor.solve(d.cwiseProduct(system.gradient));
+    constexpr double near = 0.01;  // standard deviations: elsewhere Ceres was not done
+    if (!(z.dot(scaled * z) < near * near)) return;
+    joint.state.rig = retract(joint.state.rig, E * (-d.cwiseProduct(z)));
+  }
+}
+
 void minimise(JointMinimum& joint) {
   joint.state = minimise_reprojection(joint.boards.observations, joint.state, joint.cost);
+  polish(joint);
   joint.residuals = joint.packed.residuals(joint.state.rig);
 }
 
@@ -78,16 +102,19 @@ void minimise_robustly(JointMinimum& joint, double fixed_scale) {
     minimise(joint);
   }
   joint.loss = balanced(LossShape::tukey, tukey_limit);
-  for (int round = 0; round < tukey_rounds; ++round) {
-    joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : median_scale();
-    if (reweigh(joint, joint.loss) < 1e-7) break;
-    minimise(joint);
-  }
+  const auto settle = [&](auto scale_of_round) {
+    for (int round = 0; round < tukey_rounds; ++round) {
+      joint.cost.pair_sigma_scale = scale_of_round();
+      if (reweigh(joint, joint.loss) < 1e-7) break;
+      minimise(joint);
+    }
+  };
+  settle([&] { return fixed_scale > 0 ? fixed_scale : median_scale(); });
   if (!(fixed_scale > 0)) {  // fitted parameters make residuals smaller than the noise
     const auto n = static_cast<double>(joint.residuals.size());
     const double share = std::min(0.9, determined_by_pairs(joint) / n);
-    joint.cost.pair_sigma_scale /= std::sqrt(1 - share);
-    reweigh(joint, joint.loss);
+    const double corrected = joint.cost.pair_sigma_scale / std::sqrt(1 - share);
+    settle([&] { return corrected; });
   }
   joint.cost.must_converge = true;
   minimise(joint);

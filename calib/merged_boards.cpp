@@ -33,6 +33,24 @@ int place_target(const std::vector<Eigen::Vector3d>& target_m,
   return offset;
 }
 
+bool is_bent(const BoardTerm& term) { return term.evidence.warp_m != Eigen::Vector2d::Zero(); }
+
+/// What the targets are as one: the same, with the mean bend to start from, or several.
+bool take_one_board(const std::vector<BoardTerm>& terms, MergedBoards& merged) {
+  const bool bent = std::any_of(terms.begin(), terms.end(), is_bent);
+  for (const BoardTerm& term : terms) {
+    if (term.evidence.observations.target_m == terms[0].evidence.observations.target_m) continue;
+    merged.bends_taken_as_known = bent;
+    return false;
+  }
+  if (!bent) return true;
+  merged.warp = BoardWarp::free;
+  for (const BoardTerm& term : terms) {
+    merged.state.warp_m += term.evidence.warp_m / static_cast<double>(terms.size());
+  }
+  return true;
+}
+
 }  // namespace
 
 MergedBoards merge_boards(const std::vector<BoardTerm>& terms, const Rig& rig) {
@@ -46,11 +64,13 @@ MergedBoards merge_boards(const std::vector<BoardTerm>& terms, const Rig& rig) {
                                 ? term.pixel_sigma_px
                                 : std::min(merged.pixel_sigma_px, term.pixel_sigma_px);
   }
+  const bool one_board = take_one_board(terms, merged);
   int next_frame = 0;
   for (const BoardTerm& term : terms) {
     const CalibrationEvidence& evidence = term.evidence;
     check_sizes(evidence.observations, rig);
-    const int offset = place_target(warped_target(evidence.observations.target_m, evidence.warp_m),
+    const Eigen::Vector2d known_warp_m = one_board ? Eigen::Vector2d(0, 0) : evidence.warp_m;
+    const int offset = place_target(warped_target(evidence.observations.target_m, known_warp_m),
                                     merged.observations.target_m);
     const double weight = std::pow(merged.pixel_sigma_px / term.pixel_sigma_px, 2);
     merged.parts.push_back({merged.state.frames.size(), evidence.frames.size()});
@@ -79,7 +99,8 @@ BoardState state_of(const MergedBoards& boards,
   own.rig = state.rig;
   own.frames = terms[term].evidence.frames;
   own.T_first_board.assign(first, first + static_cast<std::ptrdiff_t>(part.frames));
-  own.warp_m = terms[term].evidence.warp_m;
+  own.warp_m =
+      boards.warp == BoardWarp::free ? state.warp_m : Eigen::Vector2d(terms[term].evidence.warp_m);
   return own;
 }
 
@@ -88,6 +109,7 @@ CalibrationEvidence merged_evidence(const MergedBoards& boards, const BoardState
   evidence.observations = boards.observations;
   evidence.frames = state.frames;
   evidence.T_first_board = state.T_first_board;
+  evidence.warp_m = state.warp_m;
   return evidence;
 }
 

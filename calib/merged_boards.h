@@ -6,13 +6,17 @@
 
 namespace vernier {
 
-/// Board views of several calibrations as those of one: their targets side by side (a bent board's
-/// as it is bent), their frames numbered on, and the noise of each as weights.
+/// Board views of several calibrations as those of one: their targets side by side, their frames
+/// numbered on, and the noise of each as weights. Where all are of one target they are of one
+/// board, and its bend stays an unknown if a calibration found one; of different targets, each is
+/// as its calibration found it bent, and that is taken as known.
 struct MergedBoards {
   BoardObservations observations;                   ///< no views where there is no term
   BoardState state;                                 ///< at the start
   std::vector<std::vector<double>> corner_weights;  ///< in [0, 1], or empty
   double pixel_sigma_px = 1;                        ///< of weight 1
+  BoardWarp warp = BoardWarp::known;
+  bool bends_taken_as_known = false;  ///< of different boards, one of them bent
   struct Part {
     std::size_t first_frame = 0, frames = 0;
   };

@@ -169,7 +169,11 @@ class Minimisation {
                          moves_no_more(summary);
     if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
-                  "look at the corners: a mirrored or turned board, or swapped cameras, do this");
+                  what_.pairs.size() > 0
+                      ? "look at the matches, the prior and the sides: many wrong matches, a prior "
+                        "of other cameras or swapped images do this"
+                      : "look at the corners: a mirrored or turned board, or swapped cameras, do "
+                        "this");
     }
     BoardState state = start_;
     buffer_.write_to(state);
@@ -209,9 +213,7 @@ class Minimisation {
     if (!pairs_) return;
     const std::vector<double*> blocks{buffer_.intrinsics(0), buffer_.intrinsics(1),
                                       buffer_.camera_pose(1)};
-    for (std::size_t i = 0; i < pairs_->image_pairs(); ++i) {
-      problem_.AddResidualBlock(pairs_->cost(i).release(), nullptr, blocks);
-    }
+    problem_.AddResidualBlock(pairs_->cost().release(), nullptr, blocks);
     for (double* block : blocks) ordering_->AddElementToGroup(block, 1);
   }
 

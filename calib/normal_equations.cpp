@@ -86,27 +86,11 @@ ReducedNormalEquations mapped(const ReducedNormalEquations& equations, const Eig
   return result;
 }
 
-/// The last two unknowns, the warp's, eliminated: a = [I; -W⁻¹ X] z, with W their block of S.
-ReducedNormalEquations without_warp(const ReducedNormalEquations& equations) {
-  const auto p = equations.information.rows() - 2;
-  const Eigen::LLT<Eigen::Matrix2d> W(equations.information.bottomRightCorner<2, 2>());
-  if (W.info() != Eigen::Success) {
-    throw Error("board warp", "the views say nothing about it", "leave it out");
-  }
-  Eigen::MatrixXd M(p + 2, p);
-  M.topRows(p).setIdentity();
-  M.bottomRows<2>() = -W.solve(equations.information.bottomLeftCorner(2, p));
-  ReducedNormalEquations result = mapped(equations, M);
-  result.held_poses_diagonal.conservativeResize(p);
-  return result;
-}
-
-}  // namespace
-
-ReducedNormalEquations reduced_normal_equations(const BoardObservations& observations,
-                                                const BoardState& state,
-                                                double pixel_sigma_px,
-                                                BoardWarp warp) {
+/// The equations with the warp's unknowns last where it is free.
+ReducedNormalEquations sum_of_frames(const BoardObservations& observations,
+                                     const BoardState& state,
+                                     double pixel_sigma_px,
+                                     BoardWarp warp) {
   const bool warps = warp == BoardWarp::free;
   const int n = parameter_count(state.rig) + (warps ? 2 : 0);
   const std::vector<Eigen::Vector3d> target_m = warped_target(observations.target_m, state.warp_m);
@@ -137,7 +121,37 @@ ReducedNormalEquations reduced_normal_equations(const BoardObservations& observa
     add_frame(blocks, state.frames[f], f, result);
     result.chi2 += result.frame_chi2[f];
   }
-  return warps ? without_warp(result) : result;
+  return result;
+}
+
+}  // namespace
+
+ReducedNormalEquations reduced_normal_equations(const BoardObservations& observations,
+                                                const BoardState& state,
+                                                double pixel_sigma_px,
+                                                BoardWarp warp) {
+  ReducedNormalEquations sum = sum_of_frames(observations, state, pixel_sigma_px, warp);
+  return warp == BoardWarp::free ? without_warp(sum) : sum;
+}
+
+ReducedNormalEquations equations_with_warp(const BoardObservations& observations,
+                                           const BoardState& state,
+                                           double pixel_sigma_px) {
+  return sum_of_frames(observations, state, pixel_sigma_px, BoardWarp::free);
+}
+
+ReducedNormalEquations without_warp(const ReducedNormalEquations& equations) {
+  const auto p = equations.information.rows() - 2;
+  const Eigen::LLT<Eigen::Matrix2d> W(equations.information.bottomRightCorner<2, 2>());
+  if (W.info() != Eigen::Success) {
+    throw Error("board warp", "the views say nothing about it", "leave it out");
+  }
+  Eigen::MatrixXd M(p + 2, p);  // a = M z = [I; -W⁻¹ X] z, with W the warp's block of S
+  M.topRows(p).setIdentity();
+  M.bottomRows<2>() = -W.solve(equations.information.bottomLeftCorner(2, p));
+  ReducedNormalEquations result = mapped(equations, M);
+  result.held_poses_diagonal.conservativeResize(p);
+  return result;
 }
 
 ReducedNormalEquations restricted(const ReducedNormalEquations& equations,

@@ -38,6 +38,14 @@ ReducedNormalEquations reduced_normal_equations(const BoardObservations& observa
                                                 double pixel_sigma_px,
                                                 BoardWarp warp = BoardWarp::known);
 
+/// The same with the two unknowns of a free warp still there, last; of several sets of views of one
+/// board these add up, and the warp is eliminated from their sum.
+ReducedNormalEquations equations_with_warp(const BoardObservations& observations,
+                                           const BoardState& state,
+                                           double pixel_sigma_px);
+/// Throws Error where the views say nothing about it.
+ReducedNormalEquations without_warp(const ReducedNormalEquations& equations);
+
 /// The equations of z where the parameters move by E z (calib/held_parameters.h).
 ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E);

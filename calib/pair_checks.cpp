@@ -160,6 +160,10 @@ void check_sides(const PairObservations& pairs,
   throw Error(place.empty() ? "pairs" : place,
               exchanged_pairs.size() == judged
                   ? "left and right are swapped: the corners lie behind the rig"
+              : 2 * exchanged_pairs.size() > judged
+                  ? fmt::format("left and right are swapped: the corners of {} of {} image pairs "
+                                "lie behind the rig, and of the others it cannot be told",
+                                exchanged_pairs.size(), judged)
                   : fmt::format("left and right are swapped in image pairs {}: their corners lie "
                                 "behind the rig",
                                 fmt::join(exchanged_pairs, ", ")),

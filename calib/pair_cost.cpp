@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/pair_cost.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vernier {
@@ -10,8 +11,9 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The upper triangular U with UᵀU = sums, in place, packed. A column that depends on those before
-/// it to rounding gets a row of zeros.
+/// it to rounding gets a row of zeros; the last column keeps its length whatever rounding did.
 void factor_triangle(int n, double* sums) {
+  const double squares = sums[packed_index(n - 1, n - 1, n)];
   const auto at = [&](int i, int j) -> double& { return sums[packed_index(i, j, n)]; };
   for (int i = 0; i < n; ++i) {
     const double full = at(i, i);
@@ -24,14 +26,18 @@ void factor_triangle(int n, double* sums) {
       at(i, j) = sum * inverse;
     }
   }
+  double kept = 0;
+  for (int k = 0; k < n; ++k) kept += at(k, n - 1) * at(k, n - 1);
+  const double shorter = kept > 0 ? std::sqrt(squares / kept) : 1;
+  for (int k = 0; k < n; ++k) at(k, n - 1) *= shorter;
 }
 
 }  // namespace
 
-/// One image pair's rows of what CompressedPairs prepared.
+/// The rows that CompressedPairs prepared.
 class PairCost : public ceres::CostFunction {
  public:
-  PairCost(const CompressedPairs& all, std::size_t group) : all_(all), group_(group) {
+  explicit PairCost(const CompressedPairs& all) : all_(all) {
     set_num_residuals(all.columns_);
     for (const Camera& camera : all.state_.rig.cameras) {
       mutable_parameter_block_sizes()->push_back(static_cast<int>(camera.parameters.size()));
@@ -41,7 +47,7 @@ class PairCost : public ceres::CostFunction {
 
   bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
     const int m = all_.columns_;
-    const double* sums = all_.sums_.data() + group_ * packed_size(m);
+    const double* sums = all_.sums_.data();
     Eigen::Map<Eigen::VectorXd> r(residuals, m);
     if (!all_.with_jacobians_) {
       r.setZero();
@@ -70,7 +76,6 @@ class PairCost : public ceres::CostFunction {
 
  private:
   const CompressedPairs& all_;
-  std::size_t group_;
 };
 
 CompressedPairs::CompressedPairs(const PairObservations& pairs,
@@ -83,10 +88,10 @@ CompressedPairs::CompressedPairs(const PairObservations& pairs,
       parameters_(parameters),
       state_(start),
       columns_(epipolar_columns(EpipolarView(start.rig))),
-      sums_(packed_.groups().size() * packed_size(columns_)) {}
+      sums_(packed_size(columns_)) {}
 
-std::unique_ptr<ceres::CostFunction> CompressedPairs::cost(std::size_t image_pair) const {
-  return std::make_unique<PairCost>(*this, image_pair);
+std::unique_ptr<ceres::CostFunction> CompressedPairs::cost() const {
+  return std::make_unique<PairCost>(*this);
 }
 
 void CompressedPairs::PrepareForEvaluation(bool jacobians, bool new_point) {
@@ -94,23 +99,19 @@ void CompressedPairs::PrepareForEvaluation(bool jacobians, bool new_point) {
   parameters_.write_to(state_);
   with_jacobians_ = jacobians;
   const EpipolarView view(state_.rig);
+  std::fill(sums_.begin(), sums_.end(), 0.0);
   std::vector<double> residuals;
-  for (std::size_t g = 0; g < packed_.groups().size(); ++g) {
-    const PackedPairs::Group& group = packed_.groups()[g];
-    double* const sums = sums_.data() + g * packed_size(columns_);
-    if (!jacobians) {
-      residuals.resize(group.eights * kernel_lanes);
-      pair_residuals(view, packed_.lanes(group), group.eights, residuals.data());
-      double chi2 = 0;
-      for (const double r : residuals) chi2 += r * r;
-      sums[0] = unit_ * unit_ * chi2;
+  for (const PackedPairs::Group& group : packed_.groups()) {
+    if (jacobians) {
+      sum_pairs(view, packed_.lanes(group), group.eights, {}, sums_.data());
       continue;
     }
-    std::fill_n(sums, packed_size(columns_), 0.0);
-    sum_pairs(view, packed_.lanes(group), group.eights, {}, sums);
-    for (std::size_t i = 0; i < packed_size(columns_); ++i) sums[i] *= unit_ * unit_;
-    factor_triangle(columns_, sums);
+    residuals.resize(group.eights * kernel_lanes);
+    pair_residuals(view, packed_.lanes(group), group.eights, residuals.data());
+    for (const double r : residuals) sums_[0] += r * r;
   }
+  for (double& sum : sums_) sum *= unit_ * unit_;
+  if (jacobians) factor_triangle(columns_, sums_.data());
   if (!jacobians) return;
   const double* pose = parameters_.camera_pose(1);
   rotation_by_block_ = left_jacobian({pose[0], pose[1], pose[2]});

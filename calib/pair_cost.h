@@ -13,10 +13,10 @@
 
 namespace vernier {
 
-/// The Sampson residuals of matched pairs as Ceres gets them: one block an image pair, of as many
-/// rows as a pair's row has columns. As with CompressedViews (calib/view_cost.h), a triangular
-/// factor of [J r]ᵀ [J r] stands for all rows of an image pair with the same cost, gradient and
-/// Gauss–Newton matrix.
+/// The Sampson residuals of matched pairs as Ceres gets them: one block of as many rows as a pair's
+/// row has columns. As with CompressedViews (calib/view_cost.h), a triangular factor of [J r]ᵀ [J
+/// r] stands for all rows with the same cost, gradient and Gauss–Newton matrix. One for all image
+/// pairs: those of few pairs leave more directions free than rounding lets a factor show.
 class CompressedPairs : public ceres::EvaluationCallback {
  public:
   /// Residuals are in standard deviations times `unit`; `weights` multiply their squares, one a
@@ -29,11 +29,8 @@ class CompressedPairs : public ceres::EvaluationCallback {
 
   void PrepareForEvaluation(bool jacobians, bool new_point) override;
 
-  std::size_t image_pairs() const { return packed_.groups().size(); }
-
-  /// The block of an image pair. Its parameter blocks are the intrinsics of both cameras and the
-  /// second one's pose.
-  std::unique_ptr<ceres::CostFunction> cost(std::size_t image_pair) const;
+  /// Its parameter blocks are the intrinsics of both cameras and the second one's pose.
+  std::unique_ptr<ceres::CostFunction> cost() const;
 
  private:
   friend class PairCost;
@@ -45,7 +42,7 @@ class CompressedPairs : public ceres::EvaluationCallback {
   int columns_;
   bool with_jacobians_ = false;
   Eigen::Matrix3d rotation_by_block_ = Eigen::Matrix3d::Identity();
-  std::vector<double> sums_;  // triangles of U; of an image pair evaluated without, χ² in the first
+  std::vector<double> sums_;  // the triangle U; evaluated without, χ² in the first
 };
 
 }  // namespace vernier

@@ -50,7 +50,9 @@ void check_duplicates(const PairObservations& pairs, const std::string& place) {
       return pairs.pixels_px[a] == pairs.pixels_px[b];
     });
     if (same == end) continue;
-    throw Error(row_place(place, *(same + 1)), "it repeats " + row_place("", *same),
+    throw Error(row_place(place, *(same + 1)),
+                place.empty() ? "it repeats " + row_place("", *same)
+                              : fmt::format("it repeats line {}", *same + 2),
                 "give every match once");
   }
 }

@@ -35,9 +35,10 @@ void read_row(std::string_view line,
   if (!y.allFinite()) {
     throw Error(lines.place(), "a pixel coordinate is not finite", "remove the line");
   }
-  if (!(sigma > 0 && std::isfinite(sigma))) {
+  constexpr double most = 1e6;  // px
+  if (!(sigma > 0 && sigma <= most)) {
     throw Error(lines.place(), fmt::format("sigma_px is {}", sigma),
-                "give a standard deviation above 0");
+                "give a standard deviation above 0 and below a million");
   }
   const bool known = !pairs.image_pairs.empty() && pairs.image_pairs.back().number == number;
   if (number < 0 || (!known && !seen.insert(number).second)) {
@@ -54,7 +55,9 @@ void read_row(std::string_view line,
 PairObservations read_pairs(const std::filesystem::path& file) {
   TextLines lines(file);
   std::string_view line;
-  if (!lines.next(line) || line != header) {
+  const bool any = lines.next(line);
+  if (any && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // a spreadsheet's mark
+  if (!any || line != header) {
     throw Error(file.string() + ":1", "it does not begin with the header of a pairs file",
                 fmt::format("its first line must be {}", header));
   }

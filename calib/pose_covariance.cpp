@@ -71,9 +71,9 @@ Eigen::MatrixXd chained(const Eigen::MatrixXd& C,
 RigAndBoards rig_and_boards(const RigEstimate& estimate,
                             CovarianceChoice choice,
                             const std::string& place) {
-  if (!estimate.evidence) {
-    throw Error(place, "it holds no evidence, so the poses of the board are unknown",
-                "write it with vernier calibrate, without --no-evidence");
+  if (!estimate.evidence || estimate.evidence->observations.views.empty()) {
+    throw Error(place, "it holds no views of a board, so the poses of the board are unknown",
+                "calibrate from views of a board, without --no-evidence");
   }
   if (!estimate.calibration || !(estimate.calibration->pixel_sigma_px > 0)) {
     throw Error(place, "its pixel noise is unknown", "give calibration.pixel_sigma_px above 0");

@@ -52,6 +52,7 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
     agreement.in_sigma = std::abs(z);
     agreement.words = describe_direction((root * eigen.eigenvectors().col(i)).normalized(), names);
   }
+  agreement.clusters = clusters;
   if (agreement.dof > 0) {
     agreement.p_value =
         clusters > 1 ? fisher_survival(agreement.chi2 / agreement.dof, agreement.dof, clusters - 1)

@@ -12,7 +12,8 @@ namespace vernier {
 struct PriorAgreement {
   double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
   int dof = 0;          ///< directions that the data improved
-  double p_value = 1;   ///< of a χ² this large or larger
+  int clusters = 0;     ///< that the scatter was estimated from; 0: it is known
+  double p_value = 1;   ///< of a χ² this large or larger, by the law below
   double in_sigma = 0;  ///< along the direction that disagrees most …
   std::string words;    ///< … which is this
 };

@@ -159,6 +159,14 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                 fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), listed.size()),
                 "give one row and column a parameter");
   }
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (matrix(i, i) >= 0) continue;
+    throw Error(
+        stated.place(),
+        fmt::format("the variance of {} is {}",
+                    parameter_names(rig)[static_cast<std::size_t>(listed[i])], matrix(i, i)),
+        "give 0 or more");
+  }
   const Eigen::MatrixXd E = free_directions(rig, unlisted(rig, listed));
   return E * matrix * E.transpose();
 }

@@ -119,7 +119,9 @@ Json to_json(const PairOutlier& o) {
 PairOutlier parse_pair_outlier(const Node& node) {
   PairOutlier o;
   o.image_pair = node.at("pair").integer();
-  o.row = static_cast<std::size_t>(node.at("row").number());
+  const int row = node.at("row").integer();
+  if (row < 0) throw Error(node.at("row").place(), "is below 0", "");
+  o.row = static_cast<std::size_t>(row);
   const Eigen::VectorXd y = node.at("pixels_px").vector();
   if (y.size() != 4) throw Error(node.at("pixels_px").place(), "is not two pixels", "");
   o.pixels_px = y;

@@ -98,7 +98,7 @@ RigPrior rig_prior(const Rig& like, const RigKnowledge& known) {
   return prior_at(like, values, known.covariance);
 }
 
-RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known) {
+RigKnowledge knowledge_of(const Rig& like, const std::vector<KnownParameter>& known) {
   Covariance covariance;
   std::vector<HeldParameter> values;
   const auto n = static_cast<Eigen::Index>(known.size());
@@ -113,7 +113,12 @@ RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known) {
     covariance.names.push_back(k.name);
     values.push_back({k.name, k.value});
   }
-  return prior_at(like, values, covariance);
+  places_of(covariance.names, like);  // says which there is not
+  return {with_held_values(like, values), std::move(covariance)};
+}
+
+RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known) {
+  return rig_prior(like, knowledge_of(like, known));
 }
 
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {

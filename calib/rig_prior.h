@@ -40,6 +40,7 @@ struct KnownParameter {
   std::string name;
   double value = 0, sigma = 0;
 };
+RigKnowledge knowledge_of(const Rig& like, const std::vector<KnownParameter>& known);
 RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known);
 
 /// δ at `rig` and its derivative by the left tangent at `rig`.

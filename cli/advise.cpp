@@ -42,8 +42,8 @@ std::string find_target(const Options& options,
     target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }
-  if (!rig.evidence) {
-    throw Error(options.rig, "it holds no evidence, so the board is unknown",
+  if (!rig.evidence || rig.evidence->observations.views.empty()) {
+    throw Error(options.rig, "it holds no views of a board, so the board is unknown",
                 "give --board (inner corners, such as 9x6) and --square-m");
   }
   target_m = rig.evidence->observations.target_m;

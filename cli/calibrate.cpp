@@ -63,9 +63,12 @@ void judge(const RigEstimate& estimate, Session& session) {
 void run(const Options& options, Session& session) {
   if (!options.pairs.empty()) {
     refuse_options(*options.board.app, board_options, "pairs are of no board");
-    refuse_options(*options.board.app,
-                   std::array{"--model", "--pixel-sigma", "--know", "--warp", "--no-model-check"},
+    refuse_options(*options.board.app, std::array{"--model", "--know"},
                    "with --pairs the prior says it");
+    refuse_options(*options.board.app, std::array{"--warp", "--no-model-check"},
+                   "it is for views of a board");
+    refuse_options(*options.board.app, std::array{"--pixel-sigma"},
+                   "the pairs file states the noise, and its residuals scale it");
     calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
     return;
   }

@@ -32,17 +32,18 @@ void calibrate_pairs(const std::string& pairs_file,
   options.held = how.held;
   options.reject_outliers = how.reject_outliers;
   const JointCalibration joint = calibrate_from_pairs(
-      read_pairs(pairs_file), rig_knowledge(prior, solver.prior), options, pairs_file);
-  write_rig(joint.estimate, output, keep_evidence ? KeepEvidence::yes : KeepEvidence::no);
-  for (const std::string& warning : joint.estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : joint.estimate.calibration->doubts) session.doubt(doubt);
+      read_pairs(pairs_file), usable_prior(prior, solver.prior), options, pairs_file);
   const ObservabilityReport seen = report_observability(joint, prior.estimate.covariance->matrix);
   Json json = rig_json(joint.estimate);
   json["observability"] = seen.json;
   json["pair_sigma_scale"] = joint.pair_sigma_scale;
   json["output"] = output;
-  session.result(json,
-                 rig_table(joint.estimate) + seen.text + fmt::format("written to {}\n", output));
+  const std::string text =
+      rig_table(joint.estimate) + seen.text + fmt::format("written to {}\n", output);
+  write_rig(joint.estimate, output, keep_evidence ? KeepEvidence::yes : KeepEvidence::no);
+  for (const std::string& warning : joint.estimate.calibration->warnings) session.warn(warning);
+  for (const std::string& doubt : joint.estimate.calibration->doubts) session.doubt(doubt);
+  session.result(json, text);
 }
 
 }  // namespace vernier::cli

@@ -77,6 +77,13 @@ Solved solve_again(const Options& options, Session& session) {
     throw Error(options.rig, "it holds no evidence to solve again",
                 "calibrate without --no-evidence, or give the corners");
   }
+  if (file.estimate.evidence->observations.views.empty()) {
+    throw Error(options.rig, "it holds no views of a board, which is what check solves again",
+                "give a rig that was calibrated from a board; of pairs, combine the file alone");
+  }
+  if (file.estimate.evidence->pairs.size() > 0) {
+    session.warn(options.rig + ": its matched pairs are left aside, only its boards are checked");
+  }
   Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
   const BoardObservations& observations = solved.stated->evidence->observations;

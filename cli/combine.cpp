@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/combine.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/atomic_file.h"
@@ -46,18 +47,34 @@ std::vector<CombineInput> load(const Options& options, Session& session) {
 }
 
 std::string input_table(const Combination& combination) {
-  std::string text = fmt::format("{:<32} {:>15} {:>10} {:>5} {:>10}  {}\n", "input", "kind", "chi²",
-                                 "dof", "p", "most against what stood before");
+  std::size_t width = 5;
+  bool by_f = false;
+  for (const CombinedInput& input : combination.inputs) {
+    width = std::max(width, input.name.size());
+    by_f |= input.agreement.clusters > 0;
+  }
+  std::string text =
+      fmt::format("{:<{}} {:>15} {:>10} {:>5} {:>8} {:>10}  {}\n", "input", width, "kind", "chi²",
+                  "dof", "clusters", "p", "most against what stood before");
   for (const CombinedInput& input : combination.inputs) {
     const PriorAgreement& a = input.agreement;
-    const bool first = &input == &combination.inputs.front();
-    text += fmt::format("{:<32} {:>15} {:>10} {:>5} {:>10}  {}\n", input.name, input.kind,
-                        first ? "" : fmt::format("{:.1f}", a.chi2),
-                        first ? "" : fmt::format("{}", a.dof),
-                        first ? "" : fmt::format("{:.2g}", a.p_value),
-                        first ? "stands first"
-                              : fmt::format("{}{:.1f} sigma where {}",
-                                            input.used ? "" : "LEFT OUT: ", a.in_sigma, a.words));
+    text += fmt::format("{:<{}} {:>15} ", input.name, width, input.kind);
+    const std::string out = input.used ? "" : "LEFT OUT: ";
+    if (&input == &combination.inputs.front()) {
+      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  stands first\n", "", "", "", "");
+    } else if (a.dof == 0) {
+      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  {}{}\n", "", "", "", "", out, a.words);
+    } else {
+      text += fmt::format("{:>10.1f} {:>5} {:>8} {:>10.2g}  {}{:.1f} sigma where {}\n", a.chi2,
+                          a.dof, a.clusters > 0 ? fmt::format("{}", a.clusters) : "-", a.p_value,
+                          out, a.in_sigma, a.words);
+    }
+  }
+  if (by_f) {
+    text +=
+        "(clusters: image pairs, or parts of them, from which the scatter of the pairs was "
+        "estimated; few of them make chi² large by chance, so p is of Fisher's F with clusters - 1 "
+        "degrees of freedom below)\n";
   }
   return text;
 }
@@ -70,6 +87,7 @@ Json inputs_json(const Combination& combination) {
                     {"used", input.used},
                     {"chi2", input.agreement.chi2},
                     {"dof", input.agreement.dof},
+                    {"clusters", input.agreement.clusters},
                     {"p_value", input.agreement.p_value},
                     {"in_sigma", input.agreement.in_sigma},
                     {"words", input.agreement.words}});
@@ -101,9 +119,14 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
   std::string text = fmt::format(
       "drift, every batch alone against all together:\n{:<32} {:>8} {:>8} {:>9} {:>10}"
       "  {}\n",
-      "batch", "pairs", "outliers", "rms px", "p", "largest drift");
+      "batch", "pairs", "outliers", "rms px", "p", "largest drift of all parameters");
   for (const MonitoredBatch& batch : batches) {
     const auto [z, i] = worst_drift(batch);
+    if (!(batch.sigma.size() > 0 && batch.sigma.maxCoeff() > 0)) {
+      text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  all there is\n", batch.name,
+                          batch.pairs, batch.outliers, batch.rms_px, batch.agreement.p_value);
+      continue;
+    }
     text += fmt::format(
         "{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  {} {:+.3g} ± {:.2g} ({:+.1f} sigma)"
         "\n",
@@ -147,13 +170,24 @@ Json drift_json(const std::vector<MonitoredBatch>& batches) {
   return json;
 }
 
-void say_filter(const FilteredRig& filtered, Json& json, std::string& text) {
+void say_filter(const FilteredRig& filtered, Json& json, std::string& text, Session& session) {
   text += fmt::format(
-      "information filter: {} ends {:.2g} of the batch solution's standard deviations from it\n",
+      "information filter: {} ends {:.2g} of the batch solution's standard deviations from it; "
+      "parameters and covariance above are the filter's, residuals and what the pairs brought the "
+      "batch solution's\n",
       filtered.worst_parameter.empty() ? "no parameter" : filtered.worst_parameter,
       filtered.worst_in_sigma);
+  constexpr double overconfident = 0.8;
+  if (filtered.least_sigma_ratio < overconfident) {
+    session.warn(fmt::format(
+        "the filter states {:.2g} times the batch solution's sigma for {}: it takes noise for "
+        "white and its linearisations for exact",
+        filtered.least_sigma_ratio, filtered.least_parameter));
+  }
   json["information_filter"] = {{"worst_in_sigma", filtered.worst_in_sigma},
-                                {"worst_parameter", filtered.worst_parameter}};
+                                {"worst_parameter", filtered.worst_parameter},
+                                {"least_sigma_ratio", filtered.least_sigma_ratio},
+                                {"least_parameter", filtered.least_parameter}};
 }
 
 void run(const Options& options, Session& session) {
@@ -162,9 +196,7 @@ void run(const Options& options, Session& session) {
   spare_inputs(files, options.output);
   if (!options.drift.empty()) {
     spare_inputs(files, options.drift);
-    if (std::filesystem::path(options.drift) == std::filesystem::path(options.output)) {
-      throw Error("--drift", "it is the rig file too", "name another file");
-    }
+    check_different("--drift", options.drift, options.output);
   }
   const std::vector<CombineInput> inputs = load(options, session);
   CombineOptions how;
@@ -172,34 +204,23 @@ void run(const Options& options, Session& session) {
   how.joint.reject_outliers = !options.keep_outliers;
   Combination combination = combine(inputs, how);
   RigEstimate& estimate = combination.joint.estimate;
-  for (const CombinedInput& input : combination.inputs) {
-    if (input.used) continue;
-    estimate.calibration->doubts.push_back(fmt::format(
-        "{} disagrees with what stands before it (chi² {:.1f} for {}, p {:.1g}) and was left out: "
-        "the rig has changed, or one of them states too little uncertainty",
-        input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
-  }
-  Json json;
+  Json json = Json::object();
   std::string text = input_table(combination), tail;
   if (options.mode == "information") {
     const FilteredRig filtered = information_filter(inputs, combination, how);
-    say_filter(filtered, json, tail);
+    say_filter(filtered, json, tail, session);
     estimate.rig = filtered.rig;
     estimate.covariance = whole_covariance({filtered.rig, filtered.covariance});
     estimate.covariance->kind = CovarianceKind::combined;
     estimate.covariance_mvb = estimate.covariance->matrix;
     estimate.evidence.reset();
   }
+  std::vector<MonitoredBatch> batches;
   if (options.monitor) {
-    const std::vector<MonitoredBatch> batches = monitor(inputs, combination, how);
-    const std::vector<std::string> names = parameter_names(estimate.rig);
-    tail += drift_table(batches, names);
+    batches = monitor(inputs, combination, how);
+    tail += drift_table(batches, parameter_names(estimate.rig));
     json["drift"] = drift_json(batches);
-    if (!options.drift.empty()) write_drift(batches, names, options.drift);
   }
-  write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
-  for (const std::string& warning : estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : estimate.calibration->doubts) session.doubt(doubt);
   text += rig_table(estimate);
   if (combination.joint.observability) {
     const ObservabilityReport seen =
@@ -211,6 +232,12 @@ void run(const Options& options, Session& session) {
   whole["inputs"] = inputs_json(combination);
   whole.update(json);
   whole["output"] = options.output;
+  if (!options.drift.empty()) {
+    write_drift(batches, parameter_names(estimate.rig), options.drift);
+  }
+  write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
+  for (const std::string& warning : estimate.calibration->warnings) session.warn(warning);
+  for (const std::string& doubt : estimate.calibration->doubts) session.doubt(doubt);
   session.result(whole, text + tail + fmt::format("written to {}\n", options.output));
 }
 

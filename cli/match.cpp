@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/ordered_parallel.h"
 #include "calib/pairs_file.h"
@@ -11,6 +12,7 @@
 #include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
+#include "cli/solver_input.h"
 #include "cli/spare_inputs.h"
 #include "stereo/match_images.h"
 
@@ -21,7 +23,8 @@ constexpr double few = 0.1;         // share of left corners matched below which
 constexpr double suspicious = 0.3;  // and below which the images may be exchanged
 constexpr int times_more = 2;       // matches with the images exchanged that say they are …
 constexpr std::size_t enough = 20;  // … if there are so many
-constexpr std::size_t probed = 3;   // image pairs that are tried exchanged
+constexpr double nearly = 0.7;      // as many: the two cannot be told
+constexpr std::size_t probed = 3;   // image pairs that are tried exchanged where few matched
 
 struct Options {
   std::string left, right, prior, output, picture;
@@ -67,25 +70,48 @@ Totals totals(const std::vector<ImageMatching>& all) {
   return sum;
 }
 
-/// Throws Error where exchanging left and right gives many more matches. Asked where there are few.
+/// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
+/// matches; warns where it gives nearly as many.
 void check_not_exchanged(const std::vector<ImageMatching>& all,
                          const RigEstimate& prior,
-                         const Options& options) {
+                         const Options& options,
+                         std::size_t tried,
+                         Session& session) {
   if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
   std::size_t given = 0, exchanged = 0;
-  for (std::size_t i = 0; i < std::min(probed, all.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(tried, all.size()); ++i) {
     const ImageFiles& files = all[i].files;
     given += all[i].matches.size();
     exchanged += match_images({files.number, files.right, files.left}, prior, options.prior,
                               options.matching)
                      .matches.size();
   }
-  if (exchanged < enough || exchanged < times_more * given) return;
+  if (exchanged < enough) return;
+  if (static_cast<double>(exchanged) > nearly * static_cast<double>(given) &&
+      exchanged < times_more * given) {
+    session.warn(fmt::format(
+        "with left and right exchanged nearly as many corners match ({} against {}): this prior "
+        "does not tell the cameras apart, so see that --left is the left one",
+        exchanged, given));
+  }
+  if (exchanged < times_more * given) return;
   throw Error(all.front().files.left.string(),
               fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
                           "way round",
                           given, exchanged),
               "exchange --left and --right, or the cameras of the prior");
+}
+
+/// Throws Error where an image stands for both cameras.
+void check_two_images(const std::vector<ImageFiles>& files) {
+  for (const ImageFiles& pair : files) {
+    std::error_code unknown;
+    const auto bytes = std::filesystem::file_size(pair.left, unknown);
+    if (bytes != std::filesystem::file_size(pair.right, unknown) || unknown) continue;
+    if (read_whole(pair.left) != read_whole(pair.right)) continue;
+    throw Error(pair.right.string(), "it is the same image as " + pair.left.string(),
+                "give the image that the right camera took at the same time");
+  }
 }
 
 /// Throws Error where nothing came of it; says what is doubtful.
@@ -102,8 +128,8 @@ void judge(const std::vector<ImageMatching>& all,
     session.warn(blank.string() + ": " + fault + "; its pair is left out");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
+  check_not_exchanged(all, prior, options, share < suspicious ? probed : 1, session);
   if (share >= suspicious) return;
-  check_not_exchanged(all, prior, options);
   if (share >= few) return;
   const std::string fault =
       fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
@@ -129,29 +155,49 @@ Json matching_json(const ImageMatching& m) {
           {"matches", m.matches.size()},      {"median_sigma_px", median_sigma(m.matches)}};
 }
 
+/// Both files, or none.
+void write_both(const PairObservations& pairs, const ImageMatching& first, const Options& options) {
+  if (!options.picture.empty()) write_match_picture(first, options.picture);
+  try {
+    write_pairs(pairs, options.output);
+  } catch (const Error&) {
+    std::error_code ignored;
+    if (!options.picture.empty()) std::filesystem::remove(options.picture, ignored);
+    throw;
+  }
+}
+
 void run(const Options& options, Session& session) {
   const std::filesystem::path prior_file = find_rig(options.prior);
   const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
+  if (prior.estimate.covariance) usable_prior(prior, options.prior);  // else match_images says it
   const auto files = paired_images(options.left, options.right);
   spare_inputs(inputs(prior_file, files), options.output);
-  if (!options.picture.empty()) spare_inputs(inputs(prior_file, files), options.picture);
+  if (!options.picture.empty()) {
+    spare_inputs(inputs(prior_file, files), options.picture);
+    check_different("--picture", options.picture, options.output);
+  }
+  check_two_images(files);
   const auto all = match_all(files, prior.estimate, options, session);
   judge(all, prior.estimate, options, session);
 
   PairObservations pairs;
   Json images = Json::array();
-  std::string text = fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>13}  {}\n", "pair", "left",
-                                 "right", "candidates", "matches", "median sigma", "left image");
+  std::string text =
+      fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>7} {:>13}  {}\n", "pair", "left", "right",
+                  "candidates", "matches", "of left", "median sigma", "left image");
   for (const ImageMatching& m : all) {
     add_matches(pairs, m);
     images.push_back(matching_json(m));
-    text += fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>10.3f} px  {}\n", m.files.number,
-                        m.corners_left, m.corners_right, m.candidates, m.matches.size(),
-                        median_sigma(m.matches), m.files.left.string());
+    const double share = static_cast<double>(m.matches.size()) / std::max(1, m.corners_left);
+    text +=
+        fmt::format("{:>6} {:>7} {:>7} {:>10} {:>7} {:>5.0f} % {:>10} px  {}\n", m.files.number,
+                    m.corners_left, m.corners_right, m.candidates, m.matches.size(), 100 * share,
+                    m.matches.empty() ? "-" : fmt::format("{:.3f}", median_sigma(m.matches)),
+                    m.files.left.string());
   }
-  write_pairs(pairs, options.output);
-  if (!options.picture.empty()) write_match_picture(all.front(), options.picture);
+  write_both(pairs, all.front(), options);
   text += fmt::format("{} matches of {} image pairs written to {}\n", pairs.size(),
                       pairs.image_pairs.size(), options.output);
   session.result({{"matches", pairs.size()},
@@ -190,7 +236,10 @@ void add_match(CLI::App& app, Session& session) {
   verb->add_option("--threads", o->threads, "0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  verb->add_option("--picture", o->picture, "PNG of the first image pair with its matches");
+  verb->add_option("--picture", o->picture,
+                   "PNG of the first image pair, left above right: a line a match, red for the "
+                   "shortest to blue for the longest")
+      ->check(png_name);
   verb->add_option("-o,--output", o->output, "matched pairs, CSV")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

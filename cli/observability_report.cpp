@@ -41,12 +41,13 @@ ObservabilityReport report_observability(const JointCalibration& joint,
     text += fmt::format("  {:8.4f}  {}\n", d.sd_ratio, d.words);
   }
   text += fmt::format(
-      "the data determine {:.1f} of {} parameters: {} directions are known at least twice as well "
+      "the pairs determine {:.1f} of {} parameters: {} directions are known at least twice as well "
       "as before, {} are as they were\n",
-      o.from_data, o.directions.size(), o.improved, o.unchanged);
+      std::max(0.0, o.from_data), o.directions.size(), o.improved, o.unchanged);
+  text += fmt::format("noise of the pairs: {:.3g} times what they state\n", joint.pair_sigma_scale);
   text += fmt::format(
-      "no pair sees the length of the baseline: its sigma was {:.4g} mm and is {:.4g} mm; all "
-      "depths scale with it\n",
+      "no pair sees the length of the baseline: its sigma, by the bound, was {:.4g} mm and is "
+      "{:.4g} mm; all depths scale with it\n",
       1e3 * o.baseline_sd_before_m, 1e3 * o.baseline_sd_after_m);
   text += fmt::format(
       "at {:g} m: vertical disparity {:.3g} px rms before, {:.3g} px after; depth sigma {:.3g} m "

@@ -3,6 +3,7 @@
 #include "cli/option_checks.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "calib/error.h"
 
@@ -24,6 +25,10 @@ std::string finite(const std::string& text) {
   double value = 0;
   if (CLI::detail::lexical_cast(text, value) && std::isfinite(value)) return "";
   return "\"" + text + "\" is not a finite number";
+}
+
+std::string png_name(const std::string& text) {
+  return std::filesystem::path(text).extension() == ".png" ? "" : text + " does not end in .png";
 }
 
 std::string not_negative(const std::string& text) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/chi_squared.h"
+
 namespace vernier::cli {
 namespace {
 
@@ -77,13 +79,14 @@ std::string rig_table(const RigEstimate& estimate) {
         "{} {}, rms {:.4f} px{}, pixel sigma {:.4f} px, chi² {:.1f} for {} degrees of freedom\n",
         s.views,
         s.source == "board"   ? "views"
-        : s.source == "pairs" ? "image pairs"
-                              : "views",
+        : s.source == "pairs" ? (s.views == 1 ? "image pair" : "image pairs")
+                              : "board frames and image pairs",
         s.rms_px, s.source == "pairs" ? " from the epipolar line" : " a coordinate",
         s.pixel_sigma_px, s.chi2, s.dof);
     if (s.prior_dof > 0) {
       text +=
-          fmt::format("prior: chi² {:.2f} for {} parameters it knows\n", s.prior_chi2, s.prior_dof);
+          fmt::format("prior: chi² {:.2f} for {} parameters it knows (p at most {:.2g})\n",
+                      s.prior_chi2, s.prior_dof, chi_squared_survival(s.prior_chi2, s.prior_dof));
     }
     for (const CornerOutlier& o : s.outliers) {
       text += fmt::format("left out: corner {} of frame {}, {}, {:.1f} px from its place\n", o.id,
@@ -122,7 +125,14 @@ Json rig_json(const RigEstimate& estimate) {
     json["warnings"] = s.warnings;
     json["held"] = s.held;
     json["source"] = s.source;
-    json["pair_outliers"] = s.pair_outliers.size();
+    json["pair_outliers"] = Json::array();
+    for (const PairOutlier& o : s.pair_outliers) {
+      json["pair_outliers"].push_back(
+          {{"pair", o.image_pair},
+           {"row", o.row},
+           {"pixels_px", std::vector<double>(o.pixels_px.begin(), o.pixels_px.end())},
+           {"residual_px", o.residual_px}});
+    }
     json["outliers"] = Json::array();
     for (const CornerOutlier& o : s.outliers) {
       json["outliers"].push_back({{"frame", o.frame},

@@ -5,13 +5,28 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "calib/error.h"
 
 namespace vernier::cli {
+
+namespace {
+
+/// Throws Error where standard output does not take it all.
+void print_whole(const std::string& text) {
+  const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (all && std::fflush(stdout) == 0) return;
+  const std::string why = std::strerror(errno);
+  throw Error("standard output", "it cannot be written: " + why,
+              "make room where it goes; the files named as outputs are there");
+}
+
+}  // namespace
 
 void Session::say(const std::string& line) const {
   if (!quiet) fmt::print(stderr, "{}\n", line);
@@ -27,9 +42,9 @@ void Session::result(const Json& object, const std::string& text) const {
     Json out = object;
     if (!doubts_.empty()) out["doubts"] = doubts_;
     // a file name may hold any bytes
-    fmt::print("{}\n", out.dump(-1, ' ', false, Json::error_handler_t::replace));
+    print_whole(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   } else {
-    fmt::print("{}", text);
+    print_whole(text);
   }
 }
 

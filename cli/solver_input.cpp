@@ -77,6 +77,16 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
   verb->add_flag("--keep-outliers", input.keep_outliers, "leave no corner out");
 }
 
+RigKnowledge usable_prior(const RigFile& file, const std::string& place) {
+  RigKnowledge known = rig_knowledge(file, place);
+  try {
+    rig_prior(known.rig, known);
+  } catch (const Error& error) {
+    throw Error(place, error.what(), "");
+  }
+  return known;
+}
+
 CalibrationOptions calibration_options(const SolverInput& input, Session& session) {
   CalibrationOptions options;
   const std::vector<CameraModel> models = models_named(input.model);
@@ -88,7 +98,7 @@ CalibrationOptions calibration_options(const SolverInput& input, Session& sessio
   if (!input.prior.empty()) {
     const RigFile file = read_rig(input.prior);
     for (const std::string& warning : file.warnings) session.warn(warning);
-    options.prior = rig_knowledge(file, input.prior);
+    options.prior = usable_prior(file, input.prior);
   }
   if (input.warp) options.warp = BoardWarp::free;
   options.reject_outliers = !input.keep_outliers;

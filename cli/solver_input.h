@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/calibrate.h"
+#include "calib/rig_file.h"
 #include "cli/session.h"
 
 namespace vernier::cli {
@@ -30,5 +31,9 @@ inline constexpr std::array solver_options{"--model", "--pixel-sigma", "--hold",
 
 /// Throws Error naming the option that cannot be read.
 CalibrationOptions calibration_options(const SolverInput& input, Session& session);
+
+/// What a rig file says as a prior. Throws Error, naming the file at `place`, where it can be none:
+/// no covariance, or one that is not positive semi-definite or is singular.
+RigKnowledge usable_prior(const RigFile& file, const std::string& place);
 
 }  // namespace vernier::cli

@@ -16,4 +16,15 @@ void spare_inputs(const std::vector<std::filesystem::path>& inputs,
   }
 }
 
+void check_different(const std::string& option,
+                     const std::filesystem::path& file,
+                     const std::filesystem::path& other) {
+  std::error_code unknown;
+  const auto whole = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
+  };
+  if (whole(file) != whole(other)) return;
+  throw Error(option, file.string() + " is the file of another output", "name another file");
+}
+
 }  // namespace vernier::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vernier::cli {
@@ -11,5 +12,10 @@ namespace vernier::cli {
 /// name or link. Inputs that are not there are passed over.
 void spare_inputs(const std::vector<std::filesystem::path>& inputs,
                   const std::filesystem::path& output);
+
+/// Throws Error where the file of `option` is, by whatever name, the file `other` too.
+void check_different(const std::string& option,
+                     const std::filesystem::path& file,
+                     const std::filesystem::path& other);
 
 }  // namespace vernier::cli

@@ -104,7 +104,7 @@ void add_projections(const Input& in, UncertaintyReport& out) {
   } else {
     out.notes.push_back(
         "projection of points fixed to the boards (mrcal's) needs the board's poses, and the rig "
-        "file has no evidence of them: write it with vernier calibrate, without --no-evidence");
+        "file has no evidence of them: calibrate from views of a board, without --no-evidence");
   }
   for (int c = 0; c < cameras; ++c) add_projection(in, c, PointFixedTo::camera, out);
   for (int c = 1; c < cameras; ++c) add_projection(in, c, PointFixedTo::first_camera, out);
@@ -221,7 +221,7 @@ UncertaintyReport uncertainty_report(const RigEstimate& estimate,
   out.kind = required_covariance(estimate, place).kind;
   Input in{estimate, RigSampler(estimate, place), estimate.covariance->matrix, {}, {}};
   in.covariance *= std::pow(request.sampling.psi_c, 2);
-  if (estimate.evidence) {
+  if (estimate.evidence && !estimate.evidence->observations.views.empty()) {
     in.boards = in.scaled = rig_and_boards(estimate, CovarianceChoice::honest, place);
     in.scaled->rig_covariance = in.covariance;
     in.scaled->board_sigma_px *= request.sampling.psi_c;

@@ -19,7 +19,10 @@ std::string number(double value) {
 
 std::string both(double linear, double sampled) { return number(linear) + " / " + number(sampled); }
 
-std::string percent(double share) { return share > 0 ? fmt::format("{:.2g} %", 100 * share) : "0"; }
+std::string percent(double share) {
+  if (share >= 0.995) return "100 %";
+  return share > 0 ? fmt::format("{:.2g} %", 100 * share) : "0";
+}
 
 std::string projection_text(const UncertaintyReport& report) {
   std::string text =

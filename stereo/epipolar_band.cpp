@@ -11,8 +11,9 @@
 namespace vernier {
 namespace {
 
-constexpr int first_steps = 8;
+constexpr int first_steps = 16;
 constexpr int most_halvings = 7;
+constexpr int edge_halvings = 12;  // of a step, to where the curve leaves the image's surroundings
 constexpr double longest_step_px = 24;
 constexpr double straight_px = 0.1;
 
@@ -97,6 +98,20 @@ void EpipolarBand::subdivide(const Ray& ray,
   nodes.back().follows = true;
 }
 
+/// The last node on the way from one that is near the image to an inverse depth that is not.
+BandNode EpipolarBand::edge(const Ray& ray, BandNode in, double out) const {
+  for (int i = 0; i < edge_halvings; ++i) {
+    const double middle = 0.5 * (in.inverse_depth + out);
+    if (const auto between = node(ray, middle)) {
+      in = *between;
+    } else {
+      out = middle;
+    }
+  }
+  in.follows = false;
+  return in;
+}
+
 std::vector<BandNode> EpipolarBand::curve(const UncertainPixel& left) const {
   const Camera& camera = rig_.cameras[0];
   const auto direction = try_unproject(camera, left.pixel_px);
@@ -107,15 +122,22 @@ std::vector<BandNode> EpipolarBand::curve(const UncertainPixel& left) const {
   ray.by_camera = -ray.by_pixel * J.camera;
 
   std::vector<BandNode> nodes;
+  double before = 0;  // inverse depth of the last step
   bool joined = false;
   for (int i = 0; i <= first_steps; ++i) {
-    const auto next = node(ray, i / (first_steps * options_.nearest_m));
-    if (next && joined) {
+    const double here = i / (first_steps * options_.nearest_m);
+    const auto next = node(ray, here);
+    if (i > 0 && next && !joined) nodes.push_back(edge(ray, *next, before));
+    if (next && (i > 0)) {
       subdivide(ray, *next, 0, nodes);
     } else if (next) {
       nodes.push_back(*next);
+    } else if (joined) {
+      const BandNode last = edge(ray, nodes.back(), here);
+      subdivide(ray, last, 0, nodes);
     }
     joined = next.has_value();
+    before = here;
   }
   return nodes;
 }

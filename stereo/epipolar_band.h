@@ -67,6 +67,7 @@ class EpipolarBand {
  private:
   struct Ray;
   std::optional<BandNode> node(const Ray& ray, double inverse_depth) const;
+  BandNode edge(const Ray& ray, BandNode in, double out) const;
   void subdivide(const Ray& ray, const BandNode& to, int depth, std::vector<BandNode>& nodes) const;
 
   Rig rig_;

@@ -94,16 +94,20 @@ std::vector<Peak> peaks(const cv::Mat& r, const HarrisOptions& options) {
 }
 
 /// Every part's strongest first, up to its share of the count; then the rest.
-std::vector<Peak> spread(std::vector<Peak> sorted, cv::Size size, const HarrisOptions& options) {
+std::vector<Peak> spread(const std::vector<Peak>& sorted,
+                         cv::Size size,
+                         const HarrisOptions& options) {
   if (options.cells <= 0 || options.count <= 0) return sorted;
   const int share = std::max(1, options.count / (options.cells * options.cells));
   std::map<int, int> taken;
-  std::stable_partition(sorted.begin(), sorted.end(), [&](const Peak& peak) {
+  std::vector<Peak> first, rest;
+  for (const Peak& peak : sorted) {
     const int column = peak.x * options.cells / size.width;
     const int row = peak.y * options.cells / size.height;
-    return taken[row * options.cells + column]++ < share;
-  });
-  return sorted;
+    (taken[row * options.cells + column]++ < share ? first : rest).push_back(peak);
+  }
+  first.insert(first.end(), rest.begin(), rest.end());
+  return first;
 }
 
 /// Peak of the parabola through three values, from the middle one, and its derivatives by them.

@@ -278,7 +278,7 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
   EXPECT_EQ(complaint(header + "0,1,nan,3,4,0.3\n"),
             "bad.csv:2: a pixel coordinate is not finite; remove the line");
   EXPECT_EQ(complaint(header + "0,1,2,3,4,0\n"),
-            "bad.csv:2: sigma_px is 0; give a standard deviation above 0");
+            "bad.csv:2: sigma_px is 0; give a standard deviation above 0 and below a million");
   EXPECT_EQ(complaint(header + "0,1,2,3,4,1\n1,1,2,3,4,1\n0,1,2,3,5,1\n"),
             "bad.csv:4: image pair 0 comes a second time; keep its lines together");
   std::filesystem::remove_all(folder);
@@ -304,7 +304,7 @@ TEST_F(BadPairs, AreNamed) {
   EXPECT_NE(said(bad).find("lies outside the right image of 640 x 480 pixels"), std::string::npos);
   bad = pairs_;
   bad.pixels_px[40] = bad.pixels_px[7];
-  EXPECT_EQ(said(bad), "p.csv:42: it repeats pair 8; give every match once");
+  EXPECT_EQ(said(bad), "p.csv:42: it repeats line 9; give every match once");
   bad = simulate_pairs(truth_, 96, 0, {.image_pairs = 1, .pairs_per_image = 12});
   EXPECT_EQ(said(bad),
             "p.csv: 12 pairs for 16 free parameters; match more corners, or hold parameters");

@@ -11,7 +11,9 @@
 
 #include "calib/combine.h"
 #include "calib/distributions.h"
+#include "calib/draw_sources.h"
 #include "calib/epipolar_system.h"
+#include "calib/random.h"
 #include "calib/simulated_pairs.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
@@ -122,6 +124,42 @@ TEST(PairsStatistics, WrongMatchesDoLittleHarm) {
       EXPECT_GT(plain.mean(), 20) << share;
     }
   }
+}
+
+/// A tenth of the pairs with three times the noise, all of them with more than they state.
+PairObservations with_heavy_tails(PairObservations pairs, std::uint64_t seed, std::uint32_t trial) {
+  constexpr double stated_px = 0.3, more_px = 0.35;
+  Draws draws({.seed = seed,
+               .trial = trial,
+               .source = static_cast<std::uint32_t>(DrawSource::noisy_copy),
+               .frame = 2});
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double sigma = i % 10 == 0 ? 3 * stated_px : more_px;
+    pairs.pixels_px[i] += sigma * draws.normals(4);
+  }
+  return pairs;
+}
+
+TEST(PairsStatistics, HeavyTailsWithTheScaleEstimated) {
+  const Rig truth = wide_rig();
+  Trials honest, bound;
+  double scale = 0;
+  constexpr int trials = 200;
+  for (std::uint32_t t = 0; t < trials; ++t) {
+    const PairObservations pairs = with_heavy_tails(
+        simulate_pairs(truth, 25, t, {.image_pairs = 200, .pairs_per_image = 12}), 25, t);
+    const JointCalibration found = calibrate_from_pairs(pairs, test::datasheet(truth, 25, t));
+    honest.add(difference(truth, found.estimate.rig), found.estimate.covariance->matrix);
+    bound.add(difference(truth, found.estimate.rig), *found.estimate.covariance_mvb);
+    scale += found.pair_sigma_scale / trials;
+    EXPECT_TRUE(found.estimate.calibration->doubts.empty()) << t;
+  }
+  RecordProperty("nees_sandwich", std::to_string(honest.mean()));
+  RecordProperty("nees_bound", std::to_string(bound.mean()));
+  RecordProperty("scale", std::to_string(scale));
+  // The mean of 200 trials has a standard deviation of 0.4: false alarm below 1e-6.
+  EXPECT_NEAR(honest.mean(), 16, 0.15 * 16);
+  EXPECT_NEAR(scale, std::hypot(0.3, 0.35) / 0.3, 0.15);
 }
 
 TEST(PairsStatistics, AKnockIsFoundAndNothingElse) {

@@ -10,6 +10,7 @@
 #include "calib/model_nesting.h"
 #include "calib/rig_file.h"
 #include "calib/simulated_board.h"
+#include "tests/support/bent_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
@@ -207,27 +208,10 @@ TEST(Prior, IsRefusedWithItsDirection) {
             std::string::npos);
 }
 
-/// The same views of a board that is bent by `warp_m`, with the same noise.
-BoardObservations bent(const SimulatedBoard& board, const Eigen::Vector2d& warp_m) {
-  BoardObservations bent = board.observations;
-  const auto target_m = warped_target(bent.target_m, warp_m);
-  std::size_t f = 0;
-  for (BoardView& view : bent.views) {
-    while (board.truth.frames[f] != view.frame) ++f;
-    const Camera& camera = board.truth.rig.cameras[view.camera];
-    const Pose T = board.truth.rig.T_camera_first[view.camera] * board.truth.T_first_board[f];
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      view.pixels_px[i] += project(camera, T * target_m[view.ids[i]]) -
-                           project(camera, T * bent.target_m[view.ids[i]]);
-    }
-  }
-  return bent;
-}
-
 TEST(BoardWarpTest, IsFoundAndWithoutItTheRigIsWrong) {
   const Eigen::Vector2d warp_m(1.5e-3, -0.8e-3);
   const auto board = simulate_board(test::stereo_rig(), {}, 17, 0, {.frames = 30});
-  const BoardObservations observations = bent(board, warp_m);
+  const BoardObservations observations = test::bent(board, warp_m);
   const RigEstimate flat = calibrate(observations, {.pixel_sigma_px = 0.2});
   const RigEstimate free =
       calibrate(observations, {.pixel_sigma_px = 0.2, .warp = BoardWarp::free});

@@ -97,6 +97,61 @@ class Combine(unittest.TestCase):
         self.assertIn('largest drift', text)
         self.assertIn('stands first', text)
 
+    def test_without_pairs(self):
+        board = ['calibrate', '--left', f'{IMAGES}/left0[1-7].jpg', '--right',
+                 f'{IMAGES}/right0[1-7].jpg', '--board', '9x6', '--square-m', '0.025', '--model',
+                 'opencv4', '--no-model-check', '-o', 'board.json']
+        done = run(*board, folder=self.folder)
+        self.assertIn(done.returncode, (0, 3), done.stderr)
+        for inputs in (['board.json'], [PRIOR], ['--prior', PRIOR, 'board.json']):
+            said = self.json_of('combine', *inputs, '-o', 'c.json', code=0)
+            self.assertNotIn('observability', said)
+            done = run('combine', *inputs, '-o', 'c.json', folder=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn('stands first', done.stdout)
+        # A batch that is left out leaves no pairs: said, not a crash.
+        with open(self.folder / 'a.csv') as file:
+            rows = list(csv.reader(file))
+        with open(self.folder / 'shifted.csv', 'w') as file:
+            csv.writer(file, lineterminator='\n').writerows(
+                [rows[0]] + [row[:4] + [str(float(row[4]) + 8)] + row[5:] for row in rows[1:]
+                             if float(row[4]) + 8 < 479])
+        said = self.json_of('combine', 'board.json', 'shifted.csv', '-o', 'c.json', code=3)
+        self.assertFalse(said['inputs'][1]['used'])
+        self.assertNotIn('observability', said)
+
+    def test_outputs_are_spared(self):
+        self.assertIn('another output',
+                      self.complaint('combine', '--prior', PRIOR, 'a.csv', 'b.csv', '--monitor',
+                                     '--drift', './q.json', '-o', 'q.json'))
+        self.assertFalse((self.folder / 'q.json').exists())
+        images = ['--left', f'{IMAGES}/left01.jpg', '--right', f'{IMAGES}/right01.jpg', '--prior',
+                  PRIOR]
+        self.assertIn('another output',
+                      self.complaint('match', *images, '-o', 'z.png', '--picture', './z.png'))
+        self.complaint('match', *images, '-o', 'z.csv', '--picture', 'nowhere/z.png')
+        self.assertFalse((self.folder / 'z.csv').exists())
+        self.assertIn('same image', self.complaint('match', '--left', f'{IMAGES}/left01.jpg',
+                                                   '--right', f'{IMAGES}/left01.jpg', '--prior',
+                                                   PRIOR, '-o', 'z.csv'))
+
+    def test_impossible_priors_leave_no_file(self):
+        prior = json.loads(pathlib.Path(PRIOR).read_text())
+        prior['covariance']['matrix'][0][0] *= -1
+        (self.folder / 'negative.json').write_text(json.dumps(prior))
+        said = self.complaint('calibrate', '--pairs', 'pairs.csv', '--prior', 'negative.json',
+                              '-o', 'none.json')
+        self.assertIn('negative.json', said)
+        self.assertFalse((self.folder / 'none.json').exists())
+
+    def test_a_full_disk_is_said(self):
+        with open('/dev/full', 'w') as full:
+            done = subprocess.run([PROGRAM, 'calibrate', '--pairs', 'pairs.csv', '--prior', PRIOR,
+                                   '-o', 'full.json', '-q', '--json'], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('standard output', done.stderr)
+
     def test_information_filter_says_its_distance(self):
         said = self.json_of('combine', '--prior', PRIOR, 'a.csv', 'b.csv', '--mode', 'information',
                             '-o', 'filtered.json')

@@ -172,7 +172,10 @@ class Match(Case):
         self.pairs()
         left = self.folder / 'left1.pgm'
         before = left.read_bytes()
-        self.complains(*self.arguments(), '-q', '--picture', left, of='is an input')
+        linked = self.folder / 'linked.png'
+        linked.hardlink_to(left)
+        self.complains(*self.arguments(), '-q', '--picture', linked, of='is an input')
+        self.complains(*self.arguments(), '-q', '--picture', left, of='.png')
         self.assertEqual(left.read_bytes(), before)
 
     def test_options_that_make_no_sense(self):

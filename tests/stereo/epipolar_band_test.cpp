@@ -106,10 +106,37 @@ TEST(EpipolarBand, GrowsWithTheCovarianceAndNotOtherwise) {
   const auto narrow = EpipolarBand(rig, C, options).curve(left);
   const auto wide = EpipolarBand(rig, 9 * C, options).curve(left);
   ASSERT_EQ(narrow.size(), wide.size());
+  ASSERT_GT(narrow.size(), 10);
   for (std::size_t i = 0; i < narrow.size(); ++i) {
     EXPECT_EQ(narrow[i].pixel_px, wide[i].pixel_px);
     EXPECT_TRUE(wide[i].covariance_px2.isApprox(9 * narrow[i].covariance_px2, 1e-12));
   }
+}
+
+TEST(EpipolarBand, ALongCurveIsWholeWithinTheImage) {
+  // A third of a metre apart and as near as 8 cm: 4000 px of disparity, most of it out of view.
+  Rig rig = test::stereo_rig();
+  rig.T_camera_first[1].t = {-0.33, 0, 0.02};
+  const EpipolarBand band(rig, covariance_of(rig), {.nearest_m = 0.08});
+  int seen = 0;
+  for (double u = 20; u < 640; u += 50) {
+    const auto curve = band.curve({{u, 200}, Eigen::Matrix2d::Zero()});
+    const Eigen::Vector3d ray = unproject(rig.cameras[0], {u, 200});
+    for (double inverse_depth = 0; inverse_depth < 12.4; inverse_depth += 0.01) {
+      const Eigen::Vector3d X =
+          rig.T_camera_first[1].R * ray + inverse_depth * rig.T_camera_first[1].t;
+      if (X.z() <= 0.1) continue;
+      const Eigen::Vector2d pixel = project(rig.cameras[1], X);
+      if (!in_image(rig.cameras[1], pixel)) continue;
+      const auto back = try_unproject(rig.cameras[1], pixel);  // elsewhere beyond the lens's fold
+      if (!back || (*back - X / X.z()).norm() > 1e-6) continue;
+      ++seen;
+      const double distance =
+          distance_to_curve(curve, {pixel, Eigen::Matrix2d::Zero()}).mahalanobis2;
+      EXPECT_LT(distance, 0.2) << u << " " << inverse_depth;
+    }
+  }
+  EXPECT_GT(seen, 500);
 }
 
 TEST(EpipolarBand, RefusesWhatIsNoPair) {

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/board_warp.h"
+#include "calib/simulated_board.h"
+
+namespace vernier::test {
+
+/// The same views of a board that is bent by `warp_m`, with the same noise.
+inline BoardObservations bent(const SimulatedBoard& board, const Eigen::Vector2d& warp_m) {
+  BoardObservations bent = board.observations;
+  const auto target_m = warped_target(bent.target_m, warp_m);
+  std::size_t f = 0;
+  for (BoardView& view : bent.views) {
+    while (board.truth.frames[f] != view.frame) ++f;
+    const Camera& camera = board.truth.rig.cameras[view.camera];
+    const Pose T = board.truth.rig.T_camera_first[view.camera] * board.truth.T_first_board[f];
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      view.pixels_px[i] += project(camera, T * target_m[view.ids[i]]) -
+                           project(camera, T * bent.target_m[view.ids[i]]);
+    }
+  }
+  return bent;
+}
+
+}  // namespace vernier::test

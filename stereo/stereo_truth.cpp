@@ -8,11 +8,10 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "stereo/map_window.h"
 
 namespace vernier {
 namespace {
-
-constexpr float tolerance_px = 1.01f;  // a pixel, and what rounding to parts of one leaves
 
 /// Pixels of a row that are on both sides of a fold have different numbers.
 std::vector<int> folds_of(const DisparityMap& map, int y) {
@@ -22,7 +21,7 @@ std::vector<int> folds_of(const DisparityMap& map, int y) {
   for (int x = 0; x < map.width_px; ++x) {
     if (map.known(x, y)) {
       const float right = static_cast<float>(x) - map(x, y);
-      count += right < last + 1 - tolerance_px;
+      count += right < last + 1 - step_px;
       last = right;
     }
     folds[static_cast<std::size_t>(x)] = count;
@@ -61,7 +60,7 @@ bool disagrees(const DisparityMap& truth, int y, float right_px, float disparity
     least = std::min(least, truth(x, y));
     most = std::max(most, truth(x, y));
   }
-  return disparity < least - tolerance_px || disparity > most + tolerance_px;
+  return disparity < least - step_px || disparity > most + step_px;
 }
 
 void mark_occluded(StereoTruth& truth, const DisparityMap* right_truth, int y) {
@@ -73,7 +72,7 @@ void mark_occluded(StereoTruth& truth, const DisparityMap* right_truth, int y) {
     bool occluded = right < 0 || right > static_cast<float>(map.width_px - 1);
     if (!occluded) {
       const int front = seen[static_cast<std::size_t>(std::lround(right))];
-      occluded = map(front, y) > d + tolerance_px &&
+      occluded = map(front, y) > d + step_px &&
                  folds[static_cast<std::size_t>(front)] != folds[static_cast<std::size_t>(x)];
       occluded = occluded || (right_truth && disagrees(*right_truth, y, right, d));
     }
@@ -86,64 +85,10 @@ std::string size_text(int width_px, int height_px) {
   return fmt::format("{}x{}", width_px, height_px);
 }
 
-/// The part of a map within `half` pixels of a pixel.
-struct Window {
-  const DisparityMap& map;
-  int x0, y0, x1, y1;  ///< both ends included
-
-  Window(const DisparityMap& of, int x, int y, int half)
-      : map(of),
-        x0(std::max(x - half, 0)),
-        y0(std::max(y - half, 0)),
-        x1(std::min(x + half, of.width_px - 1)),
-        y1(std::min(y + half, of.height_px - 1)) {}
-
-  /// Whether there is a step along a line of `count` pixels from (x, y) in direction (dx, dy).
-  bool line_has_step(int x, int y, int dx, int dy, int count) const {
-    int last = -1;
-    float before = 0;
-    for (int i = 0; i < count; ++i, x += dx, y += dy) {
-      if (!map.known(x, y)) continue;
-      const auto apart = static_cast<float>(i - last);
-      if (last >= 0 && std::abs(map(x, y) - before) > apart * tolerance_px) return true;
-      last = i;
-      before = map(x, y);
-    }
-    return false;
-  }
-
-  bool has_step() const {
-    for (int y = y0; y <= y1; ++y) {
-      if (line_has_step(x0, y, 1, 0, x1 - x0 + 1)) return true;
-    }
-    for (int x = x0; x <= x1; ++x) {
-      if (line_has_step(x, y0, 0, 1, y1 - y0 + 1)) return true;
-    }
-    return false;
-  }
-};
-
-/// Along row y between the two pixels beside x; the known one's where the other is not.
-float between(const DisparityMap& map, float x, int y) {
-  const float inside = std::clamp(x, 0.0f, static_cast<float>(map.width_px - 1));
-  const int first = std::min(static_cast<int>(inside), map.width_px - 1);
-  const int second = std::min(first + 1, map.width_px - 1);
-  if (!map.known(first, y)) return map(second, y);
-  if (!map.known(second, y)) return map(first, y);
-  const float part = inside - static_cast<float>(first);
-  return (1 - part) * map(first, y) + part * map(second, y);
-}
-
 TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
   const DisparityMap& map = truth.disparity;
-  if (edge.x < 0 || edge.y < 0 || edge.x >= map.width_px || edge.y >= map.height_px) {
-    throw Error("ground truth",
-                fmt::format("is {} pixels large, and an edge is at ({}, {})",
-                            size_text(map.width_px, map.height_px), edge.x, edge.y),
-                "give the truth of the image that the edges are of");
-  }
-  const int x = std::clamp(static_cast<int>(std::lround(edge.row_x_px)), 0, map.width_px - 1);
-  const Window near(map, x, edge.y, 1);
+  const int x = column_of(edge, map, "ground truth");
+  const MapWindow near(map, x, edge.y, 1);
   TruthAtEdge at;
   int source_x = x, source_y = edge.y;
   bool all_known = true;
@@ -161,8 +106,8 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
     }
   }
   at.known = map.known(x, edge.y);
-  at.discontinuity = !all_known || Window(map, x, edge.y, 2).has_step();
-  at.disparity_px = step ? at.most_px : at.known ? between(map, edge.row_x_px, edge.y) : NAN;
+  at.discontinuity = !all_known || MapWindow(map, x, edge.y, 2).has_step();
+  at.disparity_px = step ? at.most_px : at.known ? along_row(map, edge.row_x_px, edge.y) : NAN;
   at.occluded =
       truth.occluded[static_cast<std::size_t>(source_y) * static_cast<std::size_t>(map.width_px) +
                      static_cast<std::size_t>(source_x)] != 0;

@@ -3,124 +3,21 @@
 #include "stereo/canny_edges.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
-#include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "calib/error.h"
+#include "stereo/edge_places.h"
+#include "stereo/image_gradient.h"
 #include "stereo/image_noise.h"
 
 namespace vernier {
 namespace {
 
-constexpr double reach_scales = 3.5;       // a Gaussian is cut off here
-constexpr float least_ratio = 0.1F;        // of a neighbour's gradient to the peak's
-constexpr float least_curvature = 0.005F;  // of log |g|, that of a step blurred by 10 px
+constexpr int strip = 48;  // rows at a time, for the processor's cache
 
-/// A sampled Gaussian of sum one and its derivative, of unit response to a ramp.
-struct GradientFilter {
-  explicit GradientFilter(double scale_px)
-      : reach(static_cast<int>(reach_scales * scale_px + 0.5)) {
-    double sum = 0, moment = 0;
-    for (int i = -reach; i <= reach; ++i) {
-      const double g = std::exp(-i * i / (2 * scale_px * scale_px));
-      smooth.push_back(g);
-      slope.push_back(i * g);
-      sum += g;
-      moment += i * i * g;
-    }
-    for (double& value : smooth) value /= sum;
-    for (double& value : slope) value /= moment;
-  }
-  int reach;
-  std::vector<double> smooth, slope;
-};
-
-/// Σ_u a(u) b(u + shift)
-double correlation(const std::vector<double>& a, const std::vector<double>& b, int shift) {
-  const int size = static_cast<int>(a.size());
-  double sum = 0;
-  for (int u = std::max(0, -shift); u < std::min(size, size - shift); ++u)
-    sum += a[u] * b[u + shift];
-  return sum;
-}
-
-/// Variance of Σ_i q_i nᵀ δg_i over 3 x 3 pixels, for image noise of one grey level.
-class NoisePropagation {
- public:
-  explicit NoisePropagation(const GradientFilter& filter) {
-    for (int dy = 0; dy <= 2; ++dy) {
-      for (int dx = -2; dx <= 2; ++dx) {
-        const auto& g = filter.smooth;
-        const auto& d = filter.slope;
-        const double twice = dx == 0 && dy == 0 ? 1 : 2;  // r and −r
-        const double xx = correlation(d, d, dx) * correlation(g, g, dy);
-        const double yy = correlation(g, g, dx) * correlation(d, d, dy);
-        const double xy = correlation(d, g, dx) * correlation(g, d, dy) +
-                          correlation(g, d, dx) * correlation(d, g, dy);
-        by_shift_[dy * 5 + dx + 2] = {static_cast<float>(twice * xx),
-                                      static_cast<float>(twice * xy),
-                                      static_cast<float>(twice * yy)};
-      }
-    }
-  }
-
-  float variance(const std::array<float, 9>& q, const Eigen::Vector2f& n) const {
-    float sum = 0;
-    for (int dy = 0; dy <= 2; ++dy) {
-      for (int dx = dy == 0 ? 0 : -2; dx <= 2; ++dx) {
-        const auto& by = by_shift_[dy * 5 + dx + 2];
-        float products = 0;
-        for (int y = 0; y + dy < 3; ++y) {
-          for (int x = std::max(0, -dx); x < std::min(3, 3 - dx); ++x) {
-            products += q[y * 3 + x] * q[(y + dy) * 3 + x + dx];
-          }
-        }
-        sum += products * (n.x() * n.x() * by[0] + n.x() * n.y() * by[1] + n.y() * n.y() * by[2]);
-      }
-    }
-    return std::max(sum, 0.F);
-  }
-
- private:
-  std::array<std::array<float, 3>, 15> by_shift_;  // of xx, xy + yx, yy
-};
-
-struct Gradients {
-  Gradients(const cv::Mat& grey, const GradientFilter& filter) {
-    cv::sepFilter2D(grey, x, CV_32F, filter.slope, filter.smooth, {-1, -1}, 0,
-                    cv::BORDER_REPLICATE);
-    cv::sepFilter2D(grey, y, CV_32F, filter.smooth, filter.slope, {-1, -1}, 0,
-                    cv::BORDER_REPLICATE);
-    squared = x.mul(x) + y.mul(y);
-  }
-  cv::Mat x, y, squared;
-};
-
-/// Whether |g|² is the largest along g, by interpolation between the pixels one row (or column,
-/// whichever g is steeper to) away on either side.
-bool is_peak(const Gradients& g, int x, int y) {
-  const float gx = g.x.at<float>(y, x), gy = g.y.at<float>(y, x);
-  const auto step = static_cast<std::ptrdiff_t>(g.squared.step1());
-  const float* at = g.squared.ptr<float>(y) + x;
-  const bool along_row = std::abs(gx) >= std::abs(gy);
-  const std::ptrdiff_t major = along_row ? 1 : step;
-  const std::ptrdiff_t minor =
-      (gx > 0) == (gy > 0) ? (along_row ? step : 1) : -(along_row ? step : 1);
-  const float part = along_row ? std::abs(gy / gx) : std::abs(gx / gy);
-  const float ahead = (1 - part) * at[major] + part * at[major + minor];
-  const float behind = (1 - part) * at[-major] + part * at[-major - minor];
-  return *at > ahead && *at >= behind;
-}
-
-struct Candidate {
-  int x, y;
-  bool strong;
-};
-
-/// Sets of connected candidates.
-class Strings {
+/// Sets of connected points; the first of each is its root.
+class ConnectedSets {
  public:
   int add() {
     parents_.push_back(static_cast<int>(parents_.size()));
@@ -130,7 +27,7 @@ class Strings {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
     return i;
   }
-  void join(int a, int b) {  // the first in reading order is the root
+  void join(int a, int b) {
     a = root(a);
     b = root(b);
     parents_[std::max(a, b)] = std::min(a, b);
@@ -140,115 +37,107 @@ class Strings {
   std::vector<int> parents_;
 };
 
-/// Peaks above `low`, each with the number of its string.
-std::vector<Candidate> find_peaks(const Gradients& g,
-                                  const CannyOptions& options,
-                                  Strings& strings) {
-  const auto low = static_cast<float>(options.low * options.low);
-  const auto high = static_cast<float>(options.high * options.high);
-  const int border = std::max(1, static_cast<int>(std::ceil(2 * options.scale_px)));
-  std::vector<Candidate> peaks;
-  std::vector<int> above(g.squared.cols, -1), own(g.squared.cols, -1);
-  for (int y = border; y < g.squared.rows - border; ++y) {
-    const float* row = g.squared.ptr<float>(y);
-    std::fill(own.begin(), own.end(), -1);
-    for (int x = border; x < g.squared.cols - border; ++x) {
-      if (row[x] < low || !is_peak(g, x, y)) continue;
-      own[x] = strings.add();
-      for (const int other : {own[x - 1], above[x - 1], above[x], above[x + 1]}) {
-        if (other >= 0) strings.join(own[x], other);
-      }
-      peaks.push_back({x, y, row[x] >= high});
-    }
-    std::swap(above, own);
+/// For every pixel of a row whether its |g| is at least `low` and the largest along g: larger than
+/// on the one side and no smaller than on the other, by interpolation between the two pixels that g
+/// passes one row (or column, whichever g is steeper to) away. All products with |g_x| or |g_y|, so
+/// that nothing is divided, and no branches, so that the compiler makes vectors.
+void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::vector<int>& found) {
+  const float* const gx = gradient.x.ptr<float>(row);
+  const float* const gy = gradient.y.ptr<float>(row);
+  const float* const above = gradient.strength.ptr<float>(row - 1);
+  const float* const at = gradient.strength.ptr<float>(row);
+  const float* const below = gradient.strength.ptr<float>(row + 1);
+  int* const peak = found.data();
+  for (int x = 1; x < gradient.x.cols - 1; ++x) {
+    const float nw = above[x - 1], n = above[x], ne = above[x + 1], w = at[x - 1], own = at[x],
+                e = at[x + 1], sw = below[x - 1], s = below[x], se = below[x + 1];
+    const float along_x = std::abs(gx[x]), along_y = std::abs(gy[x]);
+    const bool falls = gx[x] * gy[x] >= 0;  // g is to the right and down, or to the left and up
+    const bool steep = along_x < along_y;
+    const float major = std::max(along_x, along_y), minor = std::min(along_x, along_y);
+    const float one = steep ? s : e, other = steep ? n : w;
+    const float right = falls ? se : ne, left = falls ? nw : sw;
+    const float one_aside = steep ? (falls ? se : sw) : right;
+    const float other_aside = steep ? (falls ? nw : ne) : left;
+    const float one_side = (major - minor) * one + minor * one_aside;
+    const float other_side = (major - minor) * other + minor * other_aside;
+    peak[x] = (own * major > one_side) & (own * major >= other_side) & (own >= low) ? 1 : 0;
   }
-  return peaks;
 }
 
-/// Numbers of the strings that stay, −1 for the others; in the order of their first points.
-std::vector<int> number_strings(const std::vector<Candidate>& peaks,
-                                Strings& strings,
-                                int least_points) {
-  std::vector<int> points(peaks.size(), 0), number(peaks.size(), -1);
-  std::vector<char> strong(peaks.size(), 0);
-  for (std::size_t i = 0; i < peaks.size(); ++i) {
-    const int root = strings.root(static_cast<int>(i));
-    ++points[root];
-    strong[root] |= static_cast<char>(peaks[i].strong);
-  }
-  int next = 0;
-  for (std::size_t i = 0; i < peaks.size(); ++i) {
-    const int root = strings.root(static_cast<int>(i));
-    if (!strong[root] || points[root] < least_points) continue;
-    if (number[root] < 0) number[root] = next++;
-    number[i] = number[root];
-  }
-  return number;
-}
-
-/// The quadratic about a pixel.
-class Localisation {
+/// Peaks of |g| across edges, row by row, and which of them are connected.
+class PeakFinder {
  public:
-  Localisation(const Gradients& g, const GradientFilter& filter, double noise)
-      : g_(g), propagation_(filter), noise_(static_cast<float>(noise)) {}
+  PeakFinder(int columns, const CannyOptions& options)
+      : options_(options),
+        border_(border_px(options)),
+        is_peak_(columns, 0),
+        own_(columns, -1),
+        above_(columns, -1) {}
 
-  EdgePoint operator()(const Candidate& peak, int string) const {
-    const float gx = g_.x.at<float>(peak.y, peak.x), gy = g_.y.at<float>(peak.y, peak.x);
-    const float squared = g_.squared.at<float>(peak.y, peak.x), strength = std::sqrt(squared);
-    const Eigen::Vector2f n(gx / strength, gy / strength);
-    std::array<float, 9> squares{};
-    for (int j = 0; j < 3; ++j) {
-      const float* row = g_.squared.ptr<float>(peak.y + j - 1) + peak.x - 1;
-      for (int i = 0; i < 3; ++i) {
-        squares[3 * j + i] = std::max(row[i], least_ratio * least_ratio * squared);
-      }
-    }
-    EdgePoint point{peak.x, peak.y};
-    std::array<float, 9> by_pixel{};
-    const float t = offset(squares, n, by_pixel);
-    for (int i = 0; i < 9; ++i) by_pixel[i] /= std::sqrt(squares[i]);
-    point.pixel_px = Eigen::Vector2f(peak.x, peak.y) + t * n;
-    const float along_row = n.x() == 0 ? 0 : t / n.x();
-    point.row_x_px = static_cast<float>(peak.x) + std::clamp(along_row, -1.5F, 1.5F);
-    point.normal = n;
-    point.strength = strength;
-    point.sigma_px = noise_ * std::sqrt(propagation_.variance(by_pixel, n));
-    point.string = string;
-    return point;
+  /// No points nearer to the image's border, where what is beyond it would displace them.
+  static int border_px(const CannyOptions& options) {
+    return std::max(1, static_cast<int>(std::ceil(2 * options.scale_px)));
   }
+
+  /// Rows have to come one after the other.
+  void add_row(const GradientRows& gradient, int y, std::vector<EdgePoint>& peaks) {
+    const int row = y - gradient.first_row, columns = gradient.x.cols;
+    find_peaks_in_row(gradient, row, static_cast<float>(options_.low), is_peak_);
+    std::fill(own_.begin(), own_.end(), -1);
+    for (int x = border_; x < columns - border_; ++x) {
+      if (is_peak_[x] == 0) continue;
+      own_[x] = sets_.add();
+      for (const int other : {own_[x - 1], above_[x - 1], above_[x], above_[x + 1]}) {
+        if (other >= 0) sets_.join(own_[x], other);
+      }
+      EdgePoint& peak = peaks.emplace_back();
+      peak.x = x;
+      peak.y = y;
+    }
+    std::swap(above_, own_);
+  }
+
+  ConnectedSets& sets() { return sets_; }
 
  private:
-  /// t, and its derivatives by log |g_i|.
-  static float offset(const std::array<float, 9>& squares,
-                      const Eigen::Vector2f& n,
-                      std::array<float, 9>& by_log) {
-    std::array<float, 9> by_slope{}, by_bend{};
-    float slope = 0, bend = 0;
-    for (int k = 0; k < 9; ++k) {
-      const auto x = static_cast<float>(k % 3 - 1), y = static_cast<float>(k / 3 - 1);
-      by_slope[k] = (n.x() * x + n.y() * y) / 6;
-      by_bend[k] = n.x() * n.x() * (x * x - 2.F / 3) + n.y() * n.y() * (y * y - 2.F / 3) +
-                   n.x() * n.y() * x * y / 2;
-      const float value = std::log(squares[k]) / 2;
-      slope += by_slope[k] * value;
-      bend += by_bend[k] * value;  // 2 nᵀ C n
-    }
-    bend = std::min(bend, -least_curvature);
-    const float most = 0.75F / std::max(std::abs(n.x()), std::abs(n.y()));
-    const float t = std::clamp(-slope / bend, -most, most);
-    for (int k = 0; k < 9; ++k) by_log[k] = -(by_slope[k] + t * by_bend[k]) / bend;
-    return t;
-  }
-
-  const Gradients& g_;
-  NoisePropagation propagation_;
-  float noise_;
+  const CannyOptions& options_;
+  int border_;
+  std::vector<int> is_peak_, own_, above_;
+  ConnectedSets sets_;
 };
 
+/// Keeps the points of strings with a strong one and enough of them, and numbers the strings in the
+/// order of their first points.
+void keep_strings(ConnectedSets& sets,
+                  const CannyOptions& options,
+                  std::vector<EdgePoint>& points) {
+  struct Members {
+    int count = 0, number = -1;
+    bool strong = false;
+  };
+  std::vector<Members> of_root(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Members& string = of_root[sets.root(static_cast<int>(i))];
+    ++string.count;
+    string.strong |= points[i].strength >= options.high;
+  }
+  std::size_t kept = 0;
+  int next = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Members& string = of_root[sets.root(static_cast<int>(i))];
+    if (!string.strong || string.count < options.least_points) continue;
+    if (string.number < 0) string.number = next++;
+    points[kept] = points[i];
+    points[kept++].string = string.number;
+  }
+  points.resize(kept);
+}
+
 void check(const GreyLevels& image, const CannyOptions& options) {
-  if (image.width_px < 0 || image.height_px < 0 ||
-      image.values.size() != static_cast<std::size_t>(image.width_px) *
-                                 static_cast<std::size_t>(std::max(0, image.height_px))) {
+  const auto values = static_cast<std::size_t>(std::max(0, image.width_px)) *
+                      static_cast<std::size_t>(std::max(0, image.height_px));
+  if (image.width_px < 0 || image.height_px < 0 || image.values.size() != values) {
     throw Error("canny_edges", "the image's values do not fill its size",
                 "give width times height of them");
   }
@@ -264,19 +153,24 @@ void check(const GreyLevels& image, const CannyOptions& options) {
 
 std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& options) {
   check(image, options);
-  const GradientFilter filter(options.scale_px);
-  if (std::min(image.width_px, image.height_px) <= 2 * filter.reach) return {};
+  const GradientKernel kernel(options.scale_px);
+  if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
   const cv::Mat grey(image.height_px, image.width_px, CV_32F,
                      const_cast<float*>(image.values.data()));
-  const Gradients gradients(grey, filter);
-  Strings strings;
-  const std::vector<Candidate> peaks = find_peaks(gradients, options, strings);
-  const std::vector<int> numbers = number_strings(peaks, strings, options.least_points);
-  const Localisation localise(gradients, filter, image_noise(grey));
+  const EdgePlaces places(kernel, image_noise(grey));
+  PeakFinder finder(grey.cols, options);
+  GradientRows gradient;
   std::vector<EdgePoint> edges;
-  for (std::size_t i = 0; i < peaks.size(); ++i) {
-    if (numbers[i] >= 0) edges.push_back(localise(peaks[i], numbers[i]));
+  edges.reserve(image.values.size() / 4);
+  const int border = PeakFinder::border_px(options);
+  for (int first = border; first < grey.rows - border; first += strip) {
+    const int end = std::min(first + strip, grey.rows - border);
+    gradient.compute(grey, kernel, first - 1, end + 1);
+    const std::size_t before = edges.size();
+    for (int y = first; y < end; ++y) finder.add_row(gradient, y, edges);
+    places.place(gradient, std::span(edges).subspan(before));
   }
+  keep_strings(finder.sets(), options, edges);
   return edges;
 }
 

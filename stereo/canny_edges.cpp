@@ -10,6 +10,7 @@
 #include "stereo/edge_places.h"
 #include "stereo/image_gradient.h"
 #include "stereo/image_noise.h"
+#include "stereo/matrix_of.h"
 
 namespace vernier {
 namespace {
@@ -155,8 +156,7 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   check(image, options);
   const GradientKernel kernel(options.scale_px);
   if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
-  const cv::Mat grey(image.height_px, image.width_px, CV_32F,
-                     const_cast<float*>(image.values.data()));
+  const cv::Mat grey = matrix_of(image);
   const EdgePlaces places(kernel, image_noise(grey));
   PeakFinder finder(grey.cols, options);
   GradientRows gradient;

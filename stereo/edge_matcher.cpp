@@ -9,74 +9,124 @@
 #include <numeric>
 
 #include "calib/error.h"
+#include "stereo/disparity_refinement.h"
 #include "stereo/edge_support.h"
+#include "stereo/image_noise.h"
+#include "stereo/matrix_of.h"
+#include "stereo/stretched_image.h"
 
 namespace vernier {
 namespace {
 
-/// The left points and the disparities found for them, seen from the right image.
+/// What was found for the left points.
+struct Found {
+  std::vector<Winner> winners;
+  std::vector<bool> confirmed;  ///< found again from the right image, within a disparity
+  std::vector<double> stretch;  ///< du_right / du_left
+  bool slanted = false;         ///< surfaces that slant were tried
+};
+
+constexpr double slanted_slope = 0.6;  // of disparity, pixels a pixel
+
+/// Searches points of the left image in the right one, and back.
 class Search {
  public:
   Search(const RectifiedPair& pair, const DisparityRange& range)
-      : width_(pair.left.width_px), height_(pair.left.height_px), least_(range.least_px) {
-    count_ = (range.most_px - range.least_px + 1 + 31) / 32 * 32;
-    const int border = count_ + std::abs(least_) + 2;
-    left_ = census_transform(pair.left, border);
-    right_ = census_transform(pair.right, border);
-    searched_ = range.most_px - range.least_px + 1;
+      : pair_(pair),
+        width_(pair.left.width_px),
+        height_(pair.left.height_px),
+        least_(range.least_px),
+        searched_(range.most_px - range.least_px + 1) {
+    constexpr int step = 32;
+    count_ = (searched_ + step - 1) / step * step;
+    border_ = count_ + std::abs(least_) + 2;
+    left_ = census_transform(pair.left, border_);
+    right_ = census_transform(pair.right, border_);
+    mirrored_right_ = mirrored(right_);
   }
 
-  std::vector<Winner> from_left(const PointsByRow& points) const {
+  /// Of surfaces that face the cameras or, with `slanted`, of all.
+  Found find(const PointsByRow& points, bool slanted) const {
+    std::vector<StretchedView> from_left, from_right;
+    SupportOptions support;
+    if (slanted) {
+      from_left = stretched_views(mirrored(pair_.right));
+      from_right = stretched_views(pair_.left);
+      support.slope = slanted_slope;
+      support.small_step = 10;  // what steps cost would make slopes into stairs
+      support.large_step = 600;
+    }
     std::vector<int> first;
     for (const int x : points.x) first.push_back(width_ - 1 - x + least_);
-    const CensusImage right = mirrored(right_);
-    return semi_global_winners({points, left_, right, first, Facing::opposite, count_});
-  }
-
-  /// Whether each left point's place in the right image finds it again, within a disparity.
-  std::vector<bool> confirmed(const PointsByRow& points, const std::vector<Winner>& found) const {
-    std::vector<int> place(points.x.size(), -1);
-    std::vector<int> index(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
-                           -1);
-    std::vector<int> x, y, first;
-    for (std::size_t row = 0; row + 1 < points.row_begin.size(); ++row) {
-      std::vector<int> seen;
-      for (int p = points.row_begin[row]; p < points.row_begin[row + 1]; ++p) {
-        const auto k = static_cast<std::size_t>(p);
-        const int there = points.x[k] - least_ - found[k].index;
-        if (there < 0 || there >= width_ || found[k].index >= searched_) continue;
-        place[k] = there;
-        seen.push_back(there);
-      }
-      std::sort(seen.begin(), seen.end());
-      seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-      for (const int there : seen) {
-        index[row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(there)] =
-            static_cast<int>(x.size());
-        x.push_back(there);
-        y.push_back(static_cast<int>(row));
-        first.push_back(there + least_);
-      }
+    CensusCosts costs{points, left_, mirrored_right_, first, Facing::opposite, count_};
+    if (slanted) costs.stretched = &from_left;
+    Found found{semi_global_winners(costs, Support::all, support), {}, {}, slanted};
+    confirm(points, slanted ? &from_right : nullptr, support, found);
+    for (int p = 0; p < points.size(); ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      const bool ask = slanted && found.confirmed[k];
+      found.stretch.push_back(ask ? 1 / best_scale(costs, p, found.winners[k].index) : 1);
     }
-    const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
-    const std::vector<Winner> back = semi_global_winners(
-        {right, right_, left_, first, Facing::same, count_}, Support::from_above);
-    std::vector<bool> same(points.x.size(), false);
-    for (std::size_t k = 0; k < same.size(); ++k) {
-      if (place[k] < 0) continue;
-      const int there =
-          index[static_cast<std::size_t>(points.y[k]) * static_cast<std::size_t>(width_) +
-                static_cast<std::size_t>(place[k])];
-      same[k] = std::abs(back[static_cast<std::size_t>(there)].index - found[k].index) <= 1;
-    }
-    return same;
+    return found;
   }
 
   int least() const { return least_; }
 
  private:
-  int width_, height_, least_, count_ = 0, searched_ = 0;
-  CensusImage left_, right_;
+  std::vector<StretchedView> stretched_views(const GreyLevels& image) const {
+    std::vector<StretchedView> views;
+    for (const double scale : {1.35, 1.8, 2.4, 3.0, 0.74, 0.55, 0.42}) {
+      const auto border = static_cast<int>(scale * border_) + 66;
+      views.push_back({scale, census_transform(stretched(image, scale), border)});
+    }
+    return views;
+  }
+
+  /// Searches from where the left points were found.
+  void confirm(const PointsByRow& points,
+               const std::vector<StretchedView>* stretched_left,
+               const SupportOptions& support,
+               Found& found) const {
+    std::vector<int> place(points.x.size(), -1), index(static_cast<std::size_t>(width_));
+    std::vector<int> x, y, first;
+    std::vector<int> there(points.x.size(), -1);
+    for (std::size_t row = 0; row + 1 < points.row_begin.size(); ++row) {
+      std::fill(index.begin(), index.end(), -1);
+      for (int p = points.row_begin[row]; p < points.row_begin[row + 1]; ++p) {
+        const auto k = static_cast<std::size_t>(p);
+        const int at = points.x[k] - least_ - found.winners[k].index;
+        if (at < 0 || at >= width_ || found.winners[k].index >= searched_) continue;
+        place[k] = at;
+        index[static_cast<std::size_t>(at)] = 0;
+      }
+      for (int at = 0; at < width_; ++at) {
+        if (index[static_cast<std::size_t>(at)] < 0) continue;
+        index[static_cast<std::size_t>(at)] = static_cast<int>(x.size());
+        x.push_back(at);
+        y.push_back(static_cast<int>(row));
+        first.push_back(at + least_);
+      }
+      for (int p = points.row_begin[row]; p < points.row_begin[row + 1]; ++p) {
+        const auto k = static_cast<std::size_t>(p);
+        if (place[k] >= 0) there[k] = index[static_cast<std::size_t>(place[k])];
+      }
+    }
+    const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
+    CensusCosts costs{right, right_, left_, first, Facing::same, count_};
+    costs.stretched = stretched_left;
+    const std::vector<Winner> back =
+        semi_global_winners(costs, stretched_left ? Support::all : Support::from_above, support);
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      const int tolerance = stretched_left ? 2 : 1;
+      found.confirmed.push_back(there[k] >= 0 &&
+                                std::abs(back[static_cast<std::size_t>(there[k])].index -
+                                         found.winners[k].index) <= tolerance);
+    }
+  }
+
+  const RectifiedPair& pair_;
+  int width_, height_, least_, searched_, count_ = 0, border_ = 0;
+  CensusImage left_, right_, mirrored_right_;
 };
 
 /// Sets of points, each named by one of them.
@@ -105,9 +155,11 @@ class Chains {
 };
 
 /// Drops points that fewer than `least_points` agree with, in a chain of matched points within
-/// reach of each other in row and column whose disparities differ by at most one.
+/// reach of each other in row and column whose disparities differ by at most one, and by `slope`
+/// for every column between them.
 void drop_lonely(const PointsByRow& points,
                  const EdgeMatcherOptions& options,
+                 double slope,
                  std::vector<float>& disparity) {
   const int reach = options.agreement_reach_px;
   std::vector<int> matched;  // by row
@@ -133,7 +185,8 @@ void drop_lonely(const PointsByRow& points,
         for (int i = begin; i < end; ++i) {
           const int q = matched[static_cast<std::size_t>(i)];
           if (points.x[static_cast<std::size_t>(q)] > x + reach) break;
-          if (std::abs(disparity[static_cast<std::size_t>(q)] - disparity[k]) <= 1) {
+          const double most = 1 + slope * std::abs(points.x[static_cast<std::size_t>(q)] - x);
+          if (std::abs(disparity[static_cast<std::size_t>(q)] - disparity[k]) <= most) {
             chains.join(p, q);
           }
         }
@@ -155,6 +208,122 @@ void drop_lonely(const PointsByRow& points,
     disparity[static_cast<std::size_t>(p)] = std::numeric_limits<float>::quiet_NaN();
   }
 }
+
+/// Disparities that pass all tests, not a number for the others.
+std::vector<float> accepted(const PointsByRow& points,
+                            const Search& search,
+                            const Found& found,
+                            const EdgeMatcherOptions& options) {
+  std::vector<float> disparity(points.x.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t k = 0; k < disparity.size(); ++k) {
+    const Winner& best = found.winners[k];
+    if (!found.confirmed[k] || !(best.margin > options.least_margin)) continue;
+    disparity[k] = static_cast<float>(search.least() + best.index) + best.offset;
+  }
+  drop_lonely(points, options, found.slanted ? slanted_slope : 0, disparity);
+  return disparity;
+}
+
+/// Least squares at points: at first where disparities were found, then from neighbours that are
+/// settled already, whose surface says where to start.
+class Refinement {
+ public:
+  Refinement(const RectifiedPair& pair,
+             const PointsByRow& points,
+             const EdgeMatcherOptions& options)
+      : pair_(pair), points_(points), options_(options), fits_(points.x.size()) {
+    how_.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
+    how_.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
+  }
+
+  void from(const std::vector<float>& disparity, const std::vector<double>& stretch) {
+    std::vector<RefinementStart> starts;
+    std::vector<int> at;
+    for (int p = 0; p < points_.size(); ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      if (std::isnan(disparity[k])) continue;
+      starts.push_back({points_.x[k], points_.y[k], disparity[k], static_cast<float>(stretch[k])});
+      at.push_back(p);
+    }
+    take(starts, at);
+  }
+
+  /// One sweep over the points that are not settled; returns how many were won.
+  int grow() {
+    std::vector<RefinementStart> starts;
+    std::vector<int> at;
+    for (int p = 0; p < points_.size(); ++p) {
+      if (settled(p)) continue;
+      std::vector<float> tried;
+      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
+        constexpr double reach_px = 12;
+        if (q < 0 || !settled(q) || points_.distance_px(p, q) > reach_px) continue;
+        const RefinementStart start = seen_from(q, p);
+        constexpr float same_px = 0.3f;
+        const bool again = std::any_of(tried.begin(), tried.end(), [&](float d) {
+          return std::abs(d - start.disparity_px) < same_px;
+        });
+        if (again) continue;
+        tried.push_back(start.disparity_px);
+        starts.push_back(start);
+        at.push_back(p);
+      }
+    }
+    return take(starts, at);
+  }
+
+  /// Unsettles points whose surface most of their settled neighbours contradict by over a pixel.
+  void drop_contradicted() {
+    std::vector<int> dropped;
+    for (int p = 0; p < points_.size(); ++p) {
+      if (!settled(p)) continue;
+      int agree = 0, contradict = 0;
+      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
+        if (q < 0 || !settled(q)) continue;
+        const float off =
+            seen_from(q, p).disparity_px - fits_[static_cast<std::size_t>(p)].disparity_px;
+        (std::abs(off) <= 1 ? agree : contradict)++;
+      }
+      if (contradict > agree) dropped.push_back(p);
+    }
+    for (const int p : dropped) fits_[static_cast<std::size_t>(p)].settled = false;
+  }
+
+  bool settled(int p) const { return fits_[static_cast<std::size_t>(p)].settled; }
+  const RefinedDisparity& fit(int p) const { return fits_[static_cast<std::size_t>(p)]; }
+
+ private:
+  /// Where point p would be on the surface found at q.
+  RefinementStart seen_from(int q, int p) const {
+    const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>(p);
+    const RefinedDisparity& fit = fits_[a];
+    const auto dx = static_cast<float>(points_.x[b] - points_.x[a]);
+    const auto dy = static_cast<float>(points_.y[b] - points_.y[a]);
+    return {points_.x[b], points_.y[b], fit.disparity_px + (1 - fit.stretch) * dx - fit.shear * dy,
+            fit.stretch, fit.shear};
+  }
+
+  /// Keeps the fits that correlate better than what a point has.
+  int take(const std::vector<RefinementStart>& starts, const std::vector<int>& at) {
+    const std::vector<RefinedDisparity> found =
+        refine_disparities(pair_.left, pair_.right, starts, how_);
+    int won = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
+      if (!found[i].settled || !(found[i].score > options_.least_score)) continue;
+      if (best.settled && best.score >= found[i].score) continue;
+      won += !best.settled;
+      best = found[i];
+    }
+    return won;
+  }
+
+  const RectifiedPair& pair_;
+  const PointsByRow& points_;
+  const EdgeMatcherOptions& options_;
+  RefinementOptions how_;
+  std::vector<RefinedDisparity> fits_;
+};
 
 }  // namespace
 
@@ -205,18 +374,45 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
   if (edge.empty()) return matches;
   const PointsByRow points = points_by_row(std::move(x), std::move(y), pair.left.height_px);
   const Search search(pair, range);
-  const std::vector<Winner> found = search.from_left(points);
-  const std::vector<bool> confirmed = search.confirmed(points, found);
-  std::vector<float> disparity(edge.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t k = 0; k < edge.size(); ++k) {
-    if (!confirmed[k] || !(found[k].margin > options.least_margin)) continue;
-    disparity[k] = static_cast<float>(search.least() + found[k].index) + found[k].offset;
+  Found found = search.find(points, false);
+  std::vector<float> disparity = accepted(points, search, found, options);
+  if (options.slanted_above < 1) {
+    const auto matched = static_cast<double>(
+        std::count_if(disparity.begin(), disparity.end(), [](float d) { return !std::isnan(d); }));
+    if (1 - matched / points.size() > options.slanted_above) {
+      found = search.find(points, true);
+      disparity = accepted(points, search, found, options);
+    }
   }
-  drop_lonely(points, options, disparity);
+  Refinement refinement(pair, points, options);
+  if (options.refine) {
+    refinement.from(disparity, found.stretch);
+    if (found.slanted) {
+      constexpr int sweeps = 6;
+      for (int sweep = 0; sweep < sweeps; ++sweep) {
+        refinement.drop_contradicted();
+        if (refinement.grow() == 0) break;
+      }
+      refinement.drop_contradicted();
+      std::fill(disparity.begin(), disparity.end(), std::numeric_limits<float>::quiet_NaN());
+    }
+  }
   for (std::size_t k = 0; k < edge.size(); ++k) {
     EdgeMatch& match = matches[edge[k]];
     match.at.disparity_px = disparity[k];
-    match.at.confidence = found[k].margin;
+    match.at.confidence = found.winners[k].margin;
+    if (!options.refine) continue;
+    match.refined = refinement.settled(static_cast<int>(k));
+    if (!std::isnan(disparity[k])) {
+      match.at.sigma_px = static_cast<float>(options.unrefined_sigma_px);
+    }
+    if (!match.refined) continue;
+    const RefinedDisparity& fit = refinement.fit(static_cast<int>(k));
+    const float off_centre = left_edges[edge[k]].row_x_px - static_cast<float>(points.x[k]);
+    match.at.disparity_px = fit.disparity_px + (1 - fit.stretch) * off_centre;
+    match.at.sigma_px = std::hypot(fit.sigma_px, static_cast<float>(options.sigma_floor_px));
+    match.stretch = fit.stretch;
+    match.shear = fit.shear;
   }
   return matches;
 }

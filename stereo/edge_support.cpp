@@ -23,12 +23,17 @@ namespace vernier {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-HWY_INLINE void costs_of(const CensusCosts& at, int point, std::int16_t* costs) {
+/// Costs of a point with the words of `other` from place `first` on, n of them.
+HWY_INLINE void distances(const CensusCosts& at,
+                          int point,
+                          const CensusImage& other,
+                          int first,
+                          int n,
+                          std::int16_t* costs) {
   const hn::ScalableTag<std::uint64_t> words;
   const hn::Rebind<std::uint16_t, decltype(words)> counts;
-  const int n = at.disparities;
   const auto k = static_cast<std::size_t>(point);
-  const int x = at.points.x[k], first = at.first_place[k];
+  const int x = at.points.x[k];
   const int before = std::max(x - 1, 0), after = std::min(x + 1, at.own.width - 1);
   decltype(hn::Zero(words)) q[9];
   const std::uint64_t* there[3];
@@ -38,7 +43,7 @@ HWY_INLINE void costs_of(const CensusCosts& at, int point, std::int16_t* costs) 
     q[3 * j] = hn::Set(words, row[at.facing == Facing::same ? before : after]);
     q[3 * j + 1] = hn::Set(words, row[x]);
     q[3 * j + 2] = hn::Set(words, row[at.facing == Facing::same ? after : before]);
-    there[j] = at.other.row(y) + first;
+    there[j] = other.row(y) + first;
   }
   auto* const out = reinterpret_cast<std::uint16_t*>(costs);
   for (int d = 0; d < n; d += static_cast<int>(hn::Lanes(words))) {
@@ -52,12 +57,60 @@ HWY_INLINE void costs_of(const CensusCosts& at, int point, std::int16_t* costs) 
     hn::StoreU(hn::TruncateTo(counts, sum), counts, out + d);
   }
   std::fill_n(costs, std::clamp(-first, 0, n), no_place_cost);
-  const int end = std::clamp(at.other.width - first, 0, n);
+  const int end = std::clamp(other.width - first, 0, n);
   std::fill(costs + end, costs + n, no_place_cost);
+}
+
+/// The same of a stretched view, at the places of the image as it is.
+void stretched_costs(const CensusCosts& at,
+                     int point,
+                     const StretchedView& view,
+                     std::vector<std::int16_t>& costs,
+                     std::int16_t* at_places) {
+  const int first = at.first_place[static_cast<std::size_t>(point)];
+  const int begin = static_cast<int>(std::floor(view.scale * first));
+  const int end = static_cast<int>(std::ceil(view.scale * (first + at.disparities))) + 1;
+  const int n = (end - begin + 31) / 32 * 32;
+  costs.resize(static_cast<std::size_t>(n));
+  distances(at, point, view.image, begin, n, costs.data());
+  for (int k = 0; k < at.disparities; ++k) {
+    const auto place = static_cast<int>(std::lround(view.scale * (first + k))) - begin;
+    at_places[k] = costs[static_cast<std::size_t>(place)];
+  }
+}
+
+HWY_INLINE void costs_of(const CensusCosts& at, int point, std::int16_t* costs) {
+  distances(at, point, at.other, at.first_place[static_cast<std::size_t>(point)], at.disparities,
+            costs);
+  if (!at.stretched) return;
+  std::vector<std::int16_t> own, places(static_cast<std::size_t>(at.disparities));
+  for (const StretchedView& view : *at.stretched) {
+    stretched_costs(at, point, view, own, places.data());
+    for (int k = 0; k < at.disparities; ++k) {
+      const int cost = places[static_cast<std::size_t>(k)] + at.stretched_penalty;
+      costs[k] = static_cast<std::int16_t>(std::min<int>(costs[k], cost));
+    }
+  }
 }
 
 void census_costs(const CensusCosts& at, int point, std::int16_t* costs) {
   costs_of(at, point, costs);
+}
+
+double best_scale(const CensusCosts& at, int point, int index) {
+  const auto k = static_cast<std::size_t>(index);
+  std::vector<std::int16_t> own, places(static_cast<std::size_t>(at.disparities));
+  distances(at, point, at.other, at.first_place[static_cast<std::size_t>(point)], at.disparities,
+            places.data());
+  int least = places[k];
+  double scale = 1;
+  for (const StretchedView& view : *at.stretched) {
+    stretched_costs(at, point, view, own, places.data());
+    if (places[k] + at.stretched_penalty >= least) continue;
+    least = places[k] + at.stretched_penalty;
+    scale = view.scale;
+  }
+  return scale;
 }
 
 /// What a neighbour's support is worth at a distance; below 0 where it is out of reach.
@@ -72,6 +125,7 @@ struct Step {
   const std::int16_t* from;
   std::int16_t least, small, large;
   std::int16_t* to;
+  int reach;  ///< disparities that a small step may take
 };
 
 /// Values of a missing neighbour: 0 everywhere, so that nothing is added.
@@ -87,15 +141,36 @@ HWY_INLINE Step step_from(const PointsByRow& points,
   const auto k = static_cast<std::size_t>(p);
   const int n = points.neighbours[k][static_cast<std::size_t>(r + (backward ? directions : 0))];
   std::int16_t* const to = recent.values(p, r);
-  if (n < 0) return {no_neighbour + 64, 0, 0, 0, to};
+  if (n < 0) return {no_neighbour + 64, 0, 0, 0, to, 1};
   const auto m = static_cast<std::size_t>(n);
   const auto dx = static_cast<float>(points.x[m] - points.x[k]);
   const auto dy = static_cast<float>(points.y[m] - points.y[k]);
   const float share = share_at(std::sqrt(dx * dx + dy * dy), options);
-  if (share < 0) return {no_neighbour + 64, 0, 0, 0, to};
-  return {recent.values(n, r), recent.least(n, r),
+  if (share < 0) return {no_neighbour + 64, 0, 0, 0, to, 1};
+  const auto reach = static_cast<int>(options.slope * std::abs(dx) + 0.5);
+  return {recent.values(n, r),
+          recent.least(n, r),
           static_cast<std::int16_t>(share * static_cast<float>(options.small_step)),
-          static_cast<std::int16_t>(share * static_cast<float>(options.large_step)), to};
+          static_cast<std::int16_t>(share * static_cast<float>(options.large_step)),
+          to,
+          std::max(1, reach)};
+}
+
+/// Before a step of more than one disparity: each value as the least within reach less one, so that
+/// the step's own neighbours see the rest. The value itself stays free of the small step's price.
+void widen(Step& step, int n, std::vector<std::int16_t>& wide) {
+  if (step.reach <= 1) return;
+  const auto size = static_cast<std::size_t>(n) + 128;
+  wide.assign(step.from - 64, step.from - 64 + static_cast<std::ptrdiff_t>(size));
+  const int more = std::min(step.reach - 1, 30);
+  for (int d = 0; d < n; ++d) {
+    int least = step.from[d];
+    for (int e = std::max(0, d - more - 1); e <= std::min(n - 1, d + more + 1); ++e) {
+      least = std::min(least, step.from[e] + step.small);
+    }
+    wide[static_cast<std::size_t>(d + 64)] = static_cast<std::int16_t>(least);
+  }
+  step.from = wide.data() + 64;
 }
 
 /// The four directions of a pass at a point, added to `sum`, which the first pass begins.
@@ -175,7 +250,7 @@ void semi_global_winners(const CensusCosts& costs,
                          std::vector<Winner>& winners) {
   const PointsByRow& points = costs.points;
   const int n = costs.disparities;
-  std::vector<std::int16_t> cost(static_cast<std::size_t>(n));
+  std::vector<std::int16_t> cost(static_cast<std::size_t>(n)), wide[directions];
   for (const bool backward : {false, true}) {
     if (backward && support == Support::from_above) break;
     RecentValues recent(points, n);
@@ -184,6 +259,7 @@ void semi_global_winners(const CensusCosts& costs,
       Step steps[directions];
       for (int r = 0; r < directions; ++r) {
         steps[r] = step_from(points, p, r, backward, options, recent);
+        widen(steps[r], n, wide[r]);
       }
       std::int16_t* const sum = sums + (support == Support::all ? static_cast<std::size_t>(p) : 0) *
                                            static_cast<std::size_t>(n);
@@ -209,9 +285,14 @@ namespace vernier {
 
 HWY_EXPORT(census_costs);
 HWY_EXPORT(semi_global_winners);
+HWY_EXPORT(best_scale);
 
 void census_costs(const CensusCosts& at, int point, std::int16_t* costs) {
   HWY_DYNAMIC_DISPATCH(census_costs)(at, point, costs);
+}
+
+double best_scale(const CensusCosts& at, int point, int index) {
+  return at.stretched ? HWY_DYNAMIC_DISPATCH(best_scale)(at, point, index) : 1;
 }
 
 std::vector<Winner> semi_global_winners(const CensusCosts& costs,

@@ -24,13 +24,24 @@ enum class Facing { same, opposite };
 ///     from the right:   other = left,            first place = x + least disparity
 ///
 /// `disparities` is a multiple of 32, and all places are within the images' border.
+struct StretchedView {
+  double scale = 1;  ///< place p of the other image is at scale p here
+  CensusImage image;
+};
 struct CensusCosts {
   const PointsByRow& points;
   const CensusImage &own, &other;
   const std::vector<int>& first_place;
   Facing facing = Facing::same;
   int disparities = 0;
+  /// The other image stretched, for surfaces that slant: a point's cost is the least of all, with
+  /// `stretched_penalty` added to these.
+  const std::vector<StretchedView>* stretched = nullptr;
+  int stretched_penalty = 30;
 };
+
+/// The scale whose cost is the least of a point at a place, 1 for the image as it is.
+double best_scale(const CensusCosts& at, int point, int index);
 
 /// Those of one point, into `costs`.
 void census_costs(const CensusCosts& at, int point, std::int16_t* costs);
@@ -43,6 +54,7 @@ struct SupportOptions {
   int large_step = 350;      ///< added where they differ by more
   double reach_px = 12;      ///< distance over which a neighbour's support fades …
   double least_share = 0.1;  ///< … to this share; at twice the reach it ends
+  double slope = 0;  ///< change of disparity a pixel that counts as a small step, from a pixel on
 };
 
 /// The disparity that support chooses for a point.

@@ -16,7 +16,7 @@ constexpr std::int16_t never_least = 30000;  // with P1 added still a number
 /// Values of the four directions at the points of the last few rows.
 class RecentValues {
  public:
-  RecentValues(const PointsByRow& points, int disparities) : stride_(disparities + 64) {
+  RecentValues(const PointsByRow& points, int disparities) : stride_(disparities + 128) {
     constexpr int rows = 4;  // neighbours are up to three rows away
     int most = 1;
     const auto height = static_cast<int>(points.row_begin.size()) - 1;
@@ -32,7 +32,7 @@ class RecentValues {
   }
 
   std::int16_t* values(int point, int direction) {
-    return values_.data() + slot(point, direction) * static_cast<std::size_t>(stride_) + 32;
+    return values_.data() + slot(point, direction) * static_cast<std::size_t>(stride_) + 64;
   }
   std::int16_t& least(int point, int direction) { return least_[slot(point, direction)]; }
 

@@ -75,7 +75,7 @@ class Search {
  private:
   std::vector<StretchedView> stretched_views(const GreyLevels& image) const {
     std::vector<StretchedView> views;
-    for (const double scale : {1.35, 1.8, 2.4, 3.0, 0.74, 0.55, 0.42}) {
+    for (const double scale : {1.3, 1.7, 2.1, 2.6, 3.2, 0.74, 0.55, 0.42}) {
       const auto border = static_cast<int>(scale * border_) + 66;
       views.push_back({scale, census_transform(stretched(image, scale), border)});
     }
@@ -230,8 +230,13 @@ class Refinement {
  public:
   Refinement(const RectifiedPair& pair,
              const PointsByRow& points,
+             bool slanted,
              const EdgeMatcherOptions& options)
-      : pair_(pair), points_(points), options_(options), fits_(points.x.size()) {
+      : pair_(pair),
+        points_(points),
+        least_score_(slanted ? options.least_slanted_score : options.least_score),
+        fits_(points.x.size()) {
+    how_.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
     how_.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
     how_.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
   }
@@ -310,7 +315,7 @@ class Refinement {
     int won = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
-      if (!found[i].settled || !(found[i].score > options_.least_score)) continue;
+      if (!found[i].settled || !(found[i].score > least_score_)) continue;
       if (best.settled && best.score >= found[i].score) continue;
       won += !best.settled;
       best = found[i];
@@ -320,7 +325,7 @@ class Refinement {
 
   const RectifiedPair& pair_;
   const PointsByRow& points_;
-  const EdgeMatcherOptions& options_;
+  double least_score_;
   RefinementOptions how_;
   std::vector<RefinedDisparity> fits_;
 };
@@ -384,11 +389,11 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
       disparity = accepted(points, search, found, options);
     }
   }
-  Refinement refinement(pair, points, options);
+  Refinement refinement(pair, points, found.slanted, options);
   if (options.refine) {
     refinement.from(disparity, found.stretch);
     if (found.slanted) {
-      constexpr int sweeps = 6;
+      constexpr int sweeps = 20;
       for (int sweep = 0; sweep < sweeps; ++sweep) {
         refinement.drop_contradicted();
         if (refinement.grow() == 0) break;

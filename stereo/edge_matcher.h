@@ -11,13 +11,14 @@ namespace vernier {
 struct EdgeMatcherOptions {
   double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
   double least_margin = 0;          ///< of the best disparity over the next other one, relative
-  int least_points = 10;            ///< fewer points that agree with each other are dropped …
+  int least_points = 8;             ///< fewer points that agree with each other are dropped …
   int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
   double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
   bool refine = true;          ///< least squares, with a standard deviation for each point
-  double least_score = 0.8;  ///< ZNCC of the refined patches; else the support's parabola stands …
-  double unrefined_sigma_px = 0.5;  ///< … with this standard deviation
-  double sigma_floor_px = 0;        ///< of refined points, added in squares
+  double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
+  double least_slanted_score = 0.8;  ///< the same where surfaces slant
+  double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
+  double sigma_floor_px = 0;         ///< of refined points, added in squares
 };
 
 /// What `edge` knows of a left edge point.

@@ -141,6 +141,11 @@ void check(const GreyLevels& image, const CannyOptions& options) {
     throw Error("canny_edges", "the image's values do not fill its size",
                 "give width times height of them");
   }
+  int not_finite = 0;
+  for (const float value : image.values) not_finite |= static_cast<int>(!std::isfinite(value));
+  if (not_finite != 0) {
+    throw Error("canny_edges", "a grey level is not finite", "give numbers from 0 to 255");
+  }
   if (!(options.scale_px >= 0.5 && options.scale_px <= 20)) {
     throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "choose one near 1 px");
   }

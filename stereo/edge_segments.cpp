@@ -16,7 +16,7 @@
 namespace vernier {
 namespace {
 
-constexpr double end_sigma_px = 0.5;     // along the line, of an end that is no corner
+constexpr double end_sigma_px = 3;       // along the line, of an end that is no corner
 constexpr double corner_reach_px = 8;    // from a segment's last point to the corner
 constexpr double corner_sigma_px = 0.5;  // a corner less well known than this is none
 
@@ -37,16 +37,17 @@ void start_at_a_corner(const std::vector<EdgePoint>& points, std::vector<int>& c
   std::rotate(chain.begin(), chain.begin() + static_cast<long>(corner), chain.end());
 }
 
-struct Corner {
+struct End {
   Eigen::Vector2d place;
   Eigen::Matrix2d covariance;
+  bool is_corner = false;
 };
 
 /// Where two lines meet, if near both ends and well known.
-std::optional<Corner> corner_of(const EdgeLine& one,
-                                const Eigen::Vector2d& one_end,
-                                const EdgeLine& other,
-                                const Eigen::Vector2d& other_end) {
+std::optional<End> corner_of(const EdgeLine& one,
+                             const Eigen::Vector2d& one_end,
+                             const EdgeLine& other,
+                             const Eigen::Vector2d& other_end) {
   Eigen::Matrix2d normals;
   normals << one.normal.transpose(), other.normal.transpose();
   if (std::abs(normals.determinant()) < 0.02) return std::nullopt;
@@ -60,7 +61,7 @@ std::optional<Corner> corner_of(const EdgeLine& one,
                                   other.across_variance(other.along(place)));
   const Eigen::Matrix2d covariance = inverse * variances.asDiagonal() * inverse.transpose();
   if (covariance.trace() > corner_sigma_px * corner_sigma_px) return std::nullopt;
-  return Corner{place, covariance};
+  return End{place, covariance, true};
 }
 
 /// Segments of one chain.
@@ -87,7 +88,7 @@ class ChainSegments {
       EdgeSegment segment;
       const auto from = chain_.points.begin() + parts_[k].begin;
       segment.points.assign(from, from + parts_[k].size());
-      Corner a = first_[k], b = last_[k];
+      End a = first_[k], b = last_[k];
       if (lines_[k].along(a.place) > lines_[k].along(b.place)) {
         std::swap(a, b);
         std::reverse(segment.points.begin(), segment.points.end());
@@ -95,6 +96,8 @@ class ChainSegments {
       segment.segment = {a.place, b.place};
       segment.a_covariance_px2 = a.covariance;
       segment.b_covariance_px2 = b.covariance;
+      segment.a_is_corner = a.is_corner;
+      segment.b_is_corner = b.is_corner;
       segment.rms_px = lines_[k].rms_px;
       segments.push_back(std::move(segment));
     }
@@ -102,7 +105,7 @@ class ChainSegments {
 
  private:
   /// An end that is no corner.
-  Corner plain_end(const EdgeLine& line, int point) const {
+  End plain_end(const EdgeLine& line, int point) const {
     const double along = line.along(points_[point].pixel_px.cast<double>());
     return {line.at(along),
             line.across_variance(along) * line.normal * line.normal.transpose() +
@@ -118,7 +121,7 @@ class ChainSegments {
   EdgeChain chain_;
   std::vector<ChainPart> parts_;
   std::vector<EdgeLine> lines_;
-  std::vector<Corner> first_, last_;
+  std::vector<End> first_, last_;
 };
 
 void check(const std::vector<EdgePoint>& points, const EdgeSegmentOptions& options) {

@@ -72,14 +72,15 @@ class StraightParts {
     int best = part.end;
     double least = -1;
     for (int at = part.begin + least_break_points; at <= next.end - least_break_points; ++at) {
-      const double squares =
-          regression(part.begin, at).squares() + regression(at, next.end).squares();
+      const LineRegression before = regression(part.begin, at), after = regression(at, next.end);
+      if (std::max(before.rms(), after.rms()) > options_.most_rms_px) continue;
+      const double squares = before.squares() + after.squares();
       if (least < 0 || squares < least) {
         least = squares;
         best = at;
       }
     }
-    part.end = next.begin = best;
+    if (least >= 0) part.end = next.begin = best;
   }
 
   /// Two points in a row, so that one of large noise is none. Where little would be left the edge

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// Internal to calib/: what Python's ast.literal_eval reads, as far as mrcal's files use it. Not
+/// What Python's ast.literal_eval reads, as far as the files of mrcal and NumPy use it. Not
 /// installed.
 namespace vernier {
 

@@ -10,7 +10,7 @@
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
-#include "sim/toml_reader.h"
+#include "stereo/toml_reader.h"
 
 namespace vernier {
 namespace {

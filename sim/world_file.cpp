@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "calib/atomic_file.h"
-#include "sim/toml_reader.h"
 #include "sim/world_check.h"
+#include "stereo/toml_reader.h"
 
 namespace vernier {
 namespace {

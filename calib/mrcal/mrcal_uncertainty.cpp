@@ -9,7 +9,7 @@
 #include "calib/error.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_parameters.h"
-#include "calib/mrcal/python_run.h"
+#include "calib/program_run.h"
 
 namespace vernier {
 namespace {
@@ -183,13 +183,6 @@ ProgramRun run_script(const fs::path& script, std::vector<std::string> arguments
   return answer;
 }
 
-std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of('\n');
-  if (end == std::string::npos) return "no word of why";
-  const std::size_t begin = text.rfind('\n', end);
-  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin);
-}
-
 }  // namespace
 
 MrcalUncertaintyAnswer ask_mrcal(const fs::path& script, const MrcalUncertaintyProblem& problem) {
@@ -203,10 +196,10 @@ MrcalUncertaintyAnswer ask_mrcal(const fs::path& script, const MrcalUncertaintyP
   std::ofstream(question) << problem_json(problem);
   const ProgramRun run = run_script(script, {question.string(), reply.string()});
   if (run.exit_code == -1) none.absent = "no Python can be run";
-  if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + last_line(run.complaint);
+  if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + run.last_words();
   if (!none.absent.empty()) return none;
   if (run.exit_code != 0) {
-    throw Error("mrcal", "its Python failed: " + last_line(run.complaint), "leave mrcal out");
+    throw Error("mrcal", "its Python failed: " + run.last_words(), "leave mrcal out");
   }
   return read_answer(reply, problem);
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/toml_reader.h"
+#include "stereo/toml_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// Internal to sim/: reading TOML with complaints that name file and line. Not installed.
+/// Reading TOML with complaints that name file and line. Not installed.
 namespace vernier {
 
 /// Parses TOML; throws Error(place:line) for bad syntax.

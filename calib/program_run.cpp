@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/program_run.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Starts a program with its standard input empty and its output in files. Returns errno.
+int start(const std::vector<std::string>& words,
+          const std::string& output,
+          const std::string& complaint,
+          bool in_own_group,
+          pid_t& child) {
+  constexpr int make = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), make, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaint.c_str(), make, 0600);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  if (in_own_group) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const int failed =
+      posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  return failed;
+}
+
+void wait_for(pid_t child, int& status) {
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+}
+
+bool ends_within(double time_limit_s, pid_t child, int& status) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time_limit_s);
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "vernier-XXXXXX").string();
+  if (!::mkdtemp(name.data())) {
+    throw Error(name, "no temporary folder can be made", "set TMPDIR to a folder to write in");
+  }
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string ProgramRun::last_words() const {
+  const std::string& text =
+      complaint.find_first_not_of(" \r\n\t") == std::string::npos ? output : complaint;
+  const std::size_t end = text.find_last_not_of(" \r\n\t");
+  if (end == std::string::npos) return "no word of why";
+  const std::size_t before = text.find_last_of("\r\n", end);
+  constexpr std::size_t most_letters = 300;
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  std::string line = text.substr(begin, std::min(end + 1 - begin, most_letters));
+  for (char& letter : line) {
+    if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
+  }
+  return line;
+}
+
+ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s) {
+  const TemporaryFolder folder;
+  const std::string output = folder.path() / "output", complaint = folder.path() / "complaint";
+  ProgramRun run;
+  pid_t child = 0;
+  run.start_error = start(words, output, complaint, time_limit_s > 0, child);
+  if (run.start_error) return run;
+  int status = -1;  // neither ended nor signalled
+  if (time_limit_s > 0 && !ends_within(time_limit_s, child, status)) {
+    run.timed_out = true;
+    ::kill(-child, SIGKILL);
+  }
+  if (time_limit_s <= 0 || run.timed_out) wait_for(child, status);
+  if (WIFEXITED(status) && !run.timed_out) run.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
+  run.output = read_text(output);
+  run.complaint = read_text(complaint);
+  return run;
+}
+
+}  // namespace vernier

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/dense_matchers.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+
+#include "calib/error.h"
+#include "stereo/matcher_input.h"
+
+namespace vernier {
+namespace {
+
+constexpr int fine = 16;       // of OpenCV's disparities a pixel, and what their number divides
+constexpr int most_px = 2000;  // 16 bits hold them
+
+/// How the images are prolonged: so far that no pixel of theirs is in OpenCV's unsearched band.
+struct Border {
+  int sides_px = 0, left_px = 0, right_px = 0;
+};
+
+/// The disparities that OpenCV is told to search.
+struct Search {
+  int least_px = 0, count = 0;
+  Border border;
+};
+
+Search search_of(const DisparityRange& range, int block_px) {
+  Search search;
+  search.least_px = range.least_px;
+  search.count = (range.most_px - range.least_px + fine) / fine * fine;
+  const int half = block_px / 2 + 1;
+  search.border = {half, half + std::max(search.least_px + search.count, 0),
+                   half + std::max(-search.least_px, 0)};
+  return search;
+}
+
+cv::Mat eight_bits(const GreyLevels& grey, const Border& border) {
+  const cv::Mat levels(grey.height_px, grey.width_px, CV_32F,
+                       const_cast<float*>(grey.values.data()));
+  cv::Mat rounded, wide;
+  levels.convertTo(rounded, CV_8U);
+  cv::copyMakeBorder(rounded, wide, border.sides_px, border.sides_px, border.left_px,
+                     border.right_px, cv::BORDER_REPLICATE);
+  return wide;
+}
+
+void check(bool good, const char* place, const char* fault, const char* remedy) {
+  if (!good) throw Error(place, fault, remedy);
+}
+
+/// What OpenCV found, without what lies outside of the range or of the right image.
+DisparityMap cut_out(const cv::Mat& found,
+                     const Search& search,
+                     const RectifiedPair& pair,
+                     const DisparityRange& range) {
+  DisparityMap map{pair.left.width_px, pair.left.height_px, {}};
+  map.values.reserve(pair.left.values.size());
+  for (int y = 0; y < map.height_px; ++y) {
+    const auto* row = found.ptr<short>(y + search.border.sides_px) + search.border.left_px;
+    for (int x = 0; x < map.width_px; ++x) {
+      const float d = static_cast<float>(row[x]) / fine, right = static_cast<float>(x) - d;
+      const bool known = row[x] >= search.least_px * fine &&
+                         d < static_cast<float>(range.most_px) + 0.5f && right > -0.5f &&
+                         right < static_cast<float>(map.width_px) - 0.5f;
+      map.values.push_back(known ? d : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return map;
+}
+
+DisparityMap run(cv::StereoMatcher& matcher,
+                 const RectifiedPair& pair,
+                 const DisparityRange& range,
+                 const Search& search,
+                 const char* place) {
+  cv::Mat found;
+  try {
+    matcher.compute(eight_bits(pair.left, search.border), eight_bits(pair.right, search.border),
+                    found);
+  } catch (const cv::Exception& error) {
+    throw Error(place, "OpenCV refuses it: " + error.err, "choose other options");
+  }
+  return cut_out(found, search, pair, range);
+}
+
+Search checked_search(const RectifiedPair& pair,
+                      const DisparityRange& range,
+                      int block_px,
+                      const char* place) {
+  check_matcher_input(pair, range, place);
+  check(std::max(std::abs(range.least_px), std::abs(range.most_px)) < most_px, place,
+        "searches disparities of 2000 px and more, which OpenCV cannot hold",
+        "search fewer, or reduce the images");
+  return search_of(range, block_px);
+}
+
+template <typename Options>
+std::vector<Matcher> for_each_uniqueness(Options options,
+                                         const std::vector<int>& percents,
+                                         Matcher (*make)(const Options&)) {
+  std::vector<Matcher> matchers;
+  for (const int percent : percents) {
+    options.uniqueness_percent = percent;
+    matchers.push_back(make(options));
+    matchers.back().name += fmt::format(" {} %", percent);
+  }
+  return matchers;
+}
+
+}  // namespace
+
+DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, const BmOptions& o) {
+  const Search search = checked_search(pair, range, o.block_px, "bm");
+  check(o.block_px % 2 == 1 && o.block_px >= 5 && o.block_px <= 255, "bm",
+        "its block is not of 5, 7, … 255 px", "choose an odd side");
+  check(o.pre_filter_cap >= 1 && o.pre_filter_cap <= 63, "bm",
+        "its pre-filter is not capped between 1 and 63", "choose 31");
+  check(o.uniqueness_percent >= 0 && o.texture_threshold >= 0, "bm",
+        "its uniqueness or texture threshold is negative", "choose 0 for none");
+  const cv::Ptr<cv::StereoBM> matcher = cv::StereoBM::create(search.count, o.block_px);
+  matcher->setMinDisparity(search.least_px);
+  matcher->setPreFilterType(cv::StereoBM::PREFILTER_XSOBEL);
+  matcher->setPreFilterCap(o.pre_filter_cap);
+  matcher->setTextureThreshold(o.texture_threshold);
+  matcher->setUniquenessRatio(o.uniqueness_percent);
+  matcher->setDisp12MaxDiff(o.disp12_max_diff_px);
+  matcher->setSpeckleWindowSize(o.speckle_px);
+  matcher->setSpeckleRange(o.speckle_range_px);
+  return run(*matcher, pair, range, search, "bm");
+}
+
+DisparityMap sgbm_map(const RectifiedPair& pair,
+                      const DisparityRange& range,
+                      const SgbmOptions& o) {
+  constexpr int modes[] = {cv::StereoSGBM::MODE_SGBM, cv::StereoSGBM::MODE_HH,
+                           cv::StereoSGBM::MODE_SGBM_3WAY, cv::StereoSGBM::MODE_HH4};
+  const Search search = checked_search(pair, range, o.block_px, "sgbm");
+  check(o.block_px % 2 == 1 && o.block_px >= 1 && o.block_px <= 25, "sgbm",
+        "its block is not of 1, 3, … 25 px", "choose an odd side");
+  const int p1 = o.p1 > 0 ? o.p1 : 8 * o.block_px * o.block_px;
+  const int p2 = o.p2 > 0 ? o.p2 : 32 * o.block_px * o.block_px;
+  check(p1 < p2, "sgbm", "its penalty p2 is not above p1", "choose four times as much");
+  check(o.uniqueness_percent >= 0 && o.uniqueness_percent <= 100, "sgbm",
+        "its uniqueness is not between 0 and 100 %", "choose 10");
+  const cv::Ptr<cv::StereoSGBM> matcher = cv::StereoSGBM::create(
+      search.least_px, search.count, o.block_px, p1, p2, o.disp12_max_diff_px, o.pre_filter_cap,
+      o.uniqueness_percent, o.speckle_px, o.speckle_range_px,
+      modes[static_cast<std::size_t>(o.mode)]);
+  return run(*matcher, pair, range, search, "sgbm");
+}
+
+Matcher bm(const BmOptions& options) {
+  return {"bm", [options](const auto& pair, const auto& edges, const auto& range) {
+            return sample_at_edges(bm_map(pair, range, options), edges, options.sampling);
+          }};
+}
+
+Matcher sgbm(const SgbmOptions& options) {
+  return {"sgbm", [options](const auto& pair, const auto& edges, const auto& range) {
+            return sample_at_edges(sgbm_map(pair, range, options), edges, options.sampling);
+          }};
+}
+
+std::vector<Matcher> by_uniqueness(const BmOptions& options, const std::vector<int>& percents) {
+  return for_each_uniqueness(options, percents, &bm);
+}
+
+std::vector<Matcher> by_uniqueness(const SgbmOptions& options, const std::vector<int>& percents) {
+  return for_each_uniqueness(options, percents, &sgbm);
+}
+
+}  // namespace vernier

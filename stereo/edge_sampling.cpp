@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/edge_sampling.h"
+
+#include <algorithm>
+
+#include "stereo/map_window.h"
+
+namespace vernier {
+namespace {
+
+float largest(const MapWindow& window) {
+  float most = -std::numeric_limits<float>::infinity();
+  for (int y = window.y0; y <= window.y1; ++y) {
+    for (int x = window.x0; x <= window.x1; ++x) {
+      if (window.map.known(x, y)) most = std::max(most, window.map(x, y));
+    }
+  }
+  return most;
+}
+
+EdgeDisparity sample(const DisparityMap& map, const EdgePoint& edge, EdgeSampling sampling) {
+  const int x = column_of(edge, map, "disparity map");
+  EdgeDisparity at;
+  if (!map.known(x, edge.y)) return at;
+  const MapWindow near(map, x, edge.y, 1);
+  if (!near.has_step()) {
+    at.disparity_px = along_row(map, edge.row_x_px, edge.y);
+  } else {
+    at.disparity_px = sampling == EdgeSampling::foreground ? largest(near) : map(x, edge.y);
+  }
+  at.confidence = 1;
+  return at;
+}
+
+}  // namespace
+
+std::vector<EdgeDisparity> sample_at_edges(const DisparityMap& map,
+                                           const std::vector<EdgePoint>& edges,
+                                           EdgeSampling sampling) {
+  std::vector<EdgeDisparity> disparities;
+  disparities.reserve(edges.size());
+  for (const EdgePoint& edge : edges) disparities.push_back(sample(map, edge, sampling));
+  return disparities;
+}
+
+}  // namespace vernier

@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/external_matcher.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <opencv2/imgcodecs.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/image_file.h"
+#include "calib/program_run.h"
+#include "stereo/matcher_input.h"
+
+namespace vernier {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> outputs = {
+    {{"{output}", "output.pfm"},
+     {"{output.pfm}", "output.pfm"},
+     {"{output.png}", "output.png"},
+     {"{output.npy}", "output.npy"}}};
+
+/// A command parted into words, and the name of the map that it writes.
+struct Command {
+  std::string place;  ///< in messages
+  std::vector<std::string> words;
+  std::string output;
+};
+
+std::vector<std::string> words_of(const std::string& command, const std::string& place) {
+  std::vector<std::string> words;
+  bool in_word = false;
+  char quote = 0;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char letter = command[i];
+    if (quote == 0 && std::isspace(static_cast<unsigned char>(letter))) {
+      in_word = false;
+      continue;
+    }
+    if (!std::exchange(in_word, true)) words.emplace_back();
+    if (letter == quote) {
+      quote = 0;
+    } else if (quote == 0 && (letter == '\'' || letter == '"')) {
+      quote = letter;
+    } else if (letter == '\\' && quote != '\'' && i + 1 < command.size()) {
+      words.back() += command[++i];
+    } else {
+      words.back() += letter;
+    }
+  }
+  if (quote != 0) {
+    throw Error(place, fmt::format("has a quote {} that is not closed", quote), "close it");
+  }
+  return words;
+}
+
+Command parse_command(const std::string& command) {
+  Command parsed;
+  parsed.place = "matcher '" + command + "'";
+  std::replace_if(
+      parsed.place.begin(), parsed.place.end(),
+      [](unsigned char letter) { return std::iscntrl(letter) != 0; }, ' ');
+  parsed.words = words_of(command, parsed.place);
+  if (parsed.words.empty()) throw Error("matcher", "its command is empty", "name a program");
+  for (const char* needed : {"{left}", "{right}"}) {
+    if (command.find(needed) == std::string::npos) {
+      throw Error(parsed.place, std::string("has no ") + needed,
+                  "write it where the image belongs");
+    }
+  }
+  for (const auto& [placeholder, file] : outputs) {
+    if (command.find(placeholder) == std::string::npos) continue;
+    if (!parsed.output.empty() && parsed.output != file) {
+      throw Error(parsed.place, "has an {output} of two kinds", "name one");
+    }
+    parsed.output = file;
+  }
+  if (parsed.output.empty()) {
+    throw Error(parsed.place, "has no {output}", "write it where the map's name belongs");
+  }
+  return parsed;
+}
+
+using Values = std::vector<std::pair<std::string_view, std::string>>;
+
+/// In one go: what is put in may look like a placeholder itself.
+std::string filled(std::string_view word, const Values& values) {
+  std::string text;
+  while (!word.empty()) {
+    const auto value = std::find_if(values.begin(), values.end(), [&](const auto& candidate) {
+      return word.substr(0, candidate.first.size()) == candidate.first;
+    });
+    if (value == values.end()) {
+      text += word[0];
+      word.remove_prefix(1);
+    } else {
+      text += value->second;
+      word.remove_prefix(value->first.size());
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> filled(const Command& command,
+                                const fs::path& folder,
+                                const DisparityRange& range) {
+  Values values = {{"{left}", (folder / "left.png").string()},
+                   {"{right}", (folder / "right.png").string()},
+                   {"{least}", std::to_string(range.least_px)},
+                   {"{most}", std::to_string(range.most_px)}};
+  for (const auto& [placeholder, file] : outputs) {
+    values.emplace_back(placeholder, (folder / file).string());
+  }
+  std::vector<std::string> words;
+  for (const std::string& word : command.words) words.push_back(filled(word, values));
+  return words;
+}
+
+void write_image(const fs::path& file, const GreyLevels& grey) {
+  const cv::Mat levels(grey.height_px, grey.width_px, CV_32F,
+                       const_cast<float*>(grey.values.data()));
+  cv::Mat rounded;
+  levels.convertTo(rounded, CV_8U);
+  std::vector<uchar> bytes;
+  cv::imencode(".png", rounded, bytes);
+  write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// Throws Error for a program that did not do its work.
+void check_run(const ProgramRun& run, const Command& command, double time_limit_s) {
+  std::string fault;
+  if (run.start_error == ENOENT) {
+    fault = "the program '" + command.words[0] + "' is not found";
+  } else if (run.start_error) {
+    fault = "the program '" + command.words[0] +
+            "' cannot be run: " + std::generic_category().message(run.start_error);
+  } else if (run.timed_out) {
+    fault = fmt::format("did not end within {} s and was stopped", time_limit_s);
+  } else if (run.signal) {
+    fault = fmt::format("was ended by signal {}: {}", run.signal, run.last_words());
+  } else if (run.exit_code != 0) {
+    fault = fmt::format("ended with status {}: {}", run.exit_code, run.last_words());
+  }
+  if (!fault.empty()) throw Error(command.place, fault, "try the command by hand");
+}
+
+/// The program's map; its faults are the program's.
+DisparityMap read_output(const fs::path& file,
+                         const Command& command,
+                         const DisparityRange& range,
+                         double scale) {
+  if (!fs::is_regular_file(file)) {
+    throw Error(command.place, "ended well but wrote no map to {output}",
+                "let it write the file that {output} names");
+  }
+  try {
+    const std::string bytes = read_whole(file);
+    const bool is_deep = is_png(bytes) && largest_grey_value(bytes) == 65535;
+    if (scale == 0) scale = is_deep ? 256 : 1;
+    DisparityFileOptions options;
+    options.scale = scale;
+    options.least_px = range.least_px - 0.5;
+    return read_disparity(file, options);
+  } catch (const Error& error) {
+    std::string what = error.what();
+    const std::string folder = (file.parent_path() / "").string();
+    if (what.rfind(folder, 0) == 0) what.erase(0, folder.size());
+    throw Error(command.place, what, "");
+  }
+}
+
+DisparityMap run(const Command& command,
+                 const RectifiedPair& pair,
+                 const DisparityRange& range,
+                 const ExternalMatcherOptions& options) {
+  check_matcher_input(pair, range, command.place);
+  const TemporaryFolder folder;
+  write_image(folder.path() / "left.png", pair.left);
+  write_image(folder.path() / "right.png", pair.right);
+  check_run(run_program(filled(command, folder.path(), range), options.time_limit_s), command,
+            options.time_limit_s);
+  const DisparityMap map =
+      read_output(folder.path() / command.output, command, range, options.scale);
+  if (map.width_px != pair.left.width_px || map.height_px != pair.left.height_px) {
+    throw Error(command.place,
+                fmt::format("wrote a map of {}x{} for images of {}x{}", map.width_px, map.height_px,
+                            pair.left.width_px, pair.left.height_px),
+                "let it write one disparity for each pixel of the left image");
+  }
+  return map;
+}
+
+}  // namespace
+
+Matcher external_matcher(const std::string& command, const ExternalMatcherOptions& options) {
+  const Command parsed = parse_command(command);
+  Matcher matcher;
+  matcher.name =
+      options.name.empty() ? fs::path(parsed.words[0]).filename().string() : options.name;
+  matcher.match = [parsed, options](const auto& pair, const auto& edges, const auto& range) {
+    return sample_at_edges(run(parsed, pair, range, options), edges, options.sampling);
+  };
+  return matcher;
+}
+
+DisparityMap external_map(const RectifiedPair& pair,
+                          const DisparityRange& range,
+                          const std::string& command,
+                          const ExternalMatcherOptions& options) {
+  return run(parse_command(command), pair, range, options);
+}
+
+}  // namespace vernier

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+
+namespace vernier {
+
+/// A pixel, and what rounding to parts of one leaves.
+inline constexpr float step_px = 1.01f;
+
+/// The part of a disparity map within `half` pixels of a pixel; ends included.
+struct MapWindow {
+  const DisparityMap& map;
+  int x0, y0, x1, y1;
+
+  MapWindow(const DisparityMap& of, int x, int y, int half);
+
+  /// Whether two known pixels next to each other along a row or column, or with only unknown ones
+  /// between, have disparities that differ by more than their distance.
+  bool has_step() const;
+};
+
+/// The column nearest to where an edge crosses its row. Throws Error(place) for edges outside.
+int column_of(const EdgePoint& edge, const DisparityMap& map, const std::string& place);
+
+/// Interpolated along row y between the two pixels beside x; the known one's where the other is
+/// not.
+float along_row(const DisparityMap& map, float x, int y);
+
+}  // namespace vernier

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/matcher_input.h"
+
+#include <fmt/core.h>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+bool is_whole(const GreyLevels& image) {
+  return image.width_px > 0 && image.height_px > 0 &&
+         image.values.size() ==
+             static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
+}
+
+}  // namespace
+
+void check_matcher_input(const RectifiedPair& pair,
+                         const DisparityRange& range,
+                         const std::string& place) {
+  const GreyLevels &left = pair.left, &right = pair.right;
+  if (left.width_px != right.width_px || left.height_px != right.height_px) {
+    throw Error(place,
+                fmt::format("the left image is {}x{} and the right one {}x{}", left.width_px,
+                            left.height_px, right.width_px, right.height_px),
+                "give a rectified pair of one size");
+  }
+  if (!is_whole(left) || !is_whole(right)) {
+    throw Error(place, "the images have no pixels", "give a rectified pair");
+  }
+  if (range.least_px > range.most_px) {
+    throw Error(place,
+                fmt::format("no disparity is between {} and {}", range.least_px, range.most_px),
+                "give the least one first");
+  }
+  if (range.most_px >= left.width_px || range.least_px <= -left.width_px) {
+    throw Error(place,
+                fmt::format("disparities of {} to {} reach beyond the images' width of {}",
+                            range.least_px, range.most_px, left.width_px),
+                "give disparities that the scene can have");
+  }
+}
+
+}  // namespace vernier

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "stereo/matcher.h"
+
+namespace vernier {
+
+/// What every matcher refuses: images of unequal size or without pixels, and a range that is empty
+/// or reaches beyond the images' width. Throws Error(place).
+void check_matcher_input(const RectifiedPair& pair,
+                         const DisparityRange& range,
+                         const std::string& place);
+
+}  // namespace vernier

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vernier {
+
+/// A NumPy array of two dimensions.
+struct NumpyArray {
+  std::size_t rows = 0, columns = 0;
+  bool of_whole_numbers = false;
+  std::vector<double> values;  ///< row by row
+};
+
+bool is_numpy(std::string_view bytes);
+
+/// Decodes the bytes of a .npy file (NumPy Enhancement Proposal 1), versions 1 to 3. Throws
+/// Error(place) for anything but two dimensions in C order of real or whole numbers.
+NumpyArray parse_numpy(std::string_view bytes, const std::string& place);
+
+/// The bytes of a .npy file of float32, little-endian.
+std::string numpy_bytes(const std::vector<float>& values, int rows, int columns);
+
+}  // namespace vernier

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/stereo_scenes.h"
+
+#include <array>
+#include <set>
+
+#include "calib/atomic_file.h"
+#include "stereo/toml_reader.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::array<std::string_view, 4> truth_kinds = {"exact", "measured", "reduced",
+                                                         "labelled"};
+constexpr int most_disparity_px = 1 << 15;
+
+/// Turns the tables of a list into pairs. Every complaint carries the file and the line.
+class SceneReader : private TomlReader {
+ public:
+  explicit SceneReader(const std::filesystem::path& file)
+      : TomlReader(file.string()), folder_(file.parent_path()) {}
+
+  std::vector<StereoSceneFile> read(const toml::table& root) {
+    check_keys(root, {"pair"}, "");
+    std::vector<StereoSceneFile> scenes;
+    for (const toml::table* pair : tables(root, "pair")) scenes.push_back(scene(*pair));
+    if (scenes.empty()) fail(root, "lists no pair", "write a [[pair]]");
+    return scenes;
+  }
+
+ private:
+  StereoSceneFile scene(const toml::table& pair) {
+    check_keys(pair,
+               {"name", "left", "right", "truth", "right_truth", "truth_scale", "truth_kind",
+                "min_disparity", "max_disparity", "rig"},
+               "[[pair]]");
+    StereoSceneFile scene;
+    const toml::node& name = required(pair, "name", "[[pair]]");
+    scene.name = text(name, "name");
+    if (scene.name.empty()) fail(name, "name is empty", "give every pair a name");
+    if (!names_.insert(scene.name).second) {
+      fail(name, "the name '" + scene.name + "' is given twice", "give every pair its own");
+    }
+    const std::string owner = "pair '" + scene.name + "'";
+    scene.left = file_of(required(pair, "left", owner), "left");
+    scene.right = file_of(required(pair, "right", owner), "right");
+    scene.truth = file_of(required(pair, "truth", owner), "truth");
+    if (const auto* node = pair.get("right_truth"))
+      scene.right_truth = file_of(*node, "right_truth");
+    if (const auto* node = pair.get("rig")) scene.rig = file_of(*node, "rig");
+    if (const auto* node = pair.get("truth_scale")) {
+      scene.truth_scale = number(*node, "truth_scale");
+      if (!(scene.truth_scale > 0)) {
+        fail(*node, "truth_scale is not positive", "give the values a pixel of disparity");
+      }
+    }
+    if (const auto* node = pair.get("truth_kind")) scene.truth_kind = kind(*node);
+    scene.range = range(pair, owner);
+    return scene;
+  }
+
+  DisparityRange range(const toml::table& pair, const std::string& owner) const {
+    const toml::node& most = required(pair, "max_disparity", owner);
+    const toml::node* least = pair.get("min_disparity");
+    const DisparityRange range{least ? disparity(*least, "min_disparity") : 0,
+                               disparity(most, "max_disparity")};
+    if (range.least_px > range.most_px) {
+      fail(most, "max_disparity is below min_disparity", "give the range to be searched");
+    }
+    return range;
+  }
+
+  int disparity(const toml::node& node, const char* key) const {
+    const std::int64_t value = integer(node, key);
+    if (value < -most_disparity_px || value > most_disparity_px) {
+      fail(node, std::string(key) + " is no disparity of an image", "give it in pixels");
+    }
+    return static_cast<int>(value);
+  }
+
+  TruthKind kind(const toml::node& node) const {
+    const std::string word = text(node, "truth_kind");
+    for (std::size_t i = 0; i < truth_kinds.size(); ++i) {
+      if (word == truth_kinds[i]) return static_cast<TruthKind>(i);
+    }
+    fail(node, "truth_kind '" + word + "' is not known",
+         "say exact, measured, reduced or labelled");
+  }
+
+  std::filesystem::path file_of(const toml::node& node, const char* key) const {
+    const std::filesystem::path file = folder_ / text(node, key);
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file, unknown)) {
+      fail(node, std::string(key) + ": there is no file " + file.string(),
+           "name files from the folder of the list");
+    }
+    return file;
+  }
+
+  std::filesystem::path folder_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+std::string_view name(TruthKind kind) { return truth_kinds[static_cast<std::size_t>(kind)]; }
+
+std::vector<StereoSceneFile> read_stereo_scenes(const std::filesystem::path& file) {
+  const toml::table root = parse_toml(read_whole(file), file.string());
+  return SceneReader(file).read(root);
+}
+
+}  // namespace vernier

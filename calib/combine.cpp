@@ -46,8 +46,13 @@ bool same(const RigKnowledge& a, const RigKnowledge& b) {
       if (std::abs(A(i, k) - B(i, k)) > rounding * sd[i] * sd[k]) return false;
     }
   }
+  const std::vector<std::string> all = parameter_names(a.rig);
   const Eigen::VectorXd x = parameters(a.rig), y = parameters(b.rig);
-  return ((x - y).array().abs() <= rounding * (1e-3 + x.array().abs())).all();
+  for (const std::string& name : a.covariance.names) {  // the others it says nothing of
+    const auto i = std::find(all.begin(), all.end(), name) - all.begin();
+    if (!(std::abs(x[i] - y[i]) <= rounding * (1e-3 + std::abs(x[i])))) return false;
+  }
+  return true;
 }
 
 /// The first match of every image pair.
@@ -162,10 +167,30 @@ PriorAgreement agreement_of(const RigKnowledge& before,
   return agreement_of_rigs(before, *input.estimate, input.name);
 }
 
+/// Priors that are themselves calibrations: what they were made of may be among the inputs.
+void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) {
+  for (const RigKnowledge& prior : evidence.priors) {
+    if (prior.covariance.kind == CovarianceKind::prior) continue;
+    summary.warnings.push_back(fmt::format(
+        "a prior among the inputs is itself a calibration ({}): if what that was made of is "
+        "among them too, it counts twice",
+        name(prior.covariance.kind)));
+    return;
+  }
+}
+
 /// What the inputs said against themselves, and the pairs of all say of their scene and of what was
 /// left out.
 void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   CalibrationSummary& summary = *combination.joint.estimate.calibration;
+  warn_of_priors(combination.evidence, summary);
+  const bool first_is_prior = kind_of(inputs.front()) == "prior";
+  if (first_is_prior && !combination.options.held.empty()) {
+    std::string names;
+    for (const HeldParameter& held : combination.options.held) names += " " + held.name;
+    summary.warnings.push_back("held as known exactly, since " + inputs.front().name +
+                               " gives them no variance:" + names);
+  }
   const PairObservations& pairs = combination.evidence.pairs;
   if (pairs.size() > 0 && combination.evidence.boards.empty()) {
     std::vector<bool> inlier(pairs.size(), true);
@@ -180,7 +205,9 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
     const CombinedInput& input = combination.inputs[i];
     if (input.used && inputs[i].estimate && inputs[i].estimate->calibration) {
       for (const std::string& doubt : inputs[i].estimate->calibration->doubts) {
-        summary.doubts.push_back(input.name + ": " + doubt);
+        const auto& said = summary.doubts;
+        const bool again = std::find(said.begin(), said.end(), doubt) != said.end();
+        if (!again && inputs.size() > 1) summary.doubts.push_back(input.name + ": " + doubt);
       }
     }
     if (input.used) {
@@ -212,32 +239,25 @@ JointOptions with_held(JointOptions options, const CombineInput& first) {
   return options;
 }
 
-/// The bound C of an estimate and the scatter B of its scores, C B C its honest covariance.
-struct Scatter {
-  Eigen::MatrixXd C, B;
-  explicit Scatter(const RigEstimate& estimate) : C(*estimate.covariance_mvb) {
-    const Eigen::MatrixXd white = ScaledRoot(C).white;
-    const Eigen::MatrixXd inverse = white.transpose() * white;
-    B = inverse * estimate.covariance->matrix * inverse;
+/// Evidence of the inputs, without priors that are another input's calibration: they are among the
+/// inputs themselves.
+std::vector<JointEvidence> evidence_of_all(const std::vector<CombineInput>& inputs) {
+  std::vector<RigKnowledge> calibrations;
+  std::vector<JointEvidence> all;
+  for (const CombineInput& input : inputs) {
+    all.push_back(evidence_of(input));
+    const bool prior_only = all.back().boards.empty() && all.back().pairs.size() == 0;
+    if (input.estimate && input.estimate->covariance && !prior_only) {
+      calibrations.push_back(knowledge_of(*input.estimate, input.name));
+    }
   }
-};
-
-/// Standard deviation of the offset of a batch from all, both with what was known before them:
-/// each source's score g moves the one by C_batch g where it is part of it, and the other by
-/// C_all g.
-Eigen::VectorXd drift_sigma(const Scatter& before,
-                            const Scatter& batch,
-                            const Scatter& all,
-                            bool part_of_all) {
-  const Eigen::MatrixXd own = batch.B - before.B, all_pairs = all.B - before.B;
-  const Eigen::MatrixXd G = batch.C - all.C;
-  Eigen::MatrixXd D = G * before.B * G;
-  if (part_of_all) {
-    D += G * own * G + all.C * (all_pairs - own) * all.C;
-  } else {
-    D += batch.C * own * batch.C + all.C * all_pairs * all.C;
+  for (JointEvidence& evidence : all) {
+    std::erase_if(evidence.priors, [&](const RigKnowledge& prior) {
+      return std::any_of(calibrations.begin(), calibrations.end(),
+                         [&](const RigKnowledge& c) { return same(c, prior); });
+    });
   }
-  return D.diagonal().cwiseMax(0).cwiseSqrt();
+  return all;
 }
 
 }  // namespace
@@ -273,10 +293,12 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   const Rig& start = inputs.front().estimate->rig;
   const JointOptions joint = with_held(options.joint, inputs.front());
   Combination result;
+  result.options = joint;
+  const std::vector<JointEvidence> all = evidence_of_all(inputs);
   std::optional<RigKnowledge> before;
   for (const CombineInput& input : inputs) {
     check_models(start, input);
-    const JointEvidence evidence = evidence_of(input);
+    const JointEvidence& evidence = all[static_cast<std::size_t>(&input - inputs.data())];
     CombinedInput& said = result.inputs.emplace_back();
     said.name = input.name;
     said.kind = kind_of(input);
@@ -312,10 +334,11 @@ FilteredRig information_filter(const std::vector<CombineInput>& inputs,
     known.covariance.matrix =
         covariance_of_free(*first.covariance_mvb, first.rig, held_parameters(first));
   }
-  std::vector<RigKnowledge> used = evidence_of(inputs.front()).priors;
+  const std::vector<JointEvidence> all = evidence_of_all(inputs);
+  std::vector<RigKnowledge> used = all.front().priors;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     if (!batch.inputs[i].used) continue;
-    JointEvidence evidence = evidence_of(inputs[i]);
+    JointEvidence evidence = all[i];
     evidence.priors = new_priors(used, evidence.priors);
     used.insert(used.end(), evidence.priors.begin(), evidence.priors.end());
     evidence.priors.push_back(known);
@@ -340,35 +363,6 @@ FilteredRig information_filter(const std::vector<CombineInput>& inputs,
     filtered.worst_parameter = names[static_cast<std::size_t>(i)];
   }
   return filtered;
-}
-
-std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
-                                    const Combination& combination,
-                                    const CombineOptions& options) {
-  const JointOptions joint = with_held(options.joint, inputs.front());
-  JointEvidence before = combination.evidence;
-  before.pairs = {};
-  const RigEstimate& all = combination.joint.estimate;
-  const Scatter known_before(calibrate_jointly(before, all.rig, joint).estimate);
-  const Scatter of_all(all);
-  std::vector<MonitoredBatch> batches;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const JointEvidence own = evidence_of(inputs[i]);
-    if (own.pairs.size() == 0) continue;
-    JointEvidence evidence = before;
-    evidence.pairs = own.pairs;
-    const JointCalibration alone = calibrate_jointly(evidence, all.rig, joint);
-    MonitoredBatch& batch = batches.emplace_back();
-    batch.name = inputs[i].name;
-    batch.pairs = own.pairs.size();
-    batch.outliers = alone.estimate.calibration->pair_outliers.size();
-    batch.rms_px = alone.estimate.calibration->rms_px;
-    batch.offset = difference(alone.estimate.rig, all.rig);
-    batch.sigma =
-        drift_sigma(known_before, Scatter(alone.estimate), of_all, combination.inputs[i].used);
-    batch.agreement = combination.inputs[i].agreement;
-  }
-  return batches;
 }
 
 }  // namespace vernier

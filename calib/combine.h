@@ -37,13 +37,15 @@ struct Combination {
   JointCalibration joint;
   JointEvidence evidence;  ///< of the inputs used
   std::vector<CombinedInput> inputs;
+  JointOptions options;  ///< with what the first input holds
 };
 
 /// One calibration from many. Evidence is put together and solved as one problem
 /// (calibrate_jointly): raw pairs and corners are linearised again at the common minimum, so the
 /// order of the inputs does not matter and the answer is the batch solution. A rig file without
 /// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
-/// several files counts once). Before it is taken in, every input is compared with all before it:
+/// several files counts once, and one that is another input's calibration not at all). Before it is
+/// taken in, every input is compared with all before it:
 /// of pairs, the prior's offset (prior_agreement.h); of calibrations, their difference
 /// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
 /// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
@@ -66,27 +68,5 @@ struct FilteredRig {
 FilteredRig information_filter(const std::vector<CombineInput>& inputs,
                                const Combination& batch,
                                const CombineOptions& options = {});
-
-/// The rig as one batch of pairs alone saw it.
-struct MonitoredBatch {
-  std::string name;
-  std::size_t pairs = 0, outliers = 0;
-  double rms_px = 0;
-  Eigen::VectorXd offset;    ///< from the combined rig, in its tangent
-  Eigen::VectorXd sigma;     ///< standard deviation of that offset; 0 where the batch says nothing
-  PriorAgreement agreement;  ///< with the inputs before it
-};
-
-/// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the
-/// combined rig. With C a bound and B the scatter of the scores behind it (C B C the honest
-/// covariance), of what was before (0), the batch (b) and all (a), the offset has the covariance
-///
-///     G B_0 G + G B_b' G + C_a (B_a − B_b) C_a,       G = C_b − C_a,  B_b' = B_b − B_0
-///     G B_0 G + C_b B_b' C_b + C_a (B_a − B_0) C_a
-///
-/// where the batch is part of the combination, and where it was left out.
-std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
-                                    const Combination& combination,
-                                    const CombineOptions& options = {});
 
 }  // namespace vernier

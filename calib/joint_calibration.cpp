@@ -23,35 +23,11 @@ namespace {
 
 constexpr int cells_a_side = 4;  // of an image pair as clusters
 
-ReducedNormalEquations of_nothing(int unknowns) {
-  ReducedNormalEquations sum;
-  sum.information = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  sum.held_poses_diagonal = Eigen::VectorXd::Zero(unknowns);
-  sum.scores = Eigen::MatrixXd::Zero(unknowns, 0);
-  return sum;
-}
-
-/// The equations of the boards, in all parameters; a bend that is free is common to them.
-ReducedNormalEquations board_equations(const JointMinimum& joint,
-                                       const std::vector<BoardTerm>& terms) {
-  const bool bends = joint.boards.warp == BoardWarp::free;
-  ReducedNormalEquations sum = of_nothing(parameter_count(joint.state.rig) + (bends ? 2 : 0));
-  for (std::size_t b = 0; b < terms.size(); ++b) {
-    const BoardObservations& views = terms[b].evidence.observations;
-    const BoardState state = state_of(joint.boards, terms, joint.state, b);
-    const double sigma_px = terms[b].pixel_sigma_px;
-    add_equations(sum, bends ? equations_with_warp(views, state, sigma_px)
-                             : reduced_normal_equations(views, state, sigma_px));
-  }
-  return bends ? without_warp(sum) : sum;
-}
-
 /// The equations of boards and pairs, in all parameters.
 ReducedNormalEquations data_equations(const JointMinimum& joint,
-                                      const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss) {
-  ReducedNormalEquations sum = board_equations(joint, evidence.boards);
+  ReducedNormalEquations sum = board_equations(joint);
   if (pairs.size() > 0) {
     add_equations(sum, pair_equations(pairs, joint.state.rig, loss, joint.cost.pair_sigma_scale));
   }
@@ -60,11 +36,10 @@ ReducedNormalEquations data_equations(const JointMinimum& joint,
 
 /// The same in the free directions, with the priors.
 ReducedNormalEquations free_equations(const JointMinimum& joint,
-                                      const JointEvidence& evidence,
                                       const PairObservations& pairs,
                                       const Loss& loss,
                                       const Eigen::MatrixXd& free) {
-  ReducedNormalEquations equations = restricted(data_equations(joint, evidence, pairs, loss), free);
+  ReducedNormalEquations equations = restricted(data_equations(joint, pairs, loss), free);
   add_priors(equations, joint.cost.priors, joint.state.rig, free);
   return equations;
 }
@@ -94,6 +69,27 @@ std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
   return outliers;
 }
 
+/// The prior's χ² of the parameters that are held elsewhere than it has them, and their number.
+std::pair<double, int> of_held(const RigKnowledge& prior, const JointMinimum& joint) {
+  const std::vector<std::string> all = parameter_names(joint.state.rig);
+  const Eigen::VectorXd x = parameters(joint.state.rig), mean = parameters(prior.rig);
+  const std::vector<std::string> own = parameter_names(prior.rig);
+  std::vector<Eigen::Index> held;
+  std::vector<double> moved;
+  for (std::size_t i = 0; i < prior.covariance.names.size(); ++i) {
+    const auto at = std::find(all.begin(), all.end(), prior.covariance.names[i]) - all.begin();
+    if (joint.cost.held.empty() || !joint.cost.held[static_cast<std::size_t>(at)]) continue;
+    const auto before = std::find(own.begin(), own.end(), prior.covariance.names[i]) - own.begin();
+    held.push_back(static_cast<Eigen::Index>(i));
+    moved.push_back(x[at] - mean[before]);
+  }
+  if (held.empty()) return {0, 0};
+  const Eigen::VectorXd z =
+      ScaledRoot(prior.covariance.matrix(held, held)).white *
+      Eigen::Map<const Eigen::VectorXd>(moved.data(), static_cast<Eigen::Index>(moved.size()));
+  return {z.squaredNorm(), static_cast<int>(held.size())};
+}
+
 CalibrationSummary summary_of(const JointMinimum& joint,
                               const JointEvidence& evidence,
                               const PairObservations& inliers,
@@ -111,7 +107,7 @@ CalibrationSummary summary_of(const JointMinimum& joint,
   }
   const auto n = static_cast<double>(inliers.size());
   if (!evidence.boards.empty()) {  // of the corners; the pairs state their own
-    const ReducedNormalEquations boards = board_equations(joint, evidence.boards);
+    const ReducedNormalEquations boards = board_equations(joint);
     summary.pixel_sigma_px = joint.boards.pixel_sigma_px;
     summary.rms_px = summary.pixel_sigma_px * std::sqrt(boards.chi2 / boards.residuals);
   } else if (n > 0) {
@@ -124,11 +120,10 @@ CalibrationSummary summary_of(const JointMinimum& joint,
   summary.chi2 = plain.chi2;
   summary.dof = static_cast<int>(std::lround(plain.residuals - from_data -
                                              6 * static_cast<double>(joint.state.frames.size())));
-  for (const RigPrior& prior : joint.cost.priors) {
-    summary.prior_chi2 += prior_chi2(prior, joint.state.rig);
-  }
-  for (const RigKnowledge& prior : evidence.priors) {
-    summary.prior_dof += static_cast<int>(prior.covariance.names.size());
+  for (std::size_t i = 0; i < evidence.priors.size(); ++i) {
+    const auto [chi2, dof] = of_held(evidence.priors[i], joint);
+    summary.prior_chi2 += prior_chi2(joint.cost.priors[i], joint.state.rig) - chi2;
+    summary.prior_dof += static_cast<int>(evidence.priors[i].covariance.names.size()) - dof;
   }
   return summary;
 }
@@ -196,6 +191,7 @@ JointMinimum start_of(const JointEvidence& evidence,
                       const JointOptions& options) {
   JointMinimum joint;
   joint.boards = merge_boards(evidence.boards, start);
+  joint.terms = evidence.boards;
   joint.state = joint.boards.state;
   joint.state.rig = with_held_values(start, options.held);
   joint.cost.pixel_sigma_px = joint.boards.pixel_sigma_px;
@@ -217,7 +213,7 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
                                                 const std::vector<std::string>& names,
                                                 const Eigen::MatrixXd& bound) {
   if (evidence.pairs.size() == 0) return {};
-  ReducedNormalEquations before = free_equations(joint, evidence, {}, {}, free);
+  ReducedNormalEquations before = free_equations(joint, {}, {}, free);
   try {
     return observability(joint.state.rig, names, minimum_variance_bound(before, names), bound);
   } catch (const Error&) {
@@ -240,30 +236,31 @@ PriorAgreement agreement_with(const RigKnowledge& prior,
                               const RigEstimate& estimate,
                               double looseness) {
   const Rig& rig = estimate.rig;
-  if (parameter_names(prior.rig) != parameter_names(rig)) return {};
+  const std::vector<std::string> all = parameter_names(rig);
+  if (parameter_names(prior.rig) != all) return {};
   const std::vector<bool> held = held_parameters(estimate);
-  const Eigen::MatrixXd V = values_by_tangent(rig, held);
-  const Eigen::MatrixXd C = V * whole_covariance(prior).matrix * V.transpose();
-  const Eigen::VectorXd moved = V * difference(rig, prior.rig);
+  const std::vector<std::string>& known = prior.covariance.names;
   std::vector<Eigen::Index> free, given;
   for (std::size_t i = 0; i < held.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    if (held[i] && C(k, k) > 0) given.push_back(k);
-    if (held[i]) continue;
-    if (!(C(k, k) > 0)) return {};  // data alone say it
-    free.push_back(k);
+    const bool is_known = std::find(known.begin(), known.end(), all[i]) != known.end();
+    if (!held[i] && !is_known) return {};  // data alone say it
+    if (is_known) (held[i] ? given : free).push_back(static_cast<Eigen::Index>(i));
   }
-  Eigen::MatrixXd known = C(free, free);
+  const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
+  const Eigen::MatrixXd C = V * whole_covariance(prior).matrix * V.transpose();
+  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
+  Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
   if (!given.empty()) {  // where the rest of what the prior knows has the values it was held at
     const Eigen::MatrixXd white = ScaledRoot(C(given, given)).white;
     const Eigen::MatrixXd by_given = C(free, given) * white.transpose();
     offset -= by_given * (white * moved(given));
-    known -= by_given * by_given.transpose();
+    covariance -= by_given * by_given.transpose();
   }
-  return prior_agreement(
-      offset, free_names(rig, held), known, covariance_of_free(*estimate.covariance_mvb, rig, held),
-      covariance_of_free(estimate.covariance->matrix, rig, held), clusters_of(estimate), looseness);
+  return prior_agreement(offset, free_names(rig, held), covariance,
+                         covariance_of_free(*estimate.covariance_mvb, rig, held),
+                         covariance_of_free(estimate.covariance->matrix, rig, held),
+                         clusters_of(estimate), looseness);
 }
 
 std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
@@ -290,10 +287,10 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   const Eigen::MatrixXd free = free_directions(joint.state.rig, joint.cost.held);
   const std::vector<std::string> names = free_names(joint.state.rig, joint.cost.held);
   const PairObservations inliers = inliers_of(joint);
-  const ReducedNormalEquations plain = free_equations(joint, evidence, inliers, {}, free);
+  const ReducedNormalEquations plain = free_equations(joint, inliers, {}, free);
   const Eigen::MatrixXd bound = minimum_variance_bound(plain, names);
   const ReducedNormalEquations robust =
-      free_equations(joint, evidence, clustered_pairs(joint), joint.loss, free);
+      free_equations(joint, clustered_pairs(joint), joint.loss, free);
   Covariance honest{CovarianceKind::mvb, names, bound};
   const std::size_t clusters = robust.frame_information.size();
   if (clusters == 0) {

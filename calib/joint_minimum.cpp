@@ -69,6 +69,14 @@ double reweigh(JointMinimum& joint, const Loss& loss) {
   return change;
 }
 
+ReducedNormalEquations of_nothing(int unknowns) {
+  ReducedNormalEquations sum;
+  sum.information = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  sum.held_poses_diagonal = Eigen::VectorXd::Zero(unknowns);
+  sum.scores = Eigen::MatrixXd::Zero(unknowns, 0);
+  return sum;
+}
+
 /// How many parameters the pairs determine at this scale, tr(C H).
 double determined_by_pairs(const JointMinimum& joint) {
   const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
@@ -76,6 +84,7 @@ double determined_by_pairs(const JointMinimum& joint) {
       pair_equations(joint.cost.pairs, joint.state.rig, joint.loss, joint.cost.pair_sigma_scale),
       E);
   const Eigen::MatrixXd H = equations.information;
+  add_equations(equations, restricted(board_equations(joint), E));
   add_priors(equations, joint.cost.priors, joint.state.rig, E);
   const Eigen::MatrixXd& all = equations.information;
   const Eigen::VectorXd d = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -85,6 +94,20 @@ double determined_by_pairs(const JointMinimum& joint) {
 }
 
 }  // namespace
+
+ReducedNormalEquations board_equations(const JointMinimum& joint) {
+  const std::vector<BoardTerm>& terms = joint.terms;
+  const bool bends = joint.boards.warp == BoardWarp::free;
+  ReducedNormalEquations sum = of_nothing(parameter_count(joint.state.rig) + (bends ? 2 : 0));
+  for (std::size_t b = 0; b < terms.size(); ++b) {
+    const BoardObservations& views = terms[b].evidence.observations;
+    const BoardState state = state_of(joint.boards, terms, joint.state, b);
+    const double sigma_px = terms[b].pixel_sigma_px;
+    add_equations(sum, bends ? equations_with_warp(views, state, sigma_px)
+                             : reduced_normal_equations(views, state, sigma_px));
+  }
+  return bends ? without_warp(sum) : sum;
+}
 
 void minimise_robustly(JointMinimum& joint, double fixed_scale) {
   const auto median_scale = [&] {

@@ -14,6 +14,7 @@ namespace vernier {
 /// it is sought the state of the search.
 struct JointMinimum {
   MergedBoards boards;
+  std::vector<BoardTerm> terms;  // those merged
   ReprojectionProblem cost;
   PackedPairs packed;  // those of the cost
   BoardState state;
@@ -27,6 +28,10 @@ void minimise_robustly(JointMinimum& joint, double fixed_scale);
 
 /// Least squares, with the scale likewise.
 void minimise_plainly(JointMinimum& joint, double fixed_scale);
+
+/// The equations of the boards at the state, in all parameters of the rig; a bend that is free is
+/// common to them.
+ReducedNormalEquations board_equations(const JointMinimum& joint);
 
 /// Whether a pair does not count at the minimum.
 bool is_outlier(const JointMinimum& joint, std::size_t row);

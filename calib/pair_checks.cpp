@@ -88,20 +88,23 @@ double sigma_before_px(const Rig& rig,
   return std::sqrt(gradient.dot(covariance * gradient));
 }
 
-bool swapped(const Rig& rig,
-             const Eigen::MatrixXd& covariance,
-             const std::vector<Eigen::Vector4d>& some) {
+enum class Sides { right, swapped, unknown };
+
+Sides sides_of(const Rig& rig,
+               const Eigen::MatrixXd& covariance,
+               const std::vector<Eigen::Vector4d>& some) {
   const auto before = quartile_before_px(rig, some);
-  if (!before || *before > 0) return false;
+  if (!before) return Sides::unknown;
   const double limit = 3 + 3 * sigma_before_px(rig, covariance, some);  // px: noise of the corners
-  if (*before > -limit) return false;
+  if (*before > limit) return Sides::right;
+  if (*before > -limit) return Sides::unknown;
   std::vector<Eigen::Vector4d> other;
   for (const Eigen::Vector4d& y : some) {
     other.emplace_back();
     other.back() << y.tail<2>(), y.head<2>();
   }
   const auto exchanged_before = quartile_before_px(rig, other);
-  return exchanged_before && *exchanged_before > -limit;
+  return exchanged_before && *exchanged_before > -limit ? Sides::swapped : Sides::unknown;
 }
 
 /// Whether a plane explains nearly all pairs within their noise. A rough rig's lenses bend it, in
@@ -150,17 +153,19 @@ void check_sides(const PairObservations& pairs,
                  const std::string& place) {
   check_rays(pairs, rig, place);
   std::vector<int> exchanged_pairs;
-  std::size_t judged = 0;
+  std::size_t judged = 0, right = 0;
   for (const ImagePair& image : pairs.image_pairs) {
     if (image.count < fewest_pairs) continue;
     ++judged;
-    if (swapped(rig, covariance, some_of(pairs, image))) exchanged_pairs.push_back(image.number);
+    const Sides sides = sides_of(rig, covariance, some_of(pairs, image));
+    right += sides == Sides::right;
+    if (sides == Sides::swapped) exchanged_pairs.push_back(image.number);
   }
   if (exchanged_pairs.empty()) return;
   throw Error(place.empty() ? "pairs" : place,
               exchanged_pairs.size() == judged
                   ? "left and right are swapped: the corners lie behind the rig"
-              : 2 * exchanged_pairs.size() > judged
+              : 2 * exchanged_pairs.size() > judged && right == 0
                   ? fmt::format("left and right are swapped: the corners of {} of {} image pairs "
                                 "lie behind the rig, and of the others it cannot be told",
                                 exchanged_pairs.size(), judged)

@@ -54,6 +54,8 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
                 "name each its own");
   }
   const std::vector<std::string> before = parameter_names(rig);
+  std::vector<std::string> cameras_before;
+  for (const Camera& camera : rig.cameras) cameras_before.push_back(camera.name);
   for (std::size_t i = 0; i < names.size(); ++i) rig.cameras[i].name = names[i];
   const std::vector<std::string> after = parameter_names(rig);
   const auto rename_all = [&](std::vector<std::string>& listed) {
@@ -65,8 +67,11 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   if (estimate.covariance) rename_all(estimate.covariance->names);
   if (estimate.calibration) rename_all(estimate.calibration->held);
   if (!estimate.evidence) return;
-  for (RigKnowledge& prior : estimate.evidence->priors) {
-    for (std::size_t i = 0; i < names.size(); ++i) prior.rig.cameras[i].name = names[i];
+  for (RigKnowledge& prior : estimate.evidence->priors) {  // it may know fewer cameras
+    for (Camera& camera : prior.rig.cameras) {
+      const auto was = std::find(cameras_before.begin(), cameras_before.end(), camera.name);
+      if (was != cameras_before.end()) camera.name = names[was - cameras_before.begin()];
+    }
     rename_all(prior.covariance.names);
   }
 }

@@ -58,6 +58,19 @@ CalibrationOptions options_of_file(const RigEstimate& estimate) {
   // A noise estimated from the residuals makes χ² the degrees of freedom.
   const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
   options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
+  const std::vector<RigKnowledge>& priors = estimate.evidence->priors;
+  if (!priors.empty()) options.prior = priors[0];
+  if (priors.size() > 1) {  // single parameters (--know) stand after a file's
+    const RigKnowledge& known = priors[1];
+    const std::vector<std::string> all = parameter_names(known.rig);
+    for (std::size_t i = 0; i < known.covariance.names.size(); ++i) {
+      const std::string& name = known.covariance.names[i];
+      const auto k = static_cast<Eigen::Index>(i);
+      const auto at = std::find(all.begin(), all.end(), name) - all.begin();
+      options.known.push_back(
+          {name, parameters(known.rig)[at], std::sqrt(known.covariance.matrix(k, k))});
+    }
+  }
   options.warp = estimate.evidence->warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
   options.reject_outliers = false;
   options.check_input = false;
@@ -76,7 +89,7 @@ RigEstimate with_default_names(RigEstimate estimate) {
 
 CheckPart check_file(const RigEstimate& stated, const RigEstimate& again) {
   CheckPart part;
-  if (stated.calibration->prior_dof > 0) {
+  if (stated.calibration->prior_dof > 0 && stated.evidence->priors.empty()) {
     part.reason =
         "the file holds no prior, so what it states is not compared with solving again; the rest "
         "is checked without the prior that the calibration had";

@@ -8,6 +8,7 @@
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/pairs_file.h"
+#include "calib/rig_drift.h"
 #include "calib/rig_file.h"
 #include "cli/observability_report.h"
 #include "cli/rig_table.h"
@@ -40,7 +41,9 @@ std::vector<CombineInput> load(const Options& options, Session& session) {
       continue;
     }
     RigFile file = read_rig(find_rig(name));
-    for (const std::string& warning : file.warnings) session.warn(warning);
+    for (const std::string& warning : file.warnings) {  // its doubts come with the result
+      if (!warning.starts_with(said_of_itself(find_rig(name).string()))) session.warn(warning);
+    }
     input.estimate = std::move(file.estimate);
   }
   return inputs;
@@ -96,10 +99,10 @@ Json inputs_json(const Combination& combination) {
 }
 
 /// What was known before any pairs, as a covariance of the combined rig.
-Eigen::MatrixXd covariance_before(const Combination& combination, const CombineOptions& options) {
+Eigen::MatrixXd covariance_before(const Combination& combination) {
   JointEvidence before = combination.evidence;
   before.pairs = {};
-  return calibrate_jointly(before, combination.joint.estimate.rig, options.joint)
+  return calibrate_jointly(before, combination.joint.estimate.rig, combination.options)
       .estimate.covariance->matrix;
 }
 
@@ -122,7 +125,7 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
       "batch", "pairs", "outliers", "rms px", "p", "largest drift of all parameters");
   for (const MonitoredBatch& batch : batches) {
     const auto [z, i] = worst_drift(batch);
-    if (!(batch.sigma.size() > 0 && batch.sigma.maxCoeff() > 0)) {
+    if (batch.is_all) {
       text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  all there is\n", batch.name,
                           batch.pairs, batch.outliers, batch.rms_px, batch.agreement.p_value);
       continue;
@@ -217,14 +220,14 @@ void run(const Options& options, Session& session) {
   }
   std::vector<MonitoredBatch> batches;
   if (options.monitor) {
-    batches = monitor(inputs, combination, how);
+    batches = monitor(inputs, combination);
     tail += drift_table(batches, parameter_names(estimate.rig));
     json["drift"] = drift_json(batches);
   }
   text += rig_table(estimate);
   if (combination.joint.observability) {
     const ObservabilityReport seen =
-        report_observability(combination.joint, covariance_before(combination, how));
+        report_observability(combination.joint, covariance_before(combination));
     text += seen.text;
     json["observability"] = seen.json;
   }

@@ -100,7 +100,7 @@ Json report_proof(const RigEstimate& estimate, const std::string& file, const Se
   if (estimate.calibration->prior_dof > 0 || estimate.calibration->source != "board") {
     note(
         "Models and boards left out are shown for calibrations from boards alone: this one used "
-        "knowledge that its rig file does not hold.");
+        "other knowledge too.");
     return json;
   }
   try {

@@ -13,11 +13,12 @@ namespace {
 constexpr int block = 16;
 constexpr double least_noise = 0.2886751345948129;  // 1/√12
 
-/// The lower quintile, for the spread of a block's own estimate too: 4 % below the mean.
+/// The lower quintile. For the spread of a block's own estimate, 8.6 % (256 values of n that are
+/// correlated with their neighbours), it is 8 % below the mean where all blocks are plain.
 double lower_quintile(std::vector<double>& values) {
   const auto at = values.begin() + static_cast<long>(values.size() / 5);
   std::nth_element(values.begin(), at, values.end());
-  return 1.04 * *at;
+  return 1.08 * *at;
 }
 
 }  // namespace

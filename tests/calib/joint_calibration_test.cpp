@@ -14,6 +14,7 @@
 #include "calib/combine.h"
 #include "calib/epipolar_system.h"
 #include "calib/pairs_file.h"
+#include "calib/rig_drift.h"
 #include "calib/rig_file.h"
 #include "calib/simulated_board.h"
 #include "calib/simulated_pairs.h"
@@ -225,7 +226,7 @@ TEST(Combine, DriftIsShownWithItsBand) {
   EXPECT_TRUE(combined.inputs[3].used);
   EXPECT_FALSE(combined.inputs[4].used);
   EXPECT_LT(combined.inputs[4].agreement.p_value, 1e-6);
-  const std::vector<MonitoredBatch> batches = monitor(inputs, combined, options);
+  const std::vector<MonitoredBatch> batches = monitor(inputs, combined);
   ASSERT_EQ(batches.size(), 4u);
   for (int b = 0; b < 3; ++b) EXPECT_LT(std::abs(batches[b].offset[12]), 5 * batches[b].sigma[12]);
   EXPECT_NEAR(batches[3].offset[12], 2e-3, 5 * batches[3].sigma[12]);

@@ -389,7 +389,7 @@ TEST(RigAndBoards, WhatIsMissingIsNamed) {
     return complaint([&] { rig_and_boards(e, CovarianceChoice::mvb, "r.json"); });
   };
   EXPECT_PRED2(says, with([](RigEstimate& e) { e.evidence.reset(); }),
-               "r.json: it holds no evidence");
+               "r.json: it holds no views of a board");
   EXPECT_PRED2(says, with([](RigEstimate& e) { e.calibration.reset(); }),
                "r.json: its pixel noise is unknown");
   EXPECT_PRED2(says, with([](RigEstimate& e) {

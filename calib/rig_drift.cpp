@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/rig_drift.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/scaled_root.h"
+
+namespace vernier {
+namespace {
+
+/// How much larger than by the bound the pairs' share of an estimate's variance is, over what they
+/// improved, at least 1. C_0 is the bound before the pairs, P its inverse.
+double scatter_of_pairs(const RigEstimate& estimate, const Eigen::MatrixXd& P) {
+  const Eigen::MatrixXd& C = *estimate.covariance_mvb;
+  const Eigen::MatrixXd from_before = C * P * C;
+  const double bound = (P * (C - from_before)).trace();
+  if (!(bound > 0)) return 1;
+  return std::max(1.0, (P * (estimate.covariance->matrix - from_before)).trace() / bound);
+}
+
+}  // namespace
+
+std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
+                                    const Combination& combination) {
+  JointEvidence before = combination.evidence;
+  before.pairs = {};
+  const RigEstimate& all = combination.joint.estimate;
+  const Eigen::MatrixXd& C_all = *all.covariance_mvb;
+  const JointOptions& how = combination.options;
+  const Eigen::MatrixXd white =
+      ScaledRoot(*calibrate_jointly(before, all.rig, how).estimate.covariance_mvb).white;
+  const Eigen::MatrixXd P = white.transpose() * white;
+  const double scatter = scatter_of_pairs(all, P);
+  std::vector<MonitoredBatch> batches;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const bool used = combination.inputs[i].used;
+    JointEvidence evidence = before;
+    evidence.pairs = evidence_of(inputs[i]).pairs;
+    if (evidence.pairs.size() == 0) continue;
+    const RigEstimate alone = calibrate_jointly(evidence, all.rig, how).estimate;
+    const Eigen::MatrixXd& C = *alone.covariance_mvb;
+    const Eigen::MatrixXd G = C - C_all;
+    const Eigen::VectorXd of_before = (G * P * G).diagonal();
+    const Eigen::VectorXd bound = used
+                                      ? Eigen::VectorXd(G.diagonal())
+                                      : Eigen::VectorXd((C + C_all - 2 * C * P * C_all).diagonal());
+    MonitoredBatch& batch = batches.emplace_back();
+    batch.name = inputs[i].name;
+    batch.pairs = evidence.pairs.size();
+    batch.outliers = alone.calibration->pair_outliers.size();
+    batch.rms_px = alone.calibration->rms_px;
+    batch.offset = difference(alone.rig, all.rig);
+    batch.sigma = (scatter * (bound - of_before).cwiseMax(0) + of_before).cwiseSqrt();
+    batch.agreement = combination.inputs[i].agreement;
+    batch.is_all = used && batch.pairs == combination.evidence.pairs.size();
+  }
+  return batches;
+}
+
+}  // namespace vernier

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/image_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+constexpr std::string_view png_signature{"\x89PNG\r\n\x1a\n", 8};
+
+std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+/// The cyclic redundancy check of PNG chunks (ISO 3309).
+std::uint32_t crc32(std::string_view bytes) {
+  std::uint32_t crc = ~0u;
+  for (const char byte : bytes) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
+  }
+  return ~crc;
+}
+
+/// What is wrong with a PNG file's chunks, if anything.
+std::string png_fault(std::string_view bytes) {
+  std::size_t at = png_signature.size();
+  while (at + 12 <= bytes.size()) {
+    const std::size_t length = big_endian(bytes, at, 4);
+    if (at + 12 + length > bytes.size()) break;
+    if (crc32(bytes.substr(at + 4, 4 + length)) != big_endian(bytes, at + 8 + length, 4)) {
+      return "is damaged (a PNG checksum is wrong)";
+    }
+    if (bytes.substr(at + 4, 4) == "IEND") return "";
+    at += 12 + length;
+  }
+  return "is cut off (its PNG data have no end)";
+}
+
+/// Walks the segments of a JPEG file to its end-of-image marker.
+std::string jpeg_fault(std::string_view bytes) {
+  const std::string cut = "is cut off (its JPEG data have no end)";
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size()) {
+    if (bytes[at] != '\xff') {  // coded pixels: up to the next marker
+      at = bytes.find('\xff', at);
+      if (at == std::string_view::npos) return cut;
+      continue;
+    }
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (marker == 0xd9) return "";
+    const bool alone = marker == 0x00 || marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8);
+    if (marker == 0xff) {
+      at += 1;
+    } else {
+      at += 2 + (alone ? 0 : big_endian(bytes, at + 2, 2));
+    }
+  }
+  const bool ends = at + 2 <= bytes.size() && bytes.substr(at, 2) == "\xff\xd9";
+  return ends ? "" : cut;
+}
+
+bool is_netpbm(std::string_view bytes) {
+  return bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6";
+}
+
+/// The head of a binary Netpbm file.
+struct NetpbmHead {
+  std::size_t width = 0, height = 0, largest = 0;
+  std::size_t end = 0;  ///< of its text; 0 where it cannot be read
+};
+
+NetpbmHead netpbm_head(std::string_view bytes) {
+  NetpbmHead head;
+  std::size_t at = 2;
+  for (std::size_t* value : {&head.width, &head.height, &head.largest}) {
+    while (at < bytes.size() &&
+           (std::isspace(static_cast<unsigned char>(bytes[at])) || bytes[at] == '#')) {
+      at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    }
+    const auto parsed = std::from_chars(bytes.data() + at, bytes.data() + bytes.size(), *value);
+    if (parsed.ec != std::errc()) return head;
+    at = static_cast<std::size_t>(parsed.ptr - bytes.data());
+  }
+  head.end = at;
+  return head;
+}
+
+/// Whether a binary Netpbm file holds as many pixels as its header says.
+std::string netpbm_fault(std::string_view bytes) {
+  const NetpbmHead head = netpbm_head(bytes);
+  if (head.end == 0) return "has no Netpbm header that can be read";
+  const std::size_t pixel = (bytes[1] == '6' ? 3 : 1) * (head.largest > 255 ? 2 : 1);
+  const bool whole = head.width <= 1u << 20 && head.height <= 1u << 20 &&
+                     bytes.size() >= head.end + 1 + head.width * head.height * pixel;
+  return whole ? "" : "is cut off (it has fewer pixels than its header says)";
+}
+
+std::string fault_of(std::string_view bytes) {
+  if (is_netpbm(bytes)) return netpbm_fault(bytes);
+  if (is_png(bytes)) return png_fault(bytes);
+  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_fault(bytes);
+  return "";
+}
+
+}  // namespace
+
+std::string read_image_bytes(const std::filesystem::path& file) {
+  std::string bytes = read_whole(file);
+  const std::string fault = fault_of(bytes);
+  if (!fault.empty()) {
+    throw Error(file.string(), fault, "copy it again, or leave it out");
+  }
+  return bytes;
+}
+
+cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::path& file) {
+  cv::Mat pixels;
+  if (!bytes.empty()) {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    try {
+      pixels = cv::imdecode(buffer, flags);
+    } catch (const cv::Exception&) {  // told below
+    }
+  }
+  if (pixels.empty()) {
+    throw Error(file.string(), "is not an image that can be read", "check the file");
+  }
+  return pixels;
+}
+
+bool is_png(std::string_view bytes) { return bytes.substr(0, 8) == png_signature; }
+
+int largest_grey_value(std::string_view bytes) {
+  constexpr std::size_t depth_at = 24;  // of the header chunk, which comes first
+  if (is_png(bytes) && bytes.size() > depth_at) return (1 << (bytes[depth_at] & 31)) - 1;
+  if (is_netpbm(bytes))
+    return static_cast<int>(std::min<std::size_t>(netpbm_head(bytes).largest, 65535));
+  return 0;
+}
+
+}  // namespace vernier

@@ -3,6 +3,7 @@
 #include "stereo/canny_edges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -10,6 +11,7 @@
 #include "stereo/edge_places.h"
 #include "stereo/image_gradient.h"
 #include "stereo/image_noise.h"
+#include "stereo/matrix_of.h"
 
 namespace vernier {
 namespace {
@@ -37,10 +39,13 @@ class ConnectedSets {
   std::vector<int> parents_;
 };
 
+enum Peak : int { no_peak = 0, weak_peak = 1, sharp_peak = 2 };
+
 /// For every pixel of a row whether its |g| is at least `low` and the largest along g: larger than
 /// on the one side and no smaller than on the other, by interpolation between the two pixels that g
-/// passes one row (or column, whichever g is steeper to) away. All products with |g_x| or |g_y|, so
-/// that nothing is divided, and no branches, so that the compiler makes vectors.
+/// passes one row (or column, whichever g is steeper to) away. A sharp peak is so along that row or
+/// column too: a straight edge has one in each. All products with |g_x| or |g_y|, so that nothing
+/// is divided, and no branches, so that the compiler makes vectors.
 void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::vector<int>& found) {
   const float* const gx = gradient.x.ptr<float>(row);
   const float* const gy = gradient.y.ptr<float>(row);
@@ -61,49 +66,103 @@ void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::ve
     const float other_aside = steep ? (falls ? nw : ne) : left;
     const float one_side = (major - minor) * one + minor * one_aside;
     const float other_side = (major - minor) * other + minor * other_aside;
-    peak[x] = (own * major > one_side) & (own * major >= other_side) & (own >= low) ? 1 : 0;
+    const float across = own * major;
+    const int is_peak = (across > one_side) & (across >= other_side) & (own >= low) ? 1 : 0;
+    const int is_sharp = (own > one) & (own >= other) ? 1 : 0;
+    peak[x] = is_peak + (is_peak & is_sharp);
   }
+}
+
+/// Whether the eight neighbours that are peaks (bits, clockwise from the upper left) hang together
+/// without the pixel, and one of the four nearest is none: then it is not needed.
+constexpr bool is_spare(unsigned neighbours) {
+  const auto set = [&](unsigned k) { return (neighbours >> (k % 8) & 1U) != 0; };
+  int groups = 0;  // runs around; a corner's neighbours on either side touch each other
+  for (unsigned k = 0; k < 8; k += 2) {
+    const bool side = set(k + 1);
+    if (!side && (set(k + 2) || set(k + 3))) ++groups;
+  }
+  const bool surrounded = set(1) && set(3) && set(5) && set(7);
+  return !surrounded && groups <= 1;
+}
+
+constexpr std::array<bool, 256> spare_table() {
+  std::array<bool, 256> table{};
+  for (unsigned k = 0; k < 256; ++k) table[k] = is_spare(k);
+  return table;
 }
 
 /// Peaks of |g| across edges, row by row, and which of them are connected.
 class PeakFinder {
  public:
-  PeakFinder(int columns, const CannyOptions& options)
-      : options_(options),
+  PeakFinder(cv::Size size, const CannyOptions& options)
+      : size_(size),
+        options_(options),
         border_(border_px(options)),
-        is_peak_(columns, 0),
-        own_(columns, -1),
-        above_(columns, -1) {}
+        next_row_(border_),
+        above_(size.width, no_peak),
+        own_(above_),
+        below_(above_),
+        string_above_(size.width, -1),
+        string_(string_above_) {}
 
   /// No points nearer to the image's border, where what is beyond it would displace them.
   static int border_px(const CannyOptions& options) {
-    return std::max(1, static_cast<int>(std::ceil(2 * options.scale_px)));
+    return std::max(2, static_cast<int>(std::ceil(2 * options.scale_px)));
   }
 
-  /// Rows have to come one after the other.
+  /// Rows have to come one after the other from the border on, with the gradient of two more.
   void add_row(const GradientRows& gradient, int y, std::vector<EdgePoint>& peaks) {
-    const int row = y - gradient.first_row, columns = gradient.x.cols;
-    find_peaks_in_row(gradient, row, static_cast<float>(options_.low), is_peak_);
-    std::fill(own_.begin(), own_.end(), -1);
-    for (int x = border_; x < columns - border_; ++x) {
-      if (is_peak_[x] == 0) continue;
-      own_[x] = sets_.add();
-      for (const int other : {own_[x - 1], above_[x - 1], above_[x], above_[x + 1]}) {
-        if (other >= 0) sets_.join(own_[x], other);
+    for (; next_row_ <= y + 1; ++next_row_) read(gradient, next_row_);
+    thin();
+    std::fill(string_.begin(), string_.end(), -1);
+    for (int x = border_; x < size_.width - border_; ++x) {
+      if (own_[x] == no_peak) continue;
+      string_[x] = sets_.add();
+      for (const int other :
+           {string_[x - 1], string_above_[x - 1], string_above_[x], string_above_[x + 1]}) {
+        if (other >= 0) sets_.join(string_[x], other);
       }
       EdgePoint& peak = peaks.emplace_back();
       peak.x = x;
       peak.y = y;
     }
-    std::swap(above_, own_);
+    std::swap(string_above_, string_);
   }
 
   ConnectedSets& sets() { return sets_; }
 
  private:
+  void read(const GradientRows& gradient, int y) {
+    std::swap(above_, own_);
+    std::swap(own_, below_);
+    if (y >= size_.height - border_) {
+      std::fill(below_.begin(), below_.end(), no_peak);
+      return;
+    }
+    find_peaks_in_row(gradient, y - gradient.first_row, static_cast<float>(options_.low), below_);
+    std::fill(below_.begin(), below_.begin() + border_, no_peak);
+    std::fill(below_.end() - border_, below_.end(), no_peak);
+  }
+
+  /// Weak peaks, beside sharp ones along slanted edges, stay only where they connect others.
+  void thin() {
+    static constexpr std::array<bool, 256> spare = spare_table();
+    for (int x = border_; x < size_.width - border_; ++x) {
+      if (own_[x] != weak_peak) continue;
+      const auto bit = [](int peak, unsigned k) { return (peak != no_peak ? 1U : 0U) << k; };
+      const unsigned neighbours =
+          bit(above_[x - 1], 0) | bit(above_[x], 1) | bit(above_[x + 1], 2) | bit(own_[x + 1], 3) |
+          bit(below_[x + 1], 4) | bit(below_[x], 5) | bit(below_[x - 1], 6) | bit(own_[x - 1], 7);
+      if (spare[neighbours]) own_[x] = no_peak;
+    }
+  }
+
+  cv::Size size_;
   const CannyOptions& options_;
-  int border_;
-  std::vector<int> is_peak_, own_, above_;
+  int border_, next_row_;
+  std::vector<int> above_, own_, below_;
+  std::vector<int> string_above_, string_;
   ConnectedSets sets_;
 };
 
@@ -141,6 +200,11 @@ void check(const GreyLevels& image, const CannyOptions& options) {
     throw Error("canny_edges", "the image's values do not fill its size",
                 "give width times height of them");
   }
+  int not_finite = 0;
+  for (const float value : image.values) not_finite |= static_cast<int>(!std::isfinite(value));
+  if (not_finite != 0) {
+    throw Error("canny_edges", "a grey level is not finite", "give numbers from 0 to 255");
+  }
   if (!(options.scale_px >= 0.5 && options.scale_px <= 20)) {
     throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "choose one near 1 px");
   }
@@ -155,17 +219,16 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   check(image, options);
   const GradientKernel kernel(options.scale_px);
   if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
-  const cv::Mat grey(image.height_px, image.width_px, CV_32F,
-                     const_cast<float*>(image.values.data()));
+  const cv::Mat grey = matrix_of(image);
   const EdgePlaces places(kernel, image_noise(grey));
-  PeakFinder finder(grey.cols, options);
+  PeakFinder finder(grey.size(), options);
   GradientRows gradient;
   std::vector<EdgePoint> edges;
   edges.reserve(image.values.size() / 4);
   const int border = PeakFinder::border_px(options);
   for (int first = border; first < grey.rows - border; first += strip) {
     const int end = std::min(first + strip, grey.rows - border);
-    gradient.compute(grey, kernel, first - 1, end + 1);
+    gradient.compute(grey, kernel, first - 1, end + 2);
     const std::size_t before = edges.size();
     for (int y = first; y < end; ++y) finder.add_row(gradient, y, edges);
     places.place(gradient, std::span(edges).subspan(before));

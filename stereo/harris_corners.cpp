@@ -64,14 +64,16 @@ struct Peak {
   double strength = 0;
 };
 
-/// Whether no neighbour is stronger; of equal ones the first in reading order is the peak.
+/// Whether no neighbour is stronger; of equal ones the first in reading order is the peak. The
+/// nearest rows are asked first, for most pixels fail there.
 bool is_peak(const cv::Mat& r, int x, int y, int radius) {
   const float own = r.at<float>(y, x);
-  for (int j = -radius; j <= radius; ++j) {
-    const float* row = r.ptr<float>(y + j);
+  for (int row = 0; row <= 2 * radius; ++row) {
+    const int j = row % 2 == 0 ? row / 2 : -(row + 1) / 2;  // 0 −1 1 −2 2 …
+    const float* at = r.ptr<float>(y + j) + x;
     for (int i = -radius; i <= radius; ++i) {
       const bool before = j < 0 || (j == 0 && i < 0);
-      if (before ? row[x + i] >= own : row[x + i] > own) return false;
+      if (before ? at[i] >= own : at[i] > own) return false;
     }
   }
   return true;
@@ -158,6 +160,7 @@ class PointFit {
   /// σ² Σ_q c_q c_qᵀ with c_q = ∂p / ∂I_q: derivatives by the gradients, through the gradient's
   /// filter once more.
   Eigen::Matrix2d covariance(const GradientFilter& filter, double noise) const {
+    if (noise == 0) return Eigen::Matrix2d::Zero();
     const int margin = filter.reach(), size = 2 * (half_ + margin) + 1;
     cv::Mat by_gx[2], by_gy[2];
     for (int a = 0; a < 2; ++a) {

@@ -38,6 +38,42 @@ struct Template {
   bool holds = false;
 };
 
+/// Σ wx wy K over the 4 x 4 pixels from (left − 1, top − 1); beyond the border, its outermost
+/// pixels'.
+double weighed(const cv::Mat& image,
+               int left,
+               int top,
+               const std::array<double, 4>& wx,
+               const std::array<double, 4>& wy) {
+  const bool inside = left >= 1 && top >= 1 && left + 2 < image.cols && top + 2 < image.rows;
+  double sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    double line = 0;
+    if (inside) {
+      const float* at = image.ptr<float>(top + j - 1) + left - 1;
+      for (int i = 0; i < 4; ++i) line += wx[i] * at[i];
+    } else {
+      const float* row = image.ptr<float>(std::clamp(top + j - 1, 0, image.rows - 1));
+      for (int i = 0; i < 4; ++i) line += wx[i] * row[std::clamp(left + i - 1, 0, image.cols - 1)];
+    }
+    sum += wy[j] * line;
+  }
+  return sum;
+}
+
+/// Grey values at p + (i, j), |i| and |j| <= reach, a row of the image a column.
+Eigen::MatrixXd grid_about(const cv::Mat& image, const Eigen::Vector2d& p, int reach) {
+  const int left = static_cast<int>(std::floor(p.x())), top = static_cast<int>(std::floor(p.y()));
+  const auto wx = cubic_weights(p.x() - left), wy = cubic_weights(p.y() - top);
+  Eigen::MatrixXd grid(2 * reach + 1, 2 * reach + 1);
+  for (int j = -reach; j <= reach; ++j) {
+    for (int i = -reach; i <= reach; ++i) {
+      grid(i + reach, j + reach) = weighed(image, left + i, top + j, wx, wy);
+    }
+  }
+  return grid;
+}
+
 Template make_template(const cv::Mat& left,
                        const Eigen::Vector2d& p,
                        const Eigen::Vector2d& direction,
@@ -47,16 +83,17 @@ Template make_template(const cv::Mat& left,
   patch.weight.resize(n);
   patch.grey.resize(n);
   patch.J.resize(n, 6);
+  const Eigen::MatrixXd grid = grid_about(left, p, half + 1);
   int row = 0;
   for (int j = -half; j <= half; ++j) {
     for (int i = -half; i <= half; ++i, ++row) {
-      const double x = p.x() + i, y = p.y() + j;
-      const Eigen::Vector2d g(0.5 * (grey_between(left, x + 1, y) - grey_between(left, x - 1, y)),
-                              0.5 * (grey_between(left, x, y + 1) - grey_between(left, x, y - 1)));
+      const int x = i + half + 1, y = j + half + 1;
+      const Eigen::Vector2d g(0.5 * (grid(x + 1, y) - grid(x - 1, y)),
+                              0.5 * (grid(x, y + 1) - grid(x, y - 1)));
       const double along = g.dot(direction);
       patch.offsets.emplace_back(i, j);
       patch.weight[row] = std::exp(-2.0 * (i * i + j * j) / (half * half));
-      patch.grey[row] = grey_between(left, x, y);
+      patch.grey[row] = grid(x, y);
       patch.J.row(row) << g.x(), g.y(), along * i, along * j, patch.grey[row], 1;
     }
   }
@@ -121,15 +158,7 @@ Eigen::Matrix2d covariance(const Template& patch,
 
 double grey_between(const cv::Mat& image, double x, double y) {
   const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-  const auto wx = cubic_weights(x - left), wy = cubic_weights(y - top);
-  double sum = 0;
-  for (int j = 0; j < 4; ++j) {
-    const float* row = image.ptr<float>(std::clamp(top + j - 1, 0, image.rows - 1));
-    double line = 0;
-    for (int i = 0; i < 4; ++i) line += wx[i] * row[std::clamp(left + i - 1, 0, image.cols - 1)];
-    sum += wy[j] * line;
-  }
-  return sum;
+  return weighed(image, left, top, cubic_weights(x - left), cubic_weights(y - top));
 }
 
 std::optional<Alignment> align_patch(const cv::Mat& left,

@@ -3,21 +3,9 @@
 #include "stereo/rectified_camera_info.h"
 
 #include "calib/opencv_intrinsics.h"
-#include "stereo/rectification.h"
+#include "stereo/rectified_geometry.h"
 
 namespace vernier {
-namespace {
-
-/// Where the middle of the image goes on the rectified camera's plane z = 1; its own optical axis
-/// where the model cannot be inverted in the middle.
-Eigen::Vector2d rectified_middle(const Camera& camera, const Eigen::Matrix3d& R_rectified_camera) {
-  const Eigen::Vector2d middle = 0.5 * (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
-  const Eigen::Vector3d ray =
-      R_rectified_camera * try_unproject(camera, middle).value_or(Eigen::Vector3d::UnitZ());
-  return ray.head<2>() / ray.z();
-}
-
-}  // namespace
 
 std::vector<RosCameraInfo> rectified_camera_info(const Rig& rig) {
   std::vector<RosCameraInfo> infos;
@@ -29,15 +17,11 @@ std::vector<RosCameraInfo> rectified_camera_info(const Rig& rig) {
   }
   if (rig.cameras.size() != 2) return infos;
 
-  const Rectification turn = rectification(rig);
-  infos[0].R_rectified_camera = turn.R_rectified_left;
-  infos[1].R_rectified_camera = turn.R_rectified_right;
   const double f = 0.5 * (rig.cameras[0].f_px() + rig.cameras[1].f_px());
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  for (const RosCameraInfo& info : infos) {
-    centre += 0.25 * (info.camera.size_px - Eigen::Vector2i::Ones()).cast<double>() -
-              0.5 * f * rectified_middle(info.camera, info.R_rectified_camera);
-  }
+  const RectifiedGeometry geometry = rectified_geometry(rig, {.f_px = f});
+  infos[0].R_rectified_camera = geometry.turn.R_rectified_left;
+  infos[1].R_rectified_camera = geometry.turn.R_rectified_right;
+  const Eigen::Vector2d& centre = geometry.centre_px;
   for (RosCameraInfo& info : infos) {
     info.P << f, 0, centre[0], 0, 0, f, centre[1], 0, 0, 0, 1, 0;
   }

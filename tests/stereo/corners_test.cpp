@@ -121,6 +121,9 @@ TEST(ImageNoise, IsMeasuredBesideTexture) {
     const double rounded = std::sqrt(sigma * sigma + 1.0 / 12);
     EXPECT_NEAR(image_noise(image) / rounded, 1, 0.15) << sigma;
   }
+  Draws draws({29});
+  const cv::Mat plain = test::with_noise(cv::Mat(480, 640, CV_32F, cv::Scalar(100)), 3, draws);
+  EXPECT_NEAR(image_noise(plain) / std::sqrt(9 + 1.0 / 12), 1, 0.02);
   EXPECT_NEAR(image_noise(cv::Mat(100, 100, CV_8U, cv::Scalar(9))), 1 / std::sqrt(12), 1e-12);
 }
 

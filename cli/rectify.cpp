@@ -1,0 +1,316 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "calib/rig_file.h"
+#include "cli/option_checks.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
+#include "stereo/rectification_covariance.h"
+#include "stereo/rectified_images.h"
+#include "stereo/vertical_field.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr int grid_columns = 40, grid_rows = 30;  // over which deviations are averaged
+constexpr double default_disparity = 0.05;        // of the width, where no depth is given
+constexpr int default_range = 4;                  // the width by the largest disparity
+
+struct Options {
+  std::string rig, left, right, output, size;
+  RectifiedGeometryOptions geometry;
+  VerticalFieldOptions field;
+  double at_m = 0;
+  int most_disparity_px = 0;
+  bool repair = false, masks = false;
+  int threads = 0;
+};
+
+/// What the rig's covariance does over the left image, for points at one depth.
+struct Deviations {
+  double at_m = 0, disparity_px = 0;
+  int pixels = 0;  ///< of the grid that both cameras see
+  double rms_disparity_px = 0, rms_vertical_px = 0;
+};
+
+GreyLevels read_image(const std::string& file,
+                      const Camera& camera,
+                      const Options& options,
+                      Session& session) {
+  std::string remark;
+  GreyLevels image = read_grey_levels(file, &remark);
+  if (!remark.empty()) session.say(file + ": " + remark);
+  if (Eigen::Vector2i(image.width_px, image.height_px) != camera.size_px) {
+    throw Error(file,
+                fmt::format("its size {}x{} is not that of the camera \"{}\" of {}, {}x{}",
+                            image.width_px, image.height_px, camera.name, options.rig,
+                            camera.size_px[0], camera.size_px[1]),
+                "give images as the rig's cameras take them, or the rig of these");
+  }
+  return image;
+}
+
+std::optional<Deviations> deviations(const RigEstimate& estimate,
+                                     const RectifiedGeometry& geometry,
+                                     double at_m) {
+  if (!estimate.covariance) return std::nullopt;
+  const RectificationUncertainty uncertainty(estimate.rig, estimate.covariance->matrix, geometry);
+  const RawPixels left(estimate.rig, geometry, 0), right(estimate.rig, geometry, 1);
+  Deviations d;
+  d.at_m = at_m > 0 ? at_m : geometry.depth_m(default_disparity * geometry.size_px[0]);
+  d.disparity_px = geometry.disparity_px(d.at_m);
+  Eigen::Vector2d sum(0, 0);
+  for (int j = 0; j < grid_rows; ++j) {
+    for (int i = 0; i < grid_columns; ++i) {
+      const Eigen::Vector2d at((geometry.size_px[0] - 1.0) * i / (grid_columns - 1),
+                               (geometry.size_px[1] - 1.0) * j / (grid_rows - 1));
+      const Eigen::Vector2d other = at - Eigen::Vector2d(d.disparity_px, 0);
+      if (!left.in_image_at(at) || !right.in_image_at(other)) continue;
+      const auto covariance = uncertainty.covariance_px2(at, d.disparity_px);
+      if (!covariance) continue;
+      sum += covariance->diagonal();
+      ++d.pixels;
+    }
+  }
+  d.rms_disparity_px = std::sqrt(sum[0] / d.pixels);
+  d.rms_vertical_px = std::sqrt(sum[1] / d.pixels);
+  return d;
+}
+
+/// What was rectified and how well its rows agree.
+struct Rectified {
+  RectifiedGeometry geometry;
+  RectifiedImages images;
+  VerticalField field;
+};
+
+Rectified rectify(const Rig& rig,
+                  const GreyLevels& left,
+                  const GreyLevels& right,
+                  const Options& options) {
+  Rectified r;
+  r.geometry = rectified_geometry(rig, options.geometry);
+  r.images = rectified_images(rig, r.geometry, left, right, options.threads);
+  const int most = options.most_disparity_px > 0 ? options.most_disparity_px
+                                                 : r.geometry.size_px[0] / default_range;
+  r.field = vertical_field(r.images.pair, {0, most}, options.field);
+  return r;
+}
+
+/// Doubts a pair whose rows do not agree.
+void judge(const Rectified& rectified,
+           const Rig& rig,
+           const GreyLevels& left,
+           const GreyLevels& right,
+           const Options& options,
+           Session& session) {
+  const VerticalField& field = rectified.field;
+  if (!field.unrectified) return;
+  if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
+    const VerticalField exchanged = rectify(rig, right, left, options).field;
+    if (exchanged.known && !exchanged.unrectified) {
+      session.doubt(fmt::format(
+          "left and right seem exchanged: {} corners match as given, {} the other way round; "
+          "exchange --left and --right, or the cameras of the rig",
+          field.matched, exchanged.matched));
+      return;
+    }
+  }
+  session.doubt("the rows of the rectified images do not agree: " + describe(field) +
+                "; see that the rig is of these cameras as they stand, the images simultaneous "
+                "and --max-disparity large enough");
+}
+
+std::string png(const GreyLevels& image) {
+  const cv::Mat values(image.height_px, image.width_px, CV_32F,
+                       const_cast<float*>(image.values.data()));
+  cv::Mat bytes;
+  values.convertTo(bytes, CV_8U);
+  std::vector<unsigned char> encoded;
+  cv::imencode(".png", bytes, encoded);
+  return {encoded.begin(), encoded.end()};
+}
+
+GreyLevels mask(const ValidPixels& valid) {
+  GreyLevels image{valid.width_px, valid.height_px, {}};
+  for (const std::uint8_t v : valid.values) image.values.push_back(v ? 255.0F : 0.0F);
+  return image;
+}
+
+using Contents = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+Contents contents(const Rig& rig,
+                  const RectifiedGeometry& geometry,
+                  const RectifiedImages& images,
+                  const Options& options) {
+  const std::filesystem::path folder = options.output;
+  RigEstimate rectified;
+  rectified.rig = rectified_rig(rig, geometry);
+  Contents files{{folder / "left.png", png(images.pair.left)},
+                 {folder / "right.png", png(images.pair.right)},
+                 {folder / "rig.json", format_rig(rectified)}};
+  if (options.masks) {
+    files.emplace_back(folder / "left_valid.png", png(mask(images.left_valid)));
+    files.emplace_back(folder / "right_valid.png", png(mask(images.right_valid)));
+  }
+  return files;
+}
+
+Json field_json(const VerticalField& field, bool repaired) {
+  const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
+  const auto triple = [](const Eigen::Vector3d& v) { return Json{v[0], v[1], v[2]}; };
+  return {{"coefficients_px", field.known ? triple(field.coefficients_px) : Json()},
+          {"sigma_px", field.known ? triple(sd) : Json()},
+          {"residual_px", field.known ? Json(field.residual_px) : Json()},
+          {"corners", field.corners},
+          {"matched", field.matched},
+          {"used", field.used},
+          {"known", field.known},
+          {"significant", field.significant},
+          {"unrectified", field.unrectified},
+          {"words", describe(field)},
+          {"repaired", repaired}};
+}
+
+Json result_json(const RectifiedGeometry& g,
+                 const RectifiedImages& images,
+                 const std::optional<Deviations>& d,
+                 Json field,
+                 const Contents& files,
+                 const Session& session) {
+  Json names = Json::array();
+  for (const auto& [name, content] : files) names.push_back(name.string());
+  Json uncertainty;
+  if (d && d->pixels > 0) {
+    uncertainty = {{"at_m", d->at_m},
+                   {"disparity_px", d->disparity_px},
+                   {"grid_pixels", d->pixels},
+                   {"rms_disparity_sd_px", d->rms_disparity_px},
+                   {"rms_vertical_sd_px", d->rms_vertical_px}};
+  }
+  return {
+      {"f_px", g.f_px},
+      {"centre_px", {g.centre_px[0], g.centre_px[1]}},
+      {"size_px", {g.size_px[0], g.size_px[1]}},
+      {"baseline_m", g.baseline_m},
+      {"blank",
+       {{"left", images.left_valid.blank_share()}, {"right", images.right_valid.blank_share()}}},
+      {"uncertainty", uncertainty},
+      {"vertical_field", std::move(field)},
+      {"doubts", session.doubts()},
+      {"files", names}};
+}
+
+std::string result_text(const RectifiedGeometry& g,
+                        const RectifiedImages& images,
+                        const std::optional<Deviations>& d,
+                        const std::string& field,
+                        const Options& options,
+                        std::size_t files) {
+  std::string text = fmt::format(
+      "images            {}x{} px, f {:.3f} px, centre ({:.3f}, {:.3f}) px\n"
+      "baseline          {:.6g} m: depth = {:.6g} m px / disparity\n"
+      "blank             {:.1f} % of the left image, {:.1f} % of the right\n",
+      g.size_px[0], g.size_px[1], g.f_px, g.centre_px[0], g.centre_px[1], g.baseline_m,
+      g.f_px * g.baseline_m, 100 * images.left_valid.blank_share(),
+      100 * images.right_valid.blank_share());
+  if (!d) {
+    text += "rig's error       not known: the rig file has no covariance\n";
+  } else if (d->pixels == 0) {
+    text += fmt::format("rig's error       at {:.4g} m no point is in both images\n", d->at_m);
+  } else {
+    text += fmt::format(
+        "rig's error       at {:.4g} m ({:.1f} px): disparity {:.3f} px, rows {:.3f} px (rms "
+        "standard deviation over the image)\n",
+        d->at_m, d->disparity_px, d->rms_disparity_px, d->rms_vertical_px);
+  }
+  return text + "vertical field    " + field +
+         fmt::format("\n{} files written to {}\n", files, options.output);
+}
+
+void check_pair(const Rig& rig, const std::string& place) {
+  if (rig.cameras.size() == 2) return;
+  throw Error(place,
+              fmt::format("it is a rig of {} cameras; a pair is rectified", rig.cameras.size()),
+              "give the rig of the two that took the images");
+}
+
+void run(Options options, Session& session) {
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_size(options.size, "--size");
+    options.geometry.size_px = {width, height};
+  }
+  const std::filesystem::path rig_file = find_rig(options.rig);
+  const RigFile file = read_rig(rig_file);
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  const Rig& rig = file.estimate.rig;
+  check_pair(rig, options.rig);
+  const GreyLevels left = read_image(options.left, rig.cameras[0], options, session);
+  const GreyLevels right = read_image(options.right, rig.cameras[1], options, session);
+  if (left.values == right.values) {
+    throw Error(options.right, "it is the same image as " + options.left,
+                "give the image that the right camera took at the same time");
+  }
+  Rectified rectified = rectify(rig, left, right, options);
+  judge(rectified, rig, left, right, options, session);
+  auto& [geometry, images, field] = rectified;
+  const bool repaired = options.repair && field.significant;
+  if (repaired) images.pair.right = repaired_right(images.pair.right, field);
+  std::string words = describe(field);
+  if (options.repair) words += repaired ? "; repaired" : "; nothing repaired";
+
+  const Contents files = contents(rig, geometry, images, options);
+  for (const auto& [name, content] : files) {
+    spare_inputs({rig_file, options.left, options.right}, name);
+  }
+  const auto d = deviations(file.estimate, geometry, options.at_m);
+  std::filesystem::create_directories(options.output);
+  write_atomically(files);
+  session.result(result_json(geometry, images, d, field_json(field, repaired), files, session),
+                 result_text(geometry, images, d, words, options, files.size()));
+}
+
+}  // namespace
+
+void add_rectify(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(app, session, "rectify",
+                            "turn a pair of images so that every row shows one epipolar plane",
+                            "vernier rectify --rig rig.json --left left01.png --right right01.png "
+                            "-o rectified");
+  verb->add_option("--rig", o->rig, "rig file, or a shipped name")->required();
+  verb->add_option("--left", o->left, "left image")->required();
+  verb->add_option("--right", o->right, "right image")->required();
+  verb->add_option("--size", o->size, "WxH of the rectified images (default: the left camera's)");
+  verb->add_option("--f-px", o->geometry.f_px,
+                   "their focal length (default: the widest view with hardly a blank pixel)")
+      ->check(finite_and_positive);
+  verb->add_option("--at-m", o->at_m,
+                   "depth at which the rig's error is told (default: where the disparity is a "
+                   "twentieth of the width)")
+      ->check(finite_and_positive);
+  verb->add_option("--max-disparity", o->most_disparity_px,
+                   "largest that corners are matched at, px (default: a quarter of the width)")
+      ->check(CLI::Range(1, 100'000));
+  verb->add_option("--band", o->field.band_px, "rows above and below that corners are matched in")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  verb->add_flag("--repair", o->repair,
+                 "move the right image by the vertical field, if there is one");
+  verb->add_flag("--masks", o->masks,
+                 "write left_valid.png and right_valid.png too: 0 where blank");
+  verb->add_option("--threads", o->threads, "0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  verb->add_option("-o,--output", o->output, "folder for left.png, right.png and rig.json")
+      ->required();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

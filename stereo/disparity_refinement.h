@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stereo/grey_levels.h"
+
+namespace vernier {
+
+/// Where refinement of a point starts: its pixel in the left image, and how the right one shows it.
+struct RefinementStart {
+  int x = 0, y = 0;
+  float disparity_px = 0;
+  float stretch = 1;  ///< du_right / du_left
+  float shear = 0;    ///< du_right / dv
+};
+
+struct RefinedDisparity {
+  bool settled = false;
+  float disparity_px = 0;  ///< at the pixel's centre
+  float stretch = 1, shear = 0;
+  float sigma_px = 0;  ///< of the disparity, from the residuals and not below the images' noise
+  float score = 0;     ///< ZNCC of the patches as aligned
+};
+
+struct RefinementOptions {
+  float noise_left = 1, noise_right = 1;  ///< standard deviation, grey levels
+  float most_shift_px = 1;                ///< from the start
+  float stretch_sigma = 0.3f;  ///< how much stretch and shear are expected to differ from the start
+  int iterations = 6;
+};
+
+/// Least squares matching along the row (Förstner 1982; Grün 1985), of patches of 9 x 7 pixels: the
+/// right image K shows the left one I as
+///
+///     K(x − d + r i + s j, y + j) = α I(x + i, y + j) + β,   |i| <= 4, |j| <= 3
+///
+/// with shift, stretch r, shear s, gain α and offset β unknown, all pixels of one weight, and weak
+/// priors on r and s, so that an edge without texture beside it keeps its start's. Steps are of the
+/// inverse composition (Baker and Matthews 2004): gradients of the left patch alone. With N the
+/// normal matrix, the disparity has the variance r² m N⁻¹₀₀ / α², m the residuals' mean square, at
+/// least (noise_left² α² + noise_right²).
+std::vector<RefinedDisparity> refine_disparities(const GreyLevels& left,
+                                                 const GreyLevels& right,
+                                                 const std::vector<RefinementStart>& starts,
+                                                 const RefinementOptions& options);
+
+}  // namespace vernier

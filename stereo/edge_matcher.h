@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stereo/matcher.h"
+
+namespace vernier {
+
+struct EdgeMatcherOptions {
+  double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
+  double least_margin = 0;          ///< of the best disparity over the next other one, relative
+  int least_points = 8;             ///< fewer points that agree with each other are dropped …
+  int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
+  double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
+  bool refine = true;          ///< least squares, with a standard deviation for each point
+  double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
+  double least_slanted_score = 0.8;  ///< the same where surfaces slant
+  double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
+  double sigma_floor_px = 0;         ///< of refined points, added in squares
+};
+
+/// What `edge` knows of a left edge point.
+struct EdgeMatch {
+  EdgeDisparity at;
+  float stretch = 1;     ///< du_right / du_left over the patch
+  float shear = 0;       ///< du_right / dv there
+  bool refined = false;  ///< else the disparity is the support's parabola
+};
+
+/// Vernier's own matcher, sparse from the start:
+///
+///  1. costs of every left edge point at every disparity: census words (stereo/census.h), 3 x 3 of
+///     them;
+///  2. semi-global support between edge points (stereo/edge_support.h);
+///  3. the same from the places found in the right image; a point is kept where both find the same
+///     disparity but for one, its best is `least_margin` better than any other, and at least
+///     `least_points` neighbours in a chain agree with it;
+///  4. least squares of gain, offset, shift, stretch and shear (stereo/disparity_refinement.h).
+///
+/// One for each of `left_edges`, which are in the order of canny_edges. Throws Error on images of
+/// unequal size and on an empty or too wide range.
+std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
+                                   const std::vector<EdgePoint>& left_edges,
+                                   const DisparityRange& range,
+                                   const EdgeMatcherOptions& options = {});
+
+/// The same as a plug-in of the name `edge`.
+Matcher edge_matcher(const EdgeMatcherOptions& options = {});
+
+/// Throws Error where a matcher cannot take the pair: unequal sizes, no pixels, values missing, an
+/// empty range, or one wider than the image.
+void check_pair(const RectifiedPair& pair, const DisparityRange& range);
+
+}  // namespace vernier

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/patch_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace vernier {
+namespace {
+
+constexpr float flat_variance = 1;  // grey values²; a patch with less has nothing to correlate
+constexpr int apart_px = 2;         // the second best lies beyond this of the best
+
+/// Offset of the vertex of a parabola through three scores, from the middle one.
+double vertex(float before, float at, float after) {
+  const double bend = static_cast<double>(before) - 2.0 * at + after;
+  if (!(bend < 0)) return 0;
+  return std::clamp(0.5 * (static_cast<double>(before) - after) / bend, -0.5, 0.5);
+}
+
+}  // namespace
+
+PatchSearch::PatchSearch(const cv::Mat& image, int half_px) : image_(image), half_(half_px) {
+  const cv::Size side(2 * half_px + 1, 2 * half_px + 1);
+  cv::Mat squares;
+  cv::boxFilter(image, mean_, CV_32F, side);
+  cv::sqrBoxFilter(image, squares, CV_32F, side);
+  inverse_length_ = cv::Mat::zeros(image.size(), CV_32F);
+  const auto pixels = static_cast<float>(side.area());
+  for (int y = 0; y < image.rows; ++y) {
+    const float *mean = mean_.ptr<float>(y), *square = squares.ptr<float>(y);
+    float* inverse = inverse_length_.ptr<float>(y);
+    for (int x = 0; x < image.cols; ++x) {
+      const float variance = square[x] - mean[x] * mean[x];
+      inverse[x] = variance > flat_variance ? 1 / std::sqrt(pixels * variance) : 0;
+    }
+  }
+}
+
+/// Scores of the window before they are divided by the patch's own length.
+void PatchSearch::correlate(const cv::Mat& other,
+                            cv::Point centre,
+                            float mean,
+                            const SearchWindow& w) {
+  const int columns = w.most_x - w.least_x + 1, rows = w.most_y - w.least_y + 1;
+  scores_.assign(static_cast<std::size_t>(columns) * rows, 0);
+  for (int row = 0; row < rows; ++row) {
+    float* scores = scores_.data() + static_cast<std::size_t>(row) * columns;
+    for (int j = -half_; j <= half_; ++j) {
+      const float* patch = other.ptr<float>(centre.y + j) + centre.x;
+      const float* image = image_.ptr<float>(w.least_y + row + j) + w.least_x;
+      for (int i = -half_; i <= half_; ++i) {
+        const float grey = patch[i] - mean;
+        const float* from = image + i;
+        for (int x = 0; x < columns; ++x) scores[x] += grey * from[x];
+      }
+    }
+    const float* inverse = inverse_length_.ptr<float>(w.least_y + row) + w.least_x;
+    for (int x = 0; x < columns; ++x) scores[x] *= inverse[x];
+  }
+}
+
+std::optional<FoundPatch> PatchSearch::find(const cv::Mat& other,
+                                            cv::Point centre,
+                                            SearchWindow w) {
+  const auto inside = [&](int x, int size) { return x >= half_ && x + half_ < size; };
+  if (!inside(centre.x, other.cols) || !inside(centre.y, other.rows)) return std::nullopt;
+  w.least_x = std::max(w.least_x, half_);
+  w.least_y = std::max(w.least_y, half_);
+  w.most_x = std::min(w.most_x, image_.cols - 1 - half_);
+  w.most_y = std::min(w.most_y, image_.rows - 1 - half_);
+  if (w.least_x > w.most_x || w.least_y > w.most_y) return std::nullopt;
+
+  cv::Scalar mean, deviation;
+  const int side = 2 * half_ + 1;
+  cv::meanStdDev(other(cv::Rect(centre.x - half_, centre.y - half_, side, side)), mean, deviation);
+  if (!(deviation[0] * deviation[0] > flat_variance)) return std::nullopt;
+  correlate(other, centre, static_cast<float>(mean[0]), w);
+  const float own = 1 / static_cast<float>(side * deviation[0]);
+
+  const int columns = w.most_x - w.least_x + 1, rows = w.most_y - w.least_y + 1;
+  const auto best =
+      static_cast<int>(std::max_element(scores_.begin(), scores_.end()) - scores_.begin());
+  const int bx = best % columns, by = best / columns;
+  const auto at = [&](int x, int y) { return scores_[static_cast<std::size_t>(y) * columns + x]; };
+  FoundPatch found{{w.least_x + bx, w.least_y + by}, {}, own * at(bx, by)};
+  found.peak_px = {found.pixel.x + 0.0, found.pixel.y + 0.0};
+  if (bx > 0 && bx + 1 < columns) {
+    found.peak_px.x() += vertex(at(bx - 1, by), at(bx, by), at(bx + 1, by));
+  }
+  if (by > 0 && by + 1 < rows) {
+    found.peak_px.y() += vertex(at(bx, by - 1), at(bx, by), at(bx, by + 1));
+  }
+  for (int y = 0; y < rows; ++y) {
+    const bool near_row = std::abs(y - by) <= apart_px;
+    for (int x = 0; x < columns; ++x) {
+      if (near_row && std::abs(x - bx) <= apart_px) continue;
+      found.second = std::max(found.second, own * at(x, y));
+    }
+  }
+  return found;
+}
+
+}  // namespace vernier

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+namespace vernier {
+
+/// Pixels in which a patch's centre is sought, both ends included.
+struct SearchWindow {
+  int least_x = 0, most_x = 0, least_y = 0, most_y = 0;
+};
+
+struct FoundPatch {
+  cv::Point pixel;          ///< of the best score
+  Eigen::Vector2d peak_px;  ///< of the parabolas through it and its neighbours
+  float score = 0;          ///< ZNCC, in [-1, 1]
+  float second = -1;        ///< best score more than two pixels away
+};
+
+/// An image to seek patches of 2 half + 1 pixels in (CV_32F). It prepares the mean and the length
+/// of every patch, once for all searches:
+///
+///     ZNCC(q) = Σ (I − Ī) K(q + i) / (|I − Ī| |K − K̄|)
+class PatchSearch {
+ public:
+  PatchSearch(const cv::Mat& image, int half_px);
+
+  /// Where in the window the patch about `centre` of another image correlates best, of equals the
+  /// first in reading order. The part of the window whose patches lie in the image counts; nothing
+  /// where there is none, where the patch itself does not lie in its image, or is flat.
+  std::optional<FoundPatch> find(const cv::Mat& other, cv::Point centre, SearchWindow window);
+
+ private:
+  void correlate(const cv::Mat& other, cv::Point centre, float mean, const SearchWindow& window);
+
+  cv::Mat image_;
+  int half_;
+  cv::Mat inverse_length_;     ///< 1 / |K − K̄| of the patch about a pixel; 0 where flat
+  cv::Mat mean_;               ///< of the patch about a pixel
+  std::vector<float> scores_;  ///< of the window, row by row
+};
+
+}  // namespace vernier

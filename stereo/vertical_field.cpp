@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/vertical_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/error.h"
+#include "stereo/harris_corners.h"
+#include "stereo/patch_alignment.h"
+#include "stereo/patch_search.h"
+#include "stereo/vertical_field_fit.h"
+
+namespace vernier {
+namespace {
+
+constexpr int cells = 8;              // corners are spread over cells x cells parts of the image
+constexpr int border_px = 5;          // of corners, at half size
+constexpr int half_px = 4;            // of patches searched, at half size
+constexpr int aligned_half_px = 6;    // of patches aligned, at full size
+constexpr double smoothing_px = 0.8;  // against the aliasing of sharp images, which draws
+                                      // alignments towards whole pixels: 0.05 px became 0.02
+constexpr double least_found = 0.7;   // ZNCC at half size
+constexpr double least_margin = 0.05;
+constexpr double most_shift_px = 2;  // of the alignment, from twice the half-size peak
+constexpr int least_side_px = 48;    // of an image; one that is smaller has no matches
+
+void check(const RectifiedPair& pair,
+           const DisparityRange& range,
+           const VerticalFieldOptions& options) {
+  const std::string place = "vertical field";
+  const GreyLevels &l = pair.left, &r = pair.right;
+  if (l.width_px != r.width_px || l.height_px != r.height_px) {
+    throw Error(place,
+                fmt::format("the left image is {}x{} px, the right one {}x{} px", l.width_px,
+                            l.height_px, r.width_px, r.height_px),
+                "give a rectified pair");
+  }
+  for (const GreyLevels* image : {&l, &r}) {
+    const auto pixels = static_cast<std::size_t>(std::max(0, image->width_px)) *
+                        static_cast<std::size_t>(std::max(0, image->height_px));
+    if (image->values.size() == pixels) continue;
+    throw Error(place,
+                fmt::format("an image of {}x{} px has {} values", image->width_px, image->height_px,
+                            image->values.size()),
+                "give a value a pixel");
+  }
+  if (range.least_px > range.most_px) {
+    throw Error(place,
+                fmt::format("no disparity is from {} to {} px", range.least_px, range.most_px),
+                "give the smaller one first");
+  }
+  if (options.band_px < 1 || options.band_px > 10 || options.corners < 1) {
+    throw Error(place,
+                fmt::format("a band of {} rows, {} corners", options.band_px, options.corners),
+                "give 1 to 10 rows and some corners");
+  }
+}
+
+cv::Mat view_of(const GreyLevels& image) {
+  return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
+}
+
+/// At half its size: pixel (x, y) is the mean of four and lies at (2x + 0.5, 2y + 0.5).
+cv::Mat halved(const cv::Mat& image) {
+  cv::Mat half;
+  cv::resize(image(cv::Rect(0, 0, image.cols / 2 * 2, image.rows / 2 * 2)), half, {}, 0.5, 0.5,
+             cv::INTER_AREA);
+  return half;
+}
+
+cv::Mat smoothed(const cv::Mat& image) {
+  cv::Mat smooth;
+  cv::GaussianBlur(image, smooth, {0, 0}, smoothing_px);
+  return smooth;
+}
+
+/// Both images at full size, smoothed, and a search in each at half its size.
+struct Search {
+  cv::Mat half_left, half_right, left, right;
+  PatchSearch in_left, in_right;
+  int least_x, most_x, rows;  ///< half-size pixels: disparities, and rows of the band
+
+  Search(const RectifiedPair& pair, const DisparityRange& range, int band_px)
+      : half_left(halved(view_of(pair.left))),
+        half_right(halved(view_of(pair.right))),
+        left(smoothed(view_of(pair.left))),
+        right(smoothed(view_of(pair.right))),
+        in_left(half_left, half_px),
+        in_right(half_right, half_px),
+        least_x(static_cast<int>(std::floor(0.5 * range.least_px)) - 1),
+        most_x(static_cast<int>(std::ceil(0.5 * range.most_px)) + 1),
+        rows((band_px + 1) / 2) {}
+
+  /// The half-size place of a half-size left pixel in the right image, if it stands out and the
+  /// way back leads to the pixel.
+  std::optional<Eigen::Vector2d> place_of(cv::Point p) {
+    const auto there =
+        in_right.find(half_left, p, {p.x - most_x, p.x - least_x, p.y - rows, p.y + rows});
+    if (!there || there->score < least_found) return std::nullopt;
+    if (there->second > there->score - least_margin) return std::nullopt;
+    const cv::Point q = there->pixel;
+    const auto back =
+        in_left.find(half_right, q, {q.x + least_x, q.x + most_x, q.y - rows, q.y + rows});
+    if (!back || std::abs(back->pixel.x - p.x) > 1 || std::abs(back->pixel.y - p.y) > 1) {
+      return std::nullopt;
+    }
+    return there->peak_px;
+  }
+};
+
+std::vector<RowOffset> row_offsets(Search& search,
+                                   const std::vector<ImageCorner>& corners,
+                                   const VerticalFieldOptions& options) {
+  std::vector<RowOffset> offsets;
+  for (const ImageCorner& corner : corners) {
+    const cv::Point p(static_cast<int>(std::lround(corner.pixel_px.x())),
+                      static_cast<int>(std::lround(corner.pixel_px.y())));
+    const auto place = search.place_of(p);
+    if (!place) continue;
+    // A whole left pixel half a pixel beside the patch's centre: its values need no interpolation.
+    const Eigen::Vector2d left_px(2 * p.x + 1, 2 * p.y + 1);
+    const Eigen::Vector2d right_px = 2 * *place + Eigen::Vector2d(1, 1);
+    const auto aligned = align_patch(search.left, search.right, left_px, right_px, {1, 0},
+                                     {.half_px = aligned_half_px, .most_shift_px = most_shift_px});
+    if (!aligned || aligned->score < options.least_score) continue;
+    const double dy = aligned->right_px.y() - left_px.y();
+    if (std::abs(dy) > options.band_px + 0.5) continue;
+    offsets.push_back(
+        {{aligned->right_px.x(), left_px.y()}, dy, std::sqrt(aligned->covariance_px2(1, 1))});
+  }
+  return offsets;
+}
+
+/// Part of a row whose rows in the right image are the same four.
+struct Run {
+  int first = 0, last = 0;  ///< columns, the last one not included
+  std::array<const float*, 4> rows{};
+  float beyond = 0, slope = 0;  ///< place beyond the second row: at the first column, and a column
+};
+
+/// Cubic convolution along the column.
+void resample(const Run& run, float* repaired) {
+  const auto [r0, r1, r2, r3] = run.rows;
+  for (int x = run.first; x < run.last; ++x) {
+    const float t = run.beyond + run.slope * static_cast<float>(x - run.first);
+    const float t2 = t * t, t3 = t2 * t;
+    const float sum = 0.5F * ((-t3 + 2 * t2 - t) * r0[x] + (3 * t3 - 5 * t2 + 2) * r1[x] +
+                              (-3 * t3 + 4 * t2 + t) * r2[x] + (t3 - t2) * r3[x]);
+    repaired[x] = std::clamp(sum, 0.0F, 255.0F);
+  }
+}
+
+std::string tilt(double px, double sd, const char* far, const char* near) {
+  return fmt::format("{:.2f} px {} (± {:.2f}) at its {} edge than at its {}", std::abs(px),
+                     px >= 0 ? "lower" : "higher", sd, far, near);
+}
+
+}  // namespace
+
+VerticalField vertical_field(const RectifiedPair& pair,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options) {
+  check(pair, range, options);
+  const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
+  if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
+  Search search(pair, range, options.band_px);
+  const auto corners = harris_corners(
+      search.half_left, 0, {.count = options.corners, .cells = cells, .border_px = border_px});
+  return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
+                            size, options);
+}
+
+std::string describe(const VerticalField& field) {
+  const Eigen::Vector3d& p = field.coefficients_px;
+  const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
+  if (!field.known && !field.unrectified) {
+    return fmt::format("too few corners match to tell whether one image lies lower ({} of {})",
+                       field.matched, field.corners);
+  }
+  if (!field.known) {
+    return fmt::format(
+        "the images are not rectified, or not of one scene: {} of {} corners have a partner within "
+        "{} rows and the disparities, and {} of these agree on a vertical field",
+        field.matched, field.corners, field.band_px, field.used);
+  }
+  const std::string of = fmt::format("from {} of {} matched corners", field.used, field.matched);
+  if (!field.significant) {
+    return fmt::format(
+        "the right image lies level with the left one: {:+.2f} px (± {:.2f}) in the "
+        "middle, nowhere more than {:.2f} px, {}",
+        p[0], sd[0], field.largest_px(), of);
+  }
+  return fmt::format(
+      "the right image lies {:.2f} px {} (± {:.2f}) in the middle, {}, {}, {}{}", std::abs(p[0]),
+      p[0] >= 0 ? "lower" : "higher", sd[0], tilt(p[1], sd[1], "right", "left"),
+      tilt(p[2], sd[2], "lower", "upper"), of,
+      field.unrectified ? fmt::format("; that leaves the {} rows that were searched, so the images "
+                                      "are hardly rectified",
+                                      field.band_px)
+                        : "");
+}
+
+GreyLevels repaired_right(const GreyLevels& right, const VerticalField& field) {
+  if (right.width_px != field.width_px || right.height_px != field.height_px) {
+    throw Error("vertical field",
+                fmt::format("it is of {}x{} px, the image is {}x{} px", field.width_px,
+                            field.height_px, right.width_px, right.height_px),
+                "give the image it was found in");
+  }
+  if (!field.significant) return right;
+  GreyLevels repaired = right;
+  const int width = right.width_px, last = right.height_px - 1;
+  for (int y = 0; y <= last; ++y) {
+    for (int x = 0; x < width;) {
+      const auto top_at = [&](int at) {
+        return static_cast<int>(std::floor(y + field.dy_px(at, y)));
+      };
+      const int top = top_at(x);
+      Run run{.first = x, .slope = static_cast<float>(field.dy_px(1, y) - field.dy_px(0, y))};
+      run.beyond = static_cast<float>(y + field.dy_px(x, y) - top);
+      while (x < width && top_at(x) == top) ++x;
+      run.last = x;
+      for (int j = 0; j < 4; ++j) {
+        run.rows[j] = &right.values[static_cast<std::size_t>(std::clamp(top + j - 1, 0, last)) *
+                                    static_cast<std::size_t>(width)];
+      }
+      resample(run,
+               &repaired.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)]);
+    }
+  }
+  return repaired;
+}
+
+}  // namespace vernier

@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/vertical_field_fit.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/random.h"
+
+namespace vernier {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::RowVector3d;
+using Eigen::Vector3d;
+
+constexpr int triples = 150;         // half the matches wrong: none is all right with 2e-9
+constexpr double near_px = 0.4;      // of a triple's field; a match beyond costs no more
+constexpr double tukey = 4.685;      // 95 % efficient for normal errors
+constexpr double floor_px = 0.05;    // added to what alignments say of themselves
+constexpr double least_scale = 0.3;  // which equal matches would bring to 0
+constexpr int most_rounds = 50;
+constexpr double settled_px = 1e-6;
+constexpr int least_used = 12;          // matches: four a coefficient
+constexpr double least_share = 0.35;    // of the matches, that agree
+constexpr double most_residual_px = 1;  // of these
+constexpr double widest_sd_px = 0.5;    // of dy anywhere in the image
+constexpr int plenty = 40;              // corners of which …
+constexpr double hardly_any = 0.08;     // … no more match where the images do not belong together
+constexpr double chi2_3_999 = 16.266;   // 99.9 % of χ² with three degrees of freedom
+
+struct Problem {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> X;
+  Eigen::VectorXd dy, inverse_sigma;
+
+  /// Residuals in their own standard deviations.
+  Eigen::VectorXd scaled_residuals(const Vector3d& p) const {
+    return (dy - X * p).cwiseProduct(inverse_sigma);
+  }
+};
+
+RowVector3d row_at(const Eigen::Vector2d& at_px, const Eigen::Vector2i& size_px) {
+  const Eigen::Array2d size = size_px.cast<double>().array();
+  const Eigen::Array2d from_middle = (at_px.array() - 0.5 * (size - 1)) / size;
+  return {1, from_middle.x(), from_middle.y()};
+}
+
+Problem problem_of(const std::vector<RowOffset>& offsets, const Eigen::Vector2i& size_px) {
+  Problem problem;
+  const auto n = static_cast<Eigen::Index>(offsets.size());
+  problem.X.resize(n, 3);
+  problem.dy.resize(n);
+  problem.inverse_sigma.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const RowOffset& o = offsets[static_cast<std::size_t>(i)];
+    problem.X.row(i) = row_at(o.at_px, size_px);
+    problem.dy[i] = o.dy_px;
+    problem.inverse_sigma[i] = 1 / std::hypot(o.sigma_px, floor_px);
+  }
+  return problem;
+}
+
+double median(Eigen::VectorXd values) {
+  const auto middle = values.data() + values.size() / 2;
+  std::nth_element(values.data(), middle, values.data() + values.size());
+  return *middle;
+}
+
+/// The field through three matches that most others are near.
+Vector3d best_triple(const Problem& problem) {
+  Vector3d best(median(problem.dy), 0, 0);
+  const auto cost_of = [&](const Vector3d& p) {
+    return (problem.dy - problem.X * p).cwiseAbs().cwiseMin(near_px).squaredNorm();
+  };
+  double least = cost_of(best);
+  Draws draws({.seed = 1, .source = 96});
+  const auto n = static_cast<std::uint32_t>(problem.dy.size());
+  for (int i = 0; i < triples; ++i) {
+    Matrix3d X;
+    Vector3d dy;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t pick = draws.below(n);
+      X.row(k) = problem.X.row(pick);
+      dy[k] = problem.dy[pick];
+    }
+    if (!(std::abs(X.determinant()) > 1e-2)) continue;  // the same one twice, or too near a line
+    const Vector3d p = X.inverse() * dy;
+    const double cost = cost_of(p);
+    if (cost < least) {
+      least = cost;
+      best = p;
+    }
+  }
+  return best;
+}
+
+double robust_scale(const Eigen::VectorXd& residuals) {
+  return std::max(least_scale, 1.4826 * median(residuals.cwiseAbs()));
+}
+
+struct Fit {
+  Vector3d p;
+  double scale = 1;  ///< of the scaled residuals
+  bool holds = true;
+};
+
+/// Weights 1 − (r / cs)², squared; 0 beyond.
+Eigen::VectorXd tukey_weights(const Eigen::VectorXd& residuals, double scale) {
+  return residuals.unaryExpr([&](double r) {
+    const double u = 1 - std::pow(r / (tukey * scale), 2);
+    return u > 0 ? u * u : 0;
+  });
+}
+
+Fit reweighted(const Problem& problem, const Vector3d& start) {
+  Fit fit{start};
+  fit.scale = robust_scale(problem.scaled_residuals(start));
+  for (int round = 0; round < most_rounds; ++round) {
+    const Eigen::VectorXd r = problem.scaled_residuals(fit.p);
+    fit.scale = robust_scale(r);
+    const Eigen::VectorXd w =
+        tukey_weights(r, fit.scale).cwiseProduct(problem.inverse_sigma.cwiseAbs2());
+    const Matrix3d N = problem.X.transpose() * w.asDiagonal() * problem.X;
+    const double size = N.trace();
+    if (!(N.determinant() > 1e-9 * size * size * size)) return {fit.p, fit.scale, false};
+    const Vector3d p = N.inverse() * (problem.X.transpose() * w.cwiseProduct(problem.dy));
+    const double moved = (p - fit.p).cwiseAbs().maxCoeff();
+    fit.p = p;
+    if (moved < settled_px) break;
+  }
+  return fit;
+}
+
+/// A⁻¹ B A⁻¹ with A = Σ ψ'(r) xxᵀ / σ², B = Σ (ψ(r) / (1 − h))² xxᵀ / σ²: h, the leverage, makes up
+/// for a residual's being smaller than its error (MacKinnon and White 1985).
+Matrix3d covariance_of(const Problem& problem, const Fit& fit) {
+  const Eigen::VectorXd r = problem.scaled_residuals(fit.p);
+  const Eigen::VectorXd weight = tukey_weights(r, fit.scale);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> X = problem.inverse_sigma.asDiagonal() * problem.X;
+  const Eigen::VectorXd u2 = (r / (tukey * fit.scale)).cwiseAbs2();
+  Matrix3d A = Matrix3d::Zero(), B = Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    if (u2[i] < 1) A += (1 - u2[i]) * (1 - 5 * u2[i]) * X.row(i).transpose() * X.row(i);
+  }
+  const Matrix3d inverse = A.inverse();
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    const double h = weight[i] * (X.row(i) * inverse * X.row(i).transpose()).value();
+    const double psi = weight[i] * r[i] / std::max(0.1, 1 - h);
+    B += psi * psi * X.row(i).transpose() * X.row(i);
+  }
+  return inverse * B * inverse;
+}
+
+std::array<RowVector3d, 4> image_corners(const VerticalField& field) {
+  const Eigen::Vector2i size(field.width_px, field.height_px);
+  std::array<RowVector3d, 4> rows;
+  for (int k = 0; k < 4; ++k) {
+    rows[k] = row_at({(k % 2) * (size[0] - 1), (k / 2) * (size[1] - 1)}, size);
+  }
+  return rows;
+}
+
+/// What the numbers amount to.
+void judge(VerticalField& field, const VerticalFieldOptions& options) {
+  double widest = 0;
+  for (const RowVector3d& x : image_corners(field)) {
+    widest = std::max(widest, std::sqrt((x * field.covariance_px2 * x.transpose()).value()));
+  }
+  const double largest = field.largest_px();
+  const bool agree =
+      field.used >= least_share * field.matched && field.residual_px <= most_residual_px;
+  field.known = agree && field.used >= least_used && widest <= widest_sd_px;
+  const double chi2 =
+      field.coefficients_px.dot(field.covariance_px2.inverse() * field.coefficients_px);
+  field.significant = field.known && chi2 > chi2_3_999 && largest > options.worth_px;
+  field.unrectified = !agree || largest > options.band_px;
+}
+
+}  // namespace
+
+double VerticalField::largest_px() const {
+  double largest = 0;
+  for (const RowVector3d& x : image_corners(*this)) {
+    largest = std::max(largest, std::abs((x * coefficients_px).value()));
+  }
+  return largest;
+}
+
+VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
+                                 int corners,
+                                 const Eigen::Vector2i& size_px,
+                                 const VerticalFieldOptions& options) {
+  VerticalField field;
+  field.width_px = size_px[0];
+  field.height_px = size_px[1];
+  field.band_px = options.band_px;
+  field.corners = corners;
+  field.matched = static_cast<int>(offsets.size());
+  field.unrectified = corners >= plenty && field.matched <= hardly_any * corners;
+  if (offsets.size() < least_used) return field;
+  const Problem problem = problem_of(offsets, size_px);
+  const Fit fit = reweighted(problem, best_triple(problem));
+  if (!fit.holds) return field;
+  field.coefficients_px = fit.p;
+  field.covariance_px2 = covariance_of(problem, fit);
+  const Eigen::VectorXd scaled = problem.scaled_residuals(fit.p).cwiseAbs();
+  const Eigen::VectorXd residuals = (problem.dy - problem.X * fit.p).cwiseAbs();
+  std::vector<double> of_used;
+  for (Eigen::Index i = 0; i < scaled.size(); ++i) {
+    if (scaled[i] < tukey * fit.scale) of_used.push_back(residuals[i]);
+  }
+  field.used = static_cast<int>(of_used.size());
+  field.residual_px = 1.4826 * median(Eigen::Map<Eigen::VectorXd>(of_used.data(), field.used));
+  judge(field, options);
+  return field;
+}
+
+}  // namespace vernier

@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier rectify as a user calls it, on the 13 real pairs.
+
+    rectify_test.py PROGRAM [unittest's options]
+
+That rows agree and depths are right is asked of the board's corners, found in the rectified images
+by vernier detect.
+"""
+import json
+import math
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+import cli_test
+from cli_test import IMAGES, Case
+
+ROWS, COLUMNS, SQUARE_M = 6, 9, 0.025
+
+
+@unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
+class Rectify(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.rig = pathlib.Path(cls.shared.name) / 'rig.json'
+        done = cli_test.vernier(
+            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
+            '--board', '9x6', '--square-m', SQUARE_M, '--model', 'opencv5', '--no-model-check',
+            '--no-evidence', '-o', cls.rig)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+    def arguments(self, number='01', rig=None, left=None, right=None):
+        return ('rectify', '--rig', rig or self.rig, '--left', left or IMAGES / f'left{number}.jpg',
+                '--right', right or IMAGES / f'right{number}.jpg', '-o', self.folder / 'rectified')
+
+    def changed_rig(self, name, change):
+        rig = json.loads(self.rig.read_text())
+        change(rig)
+        (self.folder / name).write_text(json.dumps(rig))
+        return self.folder / name
+
+    def lowered_rig(self, px):
+        """The right camera's centre higher than it is: its rectified images lie lower."""
+        def change(rig):
+            rig['cameras'][1]['parameters']['oy_px'] -= px
+            rig['parameters'][rig['parameter_names'].index('right.oy_px')] -= px
+        return self.changed_rig('lowered.json', change)
+
+    def corners(self):
+        """The board's corners in both rectified images, row by row."""
+        for side in ('left', 'right'):
+            shutil.copy(self.folder / f'rectified/{side}.png', self.folder / f'{side}1.png')
+        self.works('detect', '--left', self.folder / 'left1.png', '--right',
+                   self.folder / 'right1.png', '--board', '9x6', '-o', self.folder / 'corners.vnl')
+        seen = {'left': [], 'right': []}
+        for line in (self.folder / 'corners.vnl').read_text().splitlines():
+            if line.startswith('#') or line.split()[1] == '-':
+                continue
+            words = line.split()
+            side = 'left' if 'left' in pathlib.Path(words[0]).name else 'right'
+            seen[side].append((float(words[1]), float(words[2])))
+        self.assertEqual((len(seen['left']), len(seen['right'])), (54, 54))
+        return list(zip(seen['left'], seen['right']))
+
+    def row_offset(self):
+        apart = [right[1] - left[1] for left, right in self.corners()]
+        mean = sum(apart) / len(apart)
+        return mean, math.sqrt(sum((a - mean)**2 for a in apart) / len(apart))
+
+    def test_rows_agree_and_depths_are_the_boards(self):
+        for number in ('01', '05', '12'):
+            said = json.loads(self.works(*self.arguments(number), '--json').stdout)
+            mean, scatter = self.row_offset()
+            self.assertLess(abs(mean), 0.25)
+            self.assertLess(scatter, 0.25)
+            f, (cx, cy) = said['f_px'], said['centre_px']
+            points = []
+            for (u, v), (other, _) in self.corners():
+                z = f * said['baseline_m'] / (u - other)
+                points.append(((u - cx) * z / f, (v - cy) * z / f, z))
+            sides = [math.dist(points[r * COLUMNS + c], points[r * COLUMNS + c + 1])
+                     for r in range(ROWS) for c in range(COLUMNS - 1)]
+            self.assertLess(abs(sum(sides) / len(sides) / SQUARE_M - 1), 0.01)
+
+    def test_what_it_says(self):
+        said = json.loads(self.works(*self.arguments(), '--json').stdout)
+        self.assertEqual(said['size_px'], [640, 480])
+        self.assertLess(max(said['blank'].values()), 0.015)
+        self.assertAlmostEqual(said['baseline_m'], 0.0834, 3)
+        self.assertGreater(said['uncertainty']['rms_disparity_sd_px'], 0.05)
+        self.assertGreater(said['uncertainty']['rms_vertical_sd_px'], 0.02)
+        self.assertAlmostEqual(said['uncertainty']['disparity_px'], 32)
+        self.assertTrue(said['vertical_field']['known'])
+        self.assertFalse(said['vertical_field']['unrectified'])
+        self.assertLess(abs(said['vertical_field']['coefficients_px'][0]), 0.2)
+        self.assertEqual([pathlib.Path(f).name for f in said['files']],
+                         ['left.png', 'right.png', 'rig.json'])
+        text = self.works(*self.arguments()).stdout
+        for part in ('baseline', 'blank', "rig's error", 'the right image lies level', '3 files'):
+            self.assertIn(part, text)
+        nearer = json.loads(self.works(*self.arguments(), '--json', '--at-m', '0.5').stdout)
+        self.assertAlmostEqual(nearer['uncertainty']['at_m'], 0.5)
+
+    def test_the_rectified_rig_is_two_pinholes_side_by_side(self):
+        said = json.loads(self.works(*self.arguments(), '--json').stdout)
+        rig = json.loads((self.folder / 'rectified/rig.json').read_text())
+        left, right = rig['cameras']
+        self.assertEqual((left['model'], left['name'], right['name']), ('pinhole', 'left', 'right'))
+        self.assertEqual(left['parameters'], right['parameters'])
+        self.assertEqual(left['parameters']['f_px'], said['f_px'])
+        self.assertEqual(right['from_first'], {'rotation_rad': [0, 0, 0],
+                                               'translation_m': [-said['baseline_m'], 0, 0]})
+        self.assertNotIn('covariance', rig)
+        # Rectified again, nothing changes any more.
+        folder = self.folder / 'rectified'
+        again = json.loads(self.works('rectify', '--rig', folder / 'rig.json', '--left',
+                                      folder / 'left.png', '--right', folder / 'right.png', '--f-px',
+                                      said['f_px'], '-o', self.folder / 'again', '--json').stdout)
+        self.assertIsNone(again['uncertainty'])
+        self.assertEqual((again['f_px'], again['baseline_m']), (said['f_px'], said['baseline_m']))
+
+    def test_repair(self):
+        rig = self.lowered_rig(2)
+        found = json.loads(self.works(*self.arguments(rig=rig), '--json').stdout)['vertical_field']
+        self.assertTrue(found['significant'])
+        self.assertFalse(found['repaired'])
+        mean, _ = self.row_offset()
+        self.assertLess(abs(mean - 1.9), 0.3)  # 2 px of the raw image
+        self.assertLess(abs(found['coefficients_px'][0] - 1.9), 0.3)
+        self.assertIn('px lower', found['words'])
+        done = self.works(*self.arguments(rig=rig), '--repair')
+        self.assertIn('; repaired', done.stdout)
+        mean, scatter = self.row_offset()
+        self.assertLess(abs(mean), 0.25)
+        self.assertLess(scatter, 0.3)
+        self.assertIn('nothing repaired', self.works(*self.arguments(), '--repair').stdout)
+
+    def test_size_focal_length_and_masks(self):
+        said = json.loads(self.works(*self.arguments(), '--size', '800x500', '--f-px', '400',
+                                     '--masks', '--json').stdout)
+        self.assertEqual((said['size_px'], said['f_px']), ([800, 500], 400))
+        self.assertGreater(said['blank']['left'], 0.2)
+        for name in ('left', 'right', 'left_valid', 'right_valid'):
+            head = (self.folder / f'rectified/{name}.png').read_bytes()[:24]
+            self.assertEqual((int.from_bytes(head[16:20], 'big'), int.from_bytes(head[20:], 'big')),
+                             (800, 500))
+
+    def test_any_number_of_threads_gives_the_same_files(self):
+        self.works(*self.arguments(), '--threads', '1')
+        files = [self.folder / 'rectified' / f for f in ('left.png', 'right.png', 'rig.json')]
+        one = [f.read_bytes() for f in files]
+        self.works(*self.arguments(), '--threads', '3')
+        self.assertEqual(one, [f.read_bytes() for f in files])
+
+    def test_images_of_other_cameras_are_doubted(self):
+        done = cli_test.vernier(*self.arguments(rig=self.lowered_rig(40)))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('rows of the rectified images do not agree', done.stderr)
+        done = cli_test.vernier(*self.arguments('09', left=IMAGES / 'right09.jpg',
+                                                right=IMAGES / 'left09.jpg'), '--json')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(len(json.loads(done.stdout)['doubts']), 1)
+
+    def test_complaints(self):
+        out = self.folder / 'rectified'
+
+        def one_camera(rig):
+            rig['cameras'] = rig['cameras'][:1]
+            for key in ('parameter_names', 'parameters', 'covariance', 'covariance_mvb',
+                        'calibration'):
+                rig.pop(key, None)
+        self.complains(*self.arguments(rig=self.changed_rig('one.json', one_camera)), '-q',
+                       of='it is a rig of 1 cameras', leaves=[out])
+
+        def larger(rig):
+            rig['cameras'][1]['size_px'] = [1280, 960]
+        self.complains(*self.arguments(rig=self.changed_rig('larger.json', larger)), '-q',
+                       of='right01.jpg: its size 640x480 is not that of the camera "right"',
+                       leaves=[out])
+        self.complains(*self.arguments(right=IMAGES / 'left01.jpg'), '-q', of='same image',
+                       leaves=[out])
+        self.complains(*self.arguments(left=self.folder / 'none.png'), '-q', of='none.png',
+                       leaves=[out])
+        self.complains(*self.arguments(rig=self.folder / 'none.json'), '-q', of='none.json',
+                       leaves=[out])
+        for options in (('--size', '9'), ('--f-px', '0'), ('--at-m', 'nan'), ('--band', '11'),
+                        ('--max-disparity', '0')):
+            self.complains(*self.arguments(), '-q', *options, of=options[0], leaves=[out])
+
+    def test_outputs_never_replace_inputs(self):
+        out = self.folder / 'rectified'
+        out.mkdir()
+        for name, source in (('left.png', IMAGES / 'left01.jpg'), ('rig.json', self.rig)):
+            shutil.copy(source, out / name)
+            before = (out / name).read_bytes()
+            given = {'left': out / name} if name == 'left.png' else {'rig': out / name}
+            self.complains(*self.arguments(**given), '-q', of='is an input')
+            self.assertEqual((out / name).read_bytes(), before)
+            (out / name).unlink()
+        blocked = self.folder / 'file'
+        blocked.write_text('')
+        done = cli_test.vernier(*self.arguments()[:-1], blocked, '-q')
+        self.assertEqual(done.returncode, 2, done.stderr)
+
+
+if __name__ == '__main__':
+    cli_test.PROGRAM = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "stereo/grey_levels.h"
+
+namespace vernier::test {
+
+/// An image of one channel as grey levels.
+inline GreyLevels grey_levels(const cv::Mat& image) {
+  cv::Mat values;
+  image.convertTo(values, CV_32F);
+  return {values.cols, values.rows, {values.begin<float>(), values.end<float>()}};
+}
+
+/// The other way, CV_32F.
+inline cv::Mat image_of(const GreyLevels& image) {
+  return cv::Mat(image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data()))
+      .clone();
+}
+
+}  // namespace vernier::test

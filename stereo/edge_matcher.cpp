@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/edge_matcher.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "calib/error.h"
 #include "stereo/disparity_refinement.h"
 #include "stereo/edge_support.h"
 #include "stereo/image_noise.h"
+#include "stereo/matcher_input.h"
 #include "stereo/matrix_of.h"
 #include "stereo/stretched_image.h"
 
@@ -332,40 +330,11 @@ class Refinement {
 
 }  // namespace
 
-void check_pair(const RectifiedPair& pair, const DisparityRange& range) {
-  const auto size = [](const GreyLevels& image) {
-    return fmt::format("{}x{}", image.width_px, image.height_px);
-  };
-  if (pair.left.width_px != pair.right.width_px || pair.left.height_px != pair.right.height_px) {
-    throw Error("stereo pair",
-                "the left image is " + size(pair.left) + ", the right one " + size(pair.right),
-                "give images of one size, rectified");
-  }
-  if (pair.left.width_px <= 0 || pair.left.height_px <= 0) {
-    throw Error("stereo pair", "its images have no pixels", "give images");
-  }
-  const auto pixels =
-      static_cast<std::size_t>(pair.left.width_px) * static_cast<std::size_t>(pair.left.height_px);
-  if (pair.left.values.size() != pixels || pair.right.values.size() != pixels) {
-    throw Error("stereo pair", "an image's values do not fill it", "give width times height");
-  }
-  if (range.most_px < range.least_px) {
-    throw Error("disparity range", fmt::format("{} to {} is empty", range.least_px, range.most_px),
-                "give the least first");
-  }
-  if (range.most_px >= pair.left.width_px || range.least_px <= -pair.left.width_px) {
-    throw Error("disparity range",
-                fmt::format("{} to {} reaches beyond the image's width of {} pixels",
-                            range.least_px, range.most_px, pair.left.width_px),
-                "give disparities below the width");
-  }
-}
-
 std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
                                    const std::vector<EdgePoint>& left_edges,
                                    const DisparityRange& range,
                                    const EdgeMatcherOptions& options) {
-  check_pair(pair, range);
+  check_matcher_input(pair, range, "edge");
   std::vector<EdgeMatch> matches(left_edges.size());
   const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
   std::vector<int> x, y;

@@ -49,8 +49,4 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
 /// The same as a plug-in of the name `edge`.
 Matcher edge_matcher(const EdgeMatcherOptions& options = {});
 
-/// Throws Error where a matcher cannot take the pair: unequal sizes, no pixels, values missing, an
-/// empty range, or one wider than the image.
-void check_pair(const RectifiedPair& pair, const DisparityRange& range);
-
 }  // namespace vernier

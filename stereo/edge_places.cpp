@@ -80,7 +80,8 @@ void EdgePlaces::fit(Batch& batch) {
   cv::hal::log32f(batch.ratio[0].data(), log[0].data(), 9 * lanes);
   Lanes slope{}, bend{};
   for (int i = 0; i < 9; ++i) {
-    const auto x = static_cast<float>(i % 3 - 1), y = static_cast<float>(i / 3 - 1);
+    const int column = i % 3 - 1, row = i / 3 - 1;
+    const auto x = static_cast<float>(column), y = static_cast<float>(row);
     for (int k = 0; k < lanes; ++k) {
       const float nx = batch.nx[k], ny = batch.ny[k];
       by_slope[i][k] = (nx * x + ny * y) * (1.F / 6);

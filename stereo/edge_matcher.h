@@ -11,7 +11,7 @@ namespace vernier {
 struct EdgeMatcherOptions {
   double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
   double least_margin = 0;          ///< of the best disparity over the next other one, relative
-  int least_points = 8;             ///< fewer points that agree with each other are dropped …
+  int least_points = 6;             ///< fewer points that agree with each other are dropped …
   int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
   double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
   bool refine = true;          ///< least squares, with a standard deviation for each point

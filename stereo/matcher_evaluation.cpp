@@ -34,12 +34,16 @@ double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRul
   const double error = found.disparity_px - truth.disparity_px;
   if (rule == OutlineRule::foreground || !truth.discontinuity) return error;
   double least = std::abs(error);
-  for (const float surface : {truth.least_px, truth.most_px}) {
+  for (const float surface : {truth.own_px, truth.least_px, truth.most_px}) {
     if (!std::isnan(surface)) {
       least = std::min(least, std::abs(static_cast<double>(found.disparity_px) - surface));
     }
   }
   return least;
+}
+
+bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
+  return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;
 }
 
 /// Counts towards EdgeFigures.
@@ -99,7 +103,7 @@ MatcherScore evaluate(const std::vector<EdgePoint>& edges,
     const bool matched = found[i].matched();
     const double error = matched ? error_px(found[i], truth[i], options.outline) : 0;
     wrong += std::abs(error) > mismatch_px;
-    if (truth[i].occluded) {
+    if (is_occluded(truth[i], options.outline)) {
       ++score.occluded;
       score.occluded_matched += matched;
       continue;
@@ -141,11 +145,11 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
   int visible = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (!is_asked(edges[i], truth[i], width_px, options)) continue;
-    visible += !truth[i].occluded;
+    const bool shown = !is_occluded(truth[i], options.outline);
+    visible += shown;
     if (!found[i].matched()) continue;
     const double error = std::abs(error_px(found[i], truth[i], options.outline));
-    matches.push_back(
-        {found[i].confidence, !truth[i].occluded, error > inlier_px, error > mismatch_px});
+    matches.push_back({found[i].confidence, shown, error > inlier_px, error > mismatch_px});
   }
   std::stable_sort(matches.begin(), matches.end(),
                    [](const Match& a, const Match& b) { return a.confidence > b.confidence; });

@@ -18,10 +18,10 @@
 namespace vernier {
 namespace {
 
-constexpr int cells = 8;              // corners are spread over cells x cells parts of the image
+constexpr double corners_a_cell = 2;  // of the parts of the image that corners are spread over
 constexpr int border_px = 5;          // of corners, at half size
 constexpr int half_px = 4;            // of patches searched, at half size
-constexpr int aligned_half_px = 6;    // of patches aligned, at full size
+constexpr int aligned_half_px = 5;    // of patches aligned, at full size
 constexpr double smoothing_px = 0.8;  // against the aliasing of sharp images, which draws
                                       // alignments towards whole pixels: 0.05 px became 0.02
 constexpr double least_found = 0.7;   // ZNCC at half size
@@ -79,6 +79,11 @@ cv::Mat smoothed(const cv::Mat& image) {
   return smooth;
 }
 
+cv::Point pixel_of(const ImageCorner& corner) {
+  return {static_cast<int>(std::lround(corner.pixel_px.x())),
+          static_cast<int>(std::lround(corner.pixel_px.y()))};
+}
+
 /// Both images at full size, smoothed, and a search in each at half its size.
 struct Search {
   cv::Mat half_left, half_right, left, right;
@@ -118,8 +123,7 @@ std::vector<RowOffset> row_offsets(Search& search,
                                    const VerticalFieldOptions& options) {
   std::vector<RowOffset> offsets;
   for (const ImageCorner& corner : corners) {
-    const cv::Point p(static_cast<int>(std::lround(corner.pixel_px.x())),
-                      static_cast<int>(std::lround(corner.pixel_px.y())));
+    const cv::Point p = pixel_of(corner);
     const auto place = search.place_of(p);
     if (!place) continue;
     // A whole left pixel half a pixel beside the patch's centre: its values need no interpolation.
@@ -169,8 +173,12 @@ VerticalField vertical_field(const RectifiedPair& pair,
   const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
   if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
   Search search(pair, range, options.band_px);
-  const auto corners = harris_corners(
-      search.half_left, 0, {.count = options.corners, .cells = cells, .border_px = border_px});
+  const int cells = std::max(1, static_cast<int>(std::sqrt(options.corners / corners_a_cell)));
+  auto corners = harris_corners(search.half_left, 0,
+                                {.count = options.corners, .cells = cells, .border_px = border_px});
+  std::erase_if(corners, [&](const ImageCorner& corner) {
+    return !has_texture(search.half_left, pixel_of(corner), half_px);
+  });
   return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
                             size, options);
 }
@@ -184,8 +192,9 @@ std::string describe(const VerticalField& field) {
   }
   if (!field.known) {
     return fmt::format(
-        "the images are not rectified, or not of one scene: {} of {} corners have a partner within "
-        "{} rows and the disparities, and {} of these agree on a vertical field",
+        "the images are not rectified, or not of one scene, or left and right are exchanged or "
+        "disparities beyond the range: {} of {} corners have a partner within {} rows, and {} of "
+        "these agree on a vertical field",
         field.matched, field.corners, field.band_px, field.used);
   }
   const std::string of = fmt::format("from {} of {} matched corners", field.used, field.matched);

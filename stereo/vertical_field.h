@@ -11,7 +11,7 @@ namespace vernier {
 
 struct VerticalFieldOptions {
   int band_px = 5;           ///< rows above and below that are searched, 1 to 10
-  int corners = 128;         ///< of the left image, spread evenly over it
+  int corners = 98;          ///< of the left image, spread evenly over it
   double least_score = 0.8;  ///< ZNCC of aligned patches
   double worth_px = 0.1;     ///< a field that is nowhere larger is not worth a repair
 };
@@ -28,7 +28,7 @@ struct VerticalField {
   Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Zero();  ///< of the coefficients
   int width_px = 0, height_px = 0;
   double residual_px = 0;    ///< robust standard deviation of a match about the field
-  int corners = 0;           ///< of the left image
+  int corners = 0;           ///< of the left image, where it has texture
   int matched = 0;           ///< of them
   int used = 0;              ///< matches that the field explains
   bool known = false;        ///< enough matches agree; else the coefficients are not to be used

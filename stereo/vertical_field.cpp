@@ -13,6 +13,7 @@
 #include "stereo/harris_corners.h"
 #include "stereo/patch_alignment.h"
 #include "stereo/patch_search.h"
+#include "stereo/rectified_images.h"
 #include "stereo/vertical_field_fit.h"
 
 namespace vernier {
@@ -164,11 +165,24 @@ std::string tilt(double px, double sd, const char* far, const char* near) {
                      px >= 0 ? "lower" : "higher", sd, far, near);
 }
 
-}  // namespace
+/// Whether the pixels of a patch at half size have a source, asked at nine of them.
+bool is_valid(const ValidPixels& valid, cv::Point half_size) {
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const int x = 2 * (half_size.x + i * (half_px + 1)),
+                y = 2 * (half_size.y + j * (half_px + 1));
+      if (x < 0 || y < 0 || x >= valid.width_px || y >= valid.height_px || !valid(x, y))
+        return false;
+    }
+  }
+  return true;
+}
 
-VerticalField vertical_field(const RectifiedPair& pair,
-                             const DisparityRange& range,
-                             const VerticalFieldOptions& options) {
+/// `left_valid` may be nothing.
+VerticalField found_field(const RectifiedPair& pair,
+                          const ValidPixels* left_valid,
+                          const DisparityRange& range,
+                          const VerticalFieldOptions& options) {
   check(pair, range, options);
   const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
   if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
@@ -177,18 +191,35 @@ VerticalField vertical_field(const RectifiedPair& pair,
   auto corners = harris_corners(search.half_left, 0,
                                 {.count = options.corners, .cells = cells, .border_px = border_px});
   std::erase_if(corners, [&](const ImageCorner& corner) {
-    return !has_texture(search.half_left, pixel_of(corner), half_px);
+    const cv::Point p = pixel_of(corner);
+    return !has_texture(search.half_left, p, half_px) || (left_valid && !is_valid(*left_valid, p));
   });
   return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
                             size, options);
+}
+
+}  // namespace
+
+VerticalField vertical_field(const RectifiedPair& pair,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options) {
+  return found_field(pair, nullptr, range, options);
+}
+
+VerticalField vertical_field(const RectifiedImages& images,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options) {
+  return found_field(images.pair, &images.left_valid, range, options);
 }
 
 std::string describe(const VerticalField& field) {
   const Eigen::Vector3d& p = field.coefficients_px;
   const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
   if (!field.known && !field.unrectified) {
-    return fmt::format("too few corners match to tell whether one image lies lower ({} of {})",
-                       field.matched, field.corners);
+    return fmt::format(
+        "too few corners match, or too near each other, to tell whether one image lies lower ({} "
+        "of {})",
+        field.matched, field.corners);
   }
   if (!field.known) {
     return fmt::format(

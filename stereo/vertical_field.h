@@ -9,6 +9,8 @@
 
 namespace vernier {
 
+struct RectifiedImages;
+
 struct VerticalFieldOptions {
   int band_px = 5;           ///< rows above and below that are searched, 1 to 10
   int corners = 98;          ///< of the left image, spread evenly over it
@@ -57,6 +59,12 @@ struct VerticalField {
 /// The same for any number of threads. Throws Error on images of unequal size or with too few
 /// values, an empty range or options out of bounds.
 VerticalField vertical_field(const RectifiedPair& pair,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options = {});
+
+/// The same of rectified images (stereo/rectified_images.h); corners beside pixels that have no
+/// source are left out.
+VerticalField vertical_field(const RectifiedImages& images,
                              const DisparityRange& range,
                              const VerticalFieldOptions& options = {});
 

@@ -28,7 +28,7 @@ constexpr double least_share = 0.35;    // of the matches, that agree
 constexpr double most_residual_px = 1;  // of these
 constexpr double widest_sd_px = 0.5;    // of dy anywhere in the image
 constexpr int plenty = 40;              // corners of which …
-constexpr double hardly_any = 0.13;     // … no more match where the images do not belong together
+constexpr double hardly_any = 0.1;      // … no more match where the images do not belong together
 constexpr double chi2_3_999 = 16.266;   // 99.9 % of χ² with three degrees of freedom
 
 struct Problem {

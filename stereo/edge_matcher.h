@@ -18,7 +18,8 @@ struct EdgeMatcherOptions {
   double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
   double least_slanted_score = 0.8;  ///< the same where surfaces slant
   double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
-  double sigma_floor_px = 0;         ///< of refined points, added in squares
+  double sigma_floor_px =
+      0.2;  ///< of refined points, added in squares: what real images have beyond noise
 };
 
 /// What `edge` knows of a left edge point.

@@ -71,6 +71,8 @@ TEST(EdgeMatcherOnMiddlebury, DensityAndErrors) {
   EXPECT_GE(all.density / all.scenes, 0.95);
   EXPECT_LE(all.bad_1 / all.scenes, 0.02);
   EXPECT_LE(all.mismatch / all.scenes, 0.011);
+  EXPECT_GE(others.coverage / others.scenes, 0.92);  // the floor of sigma was fitted on the four
+  EXPECT_LE(others.coverage / others.scenes, 0.98);
 }
 
 TEST(EdgeMatcherOnAloe, HeldOut) {

@@ -186,7 +186,9 @@ PlaneScore score(test::LeafPlane plane, int pairs) {
     const double span =
         0.5 * (std::abs(plane.by_x) * plane.width_px + std::abs(plane.by_y) * plane.height_px);
     const auto most = static_cast<int>(plane.disparity_px + span + 6);
-    const auto found = match_edges(pair, points, {0, std::min(most, plane.width_px - 1)});
+    EdgeMatcherOptions options;
+    options.sigma_floor_px = 0;  // noise is all there is
+    const auto found = match_edges(pair, points, {0, std::min(most, plane.width_px - 1)}, options);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (std::abs(points[i].normal.x()) < 0.0872f) continue;
       const double x = points[i].row_x_px, truth = plane.disparity_at(x, points[i].y);

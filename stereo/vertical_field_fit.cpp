@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "calib/draw_sources.h"
 #include "calib/random.h"
 
 namespace vernier {
@@ -76,7 +77,7 @@ Vector3d best_triple(const Problem& problem) {
     return (problem.dy - problem.X * p).cwiseAbs().cwiseMin(near_px).squaredNorm();
   };
   double least = cost_of(best);
-  Draws draws({.seed = 1, .source = 96});
+  Draws draws({.seed = 1, .source = static_cast<std::uint32_t>(DrawSource::vertical_field)});
   const auto n = static_cast<std::uint32_t>(problem.dy.size());
   for (int i = 0; i < triples; ++i) {
     Matrix3d X;

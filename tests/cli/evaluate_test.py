@@ -62,10 +62,10 @@ class Evaluate(unittest.TestCase):
     def tearDownClass(cls):
         cls.temporary.cleanup()
 
-    def run_it(self, *more, left='left', right='right', truth='truth'):
+    def run_it(self, *more, left='left', right='right', truth='truth', most=24):
         return subprocess.run(
             [PROGRAM, 'evaluate', '--left', f'{left}.pgm', '--right', f'{right}.pgm', '--truth',
-             f'{truth}.pgm', '--truth-scale', '4', '--max-disparity', '24', *more],
+             f'{truth}.pgm', '--truth-scale', '4', '--max-disparity', str(most), *more],
             cwd=self.folder, capture_output=True, text=True)
 
     def complains(self, *more, of, **files):
@@ -110,7 +110,7 @@ class Evaluate(unittest.TestCase):
         self.complains(of='no edges', left='blank', right='blank')
         self.complains(of='small.pgm', truth='small')
         self.complains(of='exchanged', left='right', right='left')
-        self.complains('--max-disparity', '400', of='width')
+        self.complains(of='width', most=400)
         self.complains('--matcher', 'best', of='"best" is no matcher')
         self.complains('--picture', 'a.png', '--error-picture', './a.png', of='another output')
         done = subprocess.run([PROGRAM, 'evaluate', '--left', 'left.pgm'], cwd=self.folder,

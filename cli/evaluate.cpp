@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -28,10 +29,17 @@ struct Options {
   bool repair = false;
 };
 
+/// CPU time of this thread, and of programs that were run and have ended.
 double cpu_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+  rusage ended{};
+  getrusage(RUSAGE_CHILDREN, &ended);
+  const auto ms = [](const timeval& t) {
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+  };
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec) +
+         ms(ended.ru_utime) + ms(ended.ru_stime);
 }
 
 /// A pair with what is known of it.
@@ -136,6 +144,18 @@ void check_not_exchanged(const Matcher& matcher, const Scene& scene, const Run& 
 
 Json figures_json(const MatcherScore& s, double time_ms) {
   const EdgeFigures& f = s.all;
+  if (f.matched == 0) {  // no share of nothing
+    Json none{{"density", 0.0}};
+    for (const char* key : {"bad_0_5", "bad_1", "bad_2", "mismatch", "rms_inlier_px",
+                            "bias_inlier_px", "bad_1_smooth", "bad_1_discontinuity"}) {
+      none[key] = Json();
+    }
+    none["density_discontinuity"] = 0.0;
+    none["occluded_matched"] = static_cast<double>(s.occluded_matched) / std::max(1, s.occluded);
+    none["coverage_95"] = none["z_rms"] = Json();
+    none["time_ms"] = time_ms;
+    return none;
+  }
   return {{"density", f.density},
           {"bad_0_5", f.bad_0_5},
           {"bad_1", f.bad_1},
@@ -189,18 +209,19 @@ std::string header() {
 
 std::string line(const std::string& pair, const std::string& matcher, const Json& f) {
   const auto percent = [&](const char* key) {
-    return fmt::format("{:.2f} %", 100 * f.at(key).get<double>());
+    return f.at(key).is_null() ? "-" : fmt::format("{:.2f} %", 100 * f.at(key).get<double>());
   };
-  return fmt::format(
-      "{:<18} {:<10} {:>8.4f} {:>8} {:>8} {:>8} {:>8} {:>9.3f} {:>+8.3f} {:>9} "
-      "{:>9.1f}\n",
-      pair, matcher, f.at("density").get<double>(), percent("bad_0_5"), percent("bad_1"),
-      percent("bad_2"), percent("mismatch"), f.at("rms_inlier_px").get<double>(),
-      f.at("bias_inlier_px").get<double>(), percent("bad_1_discontinuity"),
-      f.at("time_ms").get<double>());
+  const auto pixels = [&](const char* key) {
+    return f.at(key).is_null() ? "-" : fmt::format("{:.3f}", f.at(key).get<double>());
+  };
+  return fmt::format("{:<18} {:<10} {:>8.4f} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>9} {:>9.1f}\n",
+                     pair, matcher, f.at("density").get<double>(), percent("bad_0_5"),
+                     percent("bad_1"), percent("bad_2"), percent("mismatch"),
+                     pixels("rms_inlier_px"), pixels("bias_inlier_px"),
+                     percent("bad_1_discontinuity"), f.at("time_ms").get<double>());
 }
 
-void write_pictures(const Options& options, const Scene& scene, const Run& run) {
+void write_pictures(const Options& options, const Scene& scene, const Run& run, OutlineRule rule) {
   if (!options.picture.empty()) {
     write_disparity_picture(scene.pair.left, scene.edges, run.found, scene.file.range,
                             options.picture);
@@ -209,10 +230,10 @@ void write_pictures(const Options& options, const Scene& scene, const Run& run) 
   std::vector<double> errors;
   for (std::size_t i = 0; i < scene.edges.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
-    const bool asked = truth.known && !truth.occluded;
+    const bool asked = truth.known && !is_occluded(truth, rule);
     errors.push_back(!asked                    ? std::numeric_limits<double>::quiet_NaN()
                      : !run.found[i].matched() ? std::numeric_limits<double>::infinity()
-                                               : run.found[i].disparity_px - truth.disparity_px);
+                                               : error_px(run.found[i], truth, rule));
   }
   write_error_picture(scene.pair.left, scene.edges, errors, options.error_picture);
 }
@@ -253,7 +274,7 @@ void run(const Options& options, Session& session) {
       text += line(file.name, matchers[m].name, json);
       of_scene["matchers"][matchers[m].name] = json;
       of_scene["matchers"][matchers[m].name]["by_angle"] = angles_json(result.score);
-      if (m == 0 && &file == files.data()) write_pictures(options, scene, result);
+      if (m == 0 && &file == files.data()) write_pictures(options, scene, result, how.outline);
     }
     scenes.push_back(std::move(of_scene));
     progress.update(++done, static_cast<int>(files.size()));
@@ -281,10 +302,13 @@ void add_pair_options(CLI::App* verb, Options& o) {
   }
   verb->add_option("--truth-scale", o.scene.truth_scale, "values a pixel of the truth")
       ->check(finite_and_positive)
+      ->excludes(scenes)
       ->capture_default_str();
   verb->add_option("--max-disparity", o.scene.range.most_px, "largest disparity searched, pixels")
+      ->excludes(scenes)
       ->capture_default_str();
   verb->add_option("--min-disparity", o.scene.range.least_px, "smallest one")
+      ->excludes(scenes)
       ->capture_default_str();
 }
 

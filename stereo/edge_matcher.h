@@ -16,7 +16,7 @@ struct EdgeMatcherOptions {
   double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
   bool refine = true;          ///< least squares, with a standard deviation for each point
   double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
-  double least_slanted_score = 0.8;  ///< the same where surfaces slant
+  double least_slanted_score = 0.7;  ///< the same where surfaces slant
   double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
   double sigma_floor_px =
       0.2;  ///< of refined points, added in squares: what real images have beyond noise

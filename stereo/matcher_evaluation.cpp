@@ -29,23 +29,6 @@ bool is_asked(const EdgePoint& edge,
          edge.x >= options.border_px && edge.x < width_px - options.border_px;
 }
 
-/// Signed where the truth is one value, else the distance to the nearest that counts.
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule) {
-  const double error = found.disparity_px - truth.disparity_px;
-  if (rule == OutlineRule::foreground || !truth.discontinuity) return error;
-  double least = std::abs(error);
-  for (const float surface : {truth.own_px, truth.least_px, truth.most_px}) {
-    if (!std::isnan(surface)) {
-      least = std::min(least, std::abs(static_cast<double>(found.disparity_px) - surface));
-    }
-  }
-  return least;
-}
-
-bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
-  return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;
-}
-
 /// Counts towards EdgeFigures.
 struct Tally {
   EdgeFigures of;
@@ -87,6 +70,22 @@ int angle_bin(const EdgePoint& edge) {
 }
 
 }  // namespace
+
+bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
+  return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;
+}
+
+double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule) {
+  const double error = found.disparity_px - truth.disparity_px;
+  if (rule == OutlineRule::foreground || !truth.discontinuity) return error;
+  double least = std::abs(error);
+  for (const float surface : {truth.own_px, truth.least_px, truth.most_px}) {
+    if (!std::isnan(surface)) {
+      least = std::min(least, std::abs(static_cast<double>(found.disparity_px) - surface));
+    }
+  }
+  return least;
+}
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,
@@ -141,6 +140,7 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
     float confidence;
     bool visible, bad, wrong;
   };
+  constexpr float unsure = -std::numeric_limits<float>::infinity();
   std::vector<Match> matches;
   int visible = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -149,7 +149,8 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
     visible += shown;
     if (!found[i].matched()) continue;
     const double error = std::abs(error_px(found[i], truth[i], options.outline));
-    matches.push_back({found[i].confidence, shown, error > inlier_px, error > mismatch_px});
+    matches.push_back({std::isnan(found[i].confidence) ? unsure : found[i].confidence, shown,
+                       error > inlier_px, error > mismatch_px});
   }
   std::stable_sort(matches.begin(), matches.end(),
                    [](const Match& a, const Match& b) { return a.confidence > b.confidence; });
@@ -159,8 +160,9 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
   for (int k = 1; k <= points; ++k) {
     const auto wanted =
         matches.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(points);
-    while (kept < matches.size() &&
-           (kept < wanted || matches[kept].confidence == matches[kept - 1].confidence)) {
+    while (
+        kept < matches.size() &&
+        (kept < wanted || (kept > 0 && matches[kept].confidence == matches[kept - 1].confidence))) {
       const Match& match = matches[kept++];
       seen += match.visible;
       bad += match.visible && match.bad;

@@ -45,6 +45,13 @@ struct MatcherScore {
   double coverage_95 = 0, z_rms = 0;
 };
 
+/// Whether the right image does not show an edge, by the rule.
+bool is_occluded(const TruthAtEdge& truth, OutlineRule rule);
+
+/// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
+/// that counts.
+double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule);
+
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,
                       const std::vector<TruthAtEdge>& truth,

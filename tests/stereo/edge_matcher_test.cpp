@@ -12,6 +12,7 @@
 #include "stereo/canny_edges.h"
 #include "stereo/edge_support.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/stretched_image.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 
@@ -97,6 +98,23 @@ TEST_F(Support, CostsAreHammingDistances) {
     census_costs(at, p, costs.data());
     for (int d = 0; d < disparities; ++d) {
       ASSERT_EQ(costs[static_cast<std::size_t>(d)], cost(p, d)) << p << " " << d;
+    }
+  }
+}
+
+TEST_F(Support, AViewStretchedByOneIsTheImageItself) {
+  // The least of it and the plain costs, without a penalty, are the plain costs; and where the
+  // plain image is of something else, those of the view.
+  const GreyLevels own = random_image(width, height, 204);
+  const GreyLevels turned = mirrored(stretched(mirrored(own), 1));
+  std::vector<StretchedView> views{{1, mirrored(census_transform(turned, 120))}};
+  const CensusImage noise = mirrored(census_transform(random_image(width, height, 205), 40));
+  CensusCosts at{points, left, noise, first, Facing::opposite, disparities, &views, -600};
+  std::vector<std::int16_t> costs(disparities);
+  for (int p = 0; p < points.size(); ++p) {
+    census_costs(at, p, costs.data());
+    for (int d = 0; d < disparities; ++d) {
+      ASSERT_EQ(costs[static_cast<std::size_t>(d)] + 600, cost(p, d)) << p << " " << d;
     }
   }
 }
@@ -237,6 +255,9 @@ TEST(EdgeMatcher, FollowsSlantedPlanes) {
   const PlaneScore steep = score({.disparity_px = 90, .by_x = 0.5}, 3);  // gradient 0.67
   EXPECT_GT(steep.density, 0.92);
   EXPECT_LT(steep.bad_1, 0.015);
+  const PlaneScore steeper = score({.disparity_px = 105, .by_x = 0.6}, 2);  // 0.86
+  EXPECT_GT(steeper.density, 0.88);
+  EXPECT_LT(steeper.bad_1, 0.025);
   const PlaneScore other = score({.disparity_px = 170, .by_x = -1}, 3);  // the other way
   EXPECT_GT(other.density, 0.92);
   EXPECT_LT(other.bad_1, 0.03);
@@ -289,11 +310,20 @@ TEST(EdgeMatcher, NamesWhatItCannotTake) {
             }).find("width"),
             std::string::npos);
   EXPECT_TRUE(match_edges(pair, {}, {0, 20}).empty());
+  std::vector<EdgePoint> outside(1);
+  outside[0].y = 40;
+  EXPECT_NE(test::error_message([&] {
+              match_edges(pair, outside, {0, 20});
+            }).find("outside"),
+            std::string::npos);
+  const RectifiedPair strip{random_image(2200, 12, 3), random_image(2200, 12, 4)};
+  const std::vector<EdgePoint> many = canny_edges(strip.left);
+  EXPECT_EQ(match_edges(strip, many, {-2190, 2190}).size(), many.size());
   const GreyLevels blank{60, 40, std::vector<float>(2400, 100.0f)};
   EXPECT_TRUE(canny_edges(blank).empty());
 }
 
-/// Two edges whose truth is known and one that the right image does not show.
+/// Five edges; the right image does not show the fourth, and the fifth is at a step.
 class Evaluation : public testing::Test {
  protected:
   Evaluation() {
@@ -355,6 +385,14 @@ TEST_F(Evaluation, TheCurveFallsWithConfidence) {
   EXPECT_DOUBLE_EQ(bad_1_at(curve, 0.875), 0.125);
   EXPECT_DOUBLE_EQ(bad_1_at(curve, 2), 0.25);
   EXPECT_DOUBLE_EQ(bad_1_at(curve, 0.1), 0);
+}
+
+TEST_F(Evaluation, MoreCurvePointsThanMatches) {
+  for (std::size_t i = 2; i < found.size(); ++i) found[i] = {};
+  found[0].confidence = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<CurvePoint> curve = density_curve(edges, found, truth, 100, 10);
+  ASSERT_FALSE(curve.empty());
+  EXPECT_DOUBLE_EQ(curve.front().density, 0.5);
 }
 
 TEST_F(Evaluation, NeedsOneOfEach) {

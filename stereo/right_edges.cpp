@@ -6,58 +6,54 @@
 #include <cmath>
 
 namespace vernier {
-namespace {
-
-/// Where an edge crosses a row, in a straight line through its place.
-float crossing_px(const EdgePoint& edge, int y) {
-  if (edge.y == y) return edge.row_x_px;
-  return edge.pixel_px.x() -
-         (static_cast<float>(y) - edge.pixel_px.y()) * edge.normal.y() / edge.normal.x();
-}
-
-}  // namespace
 
 RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
-    : options_(options),
-      least_sine_(static_cast<float>(std::sin(0.5 * options.least_angle_rad))),
+    : reach_px_(static_cast<float>(options.edge_reach_px)),
+      most_ratio_(static_cast<float>(options.most_contrast_ratio)),
       least_cosine_(static_cast<float>(std::cos(options.most_turn_rad))),
       width_(right.width_px),
-      height_(right.height_px),
-      edges_(canny_edges(right, options.right_edges)),
-      at_pixel_(right.values.size(), -1) {
-  for (std::size_t k = 0; k < edges_.size(); ++k) {
-    const EdgePoint& edge = edges_[k];
-    if (std::abs(edge.normal.x()) < least_sine_) continue;
-    at_pixel_[static_cast<std::size_t>(edge.y) * static_cast<std::size_t>(width_) +
-              static_cast<std::size_t>(edge.x)] = static_cast<int>(k);
+      height_(right.height_px) {
+  // A view turns edges a little; those along the row cross it nowhere.
+  const auto least_sine = static_cast<float>(std::sin(0.5 * options.least_angle_rad));
+  const std::vector<EdgePoint> edges = canny_edges(right, options.right_edges);
+  crossings_.reserve(edges.size());
+  from_pixel_.reserve(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_));
+  auto edge = edges.begin();
+  for (int y = 0; y < height_; ++y) {
+    int x = 0;
+    for (; edge != edges.end() && edge->y == y; ++edge) {
+      if (std::abs(edge->normal.x()) < least_sine) continue;
+      for (; x <= edge->x; ++x) from_pixel_.push_back(static_cast<int>(crossings_.size()));
+      crossings_.push_back({edge->row_x_px, edge->pixel_px.x(), edge->pixel_px.y(),
+                            -edge->normal.y() / edge->normal.x(), edge->normal, edge->strength});
+    }
+    for (; x <= width_; ++x) from_pixel_.push_back(static_cast<int>(crossings_.size()));
   }
 }
 
-bool RightEdges::is_like(const EdgePoint& left, const EdgePoint& right) const {
-  const auto most = static_cast<float>(options_.most_contrast_ratio);
+bool RightEdges::is_like(const EdgePoint& left, const Crossing& right) const {
   return left.normal.x() * right.normal.x() > 0 && left.normal.dot(right.normal) >= least_cosine_ &&
-         right.strength <= most * left.strength && left.strength <= most * right.strength;
+         right.strength <= most_ratio_ * left.strength &&
+         left.strength <= most_ratio_ * right.strength;
 }
 
 float RightEdges::nearest_px(const EdgePoint& left, float x_px) const {
   constexpr float from_pixel_px = 1.5f;  // that an edge is within in its row
-  const auto reach = static_cast<float>(options_.edge_reach_px);
+  const float reach = reach_px_ + from_pixel_px;
   const auto column = [&](float x) {
-    return std::clamp(static_cast<int>(std::lround(x)), 0, width_ - 1);
+    return static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(width_)));
   };
-  const int first = column(x_px - reach - from_pixel_px);
-  const int last = column(x_px + reach + from_pixel_px);
-  float least = reach, nearest = std::numeric_limits<float>::quiet_NaN();
+  const int first = column(x_px - reach + 1), end = column(x_px + reach + 1);
+  float least = reach_px_, nearest = std::numeric_limits<float>::quiet_NaN();
   for (int y = std::max(0, left.y - 1); y <= std::min(height_ - 1, left.y + 1); ++y) {
     const int* const row =
-        at_pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    for (int x = first; x <= last; ++x) {
-      if (row[x] < 0) continue;
-      const EdgePoint& edge = edges_[static_cast<std::size_t>(row[x])];
-      const float at = crossing_px(edge, left.y);
+        from_pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1);
+    for (int k = row[first]; k < row[end]; ++k) {
+      const Crossing& edge = crossings_[static_cast<std::size_t>(k)];
+      const float down = static_cast<float>(left.y) - edge.place_y_px;
+      const float at = y == left.y ? edge.x_px : edge.place_x_px + down * edge.slope;
       const float off = std::abs(at - x_px);
-      if (off > least || !is_like(left, edge)) continue;
-      if (off == least && at != nearest) continue;
+      if (off > least || (off == least && !std::isnan(nearest)) || !is_like(left, edge)) continue;
       least = off;
       nearest = at;
     }

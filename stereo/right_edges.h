@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// Edges of the right image by their pixels, to find those that a left edge may be seen as.
+/// Edges of the right image by their pixels, to find the one that a left edge is seen as.
 class RightEdges {
  public:
   RightEdges(const GreyLevels& right, const StretchOptions& options);
@@ -18,13 +18,18 @@ class RightEdges {
   float nearest_px(const EdgePoint& left, float x_px) const;
 
  private:
-  bool is_like(const EdgePoint& left, const EdgePoint& right) const;
+  /// An edge that crosses its own row at x_px and others in a straight line.
+  struct Crossing {
+    float x_px, place_x_px, place_y_px, slope;
+    Eigen::Vector2f normal;
+    float strength;
+  };
+  bool is_like(const EdgePoint& left, const Crossing& right) const;
 
-  StretchOptions options_;
-  float least_sine_, least_cosine_;
+  float reach_px_, most_ratio_, least_cosine_;
   int width_, height_;
-  std::vector<EdgePoint> edges_;
-  std::vector<int> at_pixel_;  ///< an edge's index, −1 for none
+  std::vector<Crossing> crossings_;  ///< by row, then by pixel
+  std::vector<int> from_pixel_;      ///< the first crossing from a pixel on; one more a row
 };
 
 }  // namespace vernier

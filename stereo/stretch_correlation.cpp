@@ -77,16 +77,17 @@ void decide(const StretchOptions& options, StretchBlocks& grid) {
   }
 }
 
-/// Disparities that kept blocks of `from`, each of its pixels `scale` wide, had about every block;
-/// the whole range where there are none.
-std::vector<DisparityRange> ranges_about(const StretchBlocks& from,
-                                         int scale,
-                                         const StretchBlocks& grid,
-                                         const DisparityRange& range,
-                                         const StretchOptions& options) {
-  std::vector<DisparityRange> ranges;
+/// What kept blocks of `from`, each of its pixels `scale` wide, had about every block; everything
+/// where there are none.
+std::vector<BlockRange> ranges_about(const StretchBlocks& from,
+                                     int scale,
+                                     const StretchBlocks& grid,
+                                     const DisparityRange& range,
+                                     const StretchOptions& options) {
+  std::vector<BlockRange> ranges;
   for (const StretchBlock& block : grid.blocks) {
-    float least = std::numeric_limits<float>::infinity(), most = -least;
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    float least_px = infinite, most_px = -infinite, least = infinite, most = -infinite;
     const auto at = [scale](int pixel, int step, int count) {
       return std::min(count - 1, pixel / scale / step);
     };
@@ -94,17 +95,19 @@ std::vector<DisparityRange> ranges_about(const StretchBlocks& from,
     const int row = at(block.y, options.step_y_px, from.rows);
     for_each_about(from, column, row, [&](const StretchBlock& other) {
       if (other.fate != BlockFate::kept) return;
-      least = std::min(least, static_cast<float>(scale) * other.disparity_px);
-      most = std::max(most, static_cast<float>(scale) * other.disparity_px);
+      least_px = std::min(least_px, static_cast<float>(scale) * other.disparity_px);
+      most_px = std::max(most_px, static_cast<float>(scale) * other.disparity_px);
+      least = std::min(least, other.stretch);
+      most = std::max(most, other.stretch);
     });
-    DisparityRange of_block = range;
-    if (least <= most) {
-      const int from_px = static_cast<int>(std::floor(least)) - options.margin_px;
-      const int to_px = static_cast<int>(std::ceil(most)) + options.margin_px;
-      of_block.least_px = std::clamp(from_px, range.least_px, range.most_px);
-      of_block.most_px = std::clamp(to_px, range.least_px, range.most_px);
-    }
-    ranges.push_back(of_block);
+    BlockRange& of_block = ranges.emplace_back(BlockRange{range});
+    if (least_px > most_px) continue;
+    const int from_px = static_cast<int>(std::floor(least_px)) - options.margin_px;
+    const int to_px = static_cast<int>(std::ceil(most_px)) + options.margin_px;
+    of_block.disparities = {std::clamp(from_px, range.least_px, range.most_px),
+                            std::clamp(to_px, range.least_px, range.most_px)};
+    of_block.least_stretch = least;
+    of_block.most_stretch = most;
   }
   return ranges;
 }
@@ -142,50 +145,64 @@ StretchBlocks coarser_blocks(const RectifiedPair& pair,
 }
 
 /// Ranges that the last frame leaves, and the whole one for some blocks all the same.
-std::vector<DisparityRange> ranges_after(const StretchBlocks& last,
-                                         std::uint32_t frame,
-                                         const StretchBlocks& grid,
-                                         const DisparityRange& range,
-                                         const StretchOptions& options) {
+std::vector<BlockRange> ranges_after(const StretchBlocks& last,
+                                     std::uint32_t frame,
+                                     const StretchBlocks& grid,
+                                     const DisparityRange& range,
+                                     const StretchOptions& options) {
   if (last.columns != grid.columns || last.rows != grid.rows) {
     throw Error("last frame", "its blocks are of images of another size or of other options",
                 "begin a sequence anew where these change");
   }
-  std::vector<DisparityRange> ranges = ranges_about(last, 1, grid, range, options);
+  std::vector<BlockRange> ranges = ranges_about(last, 1, grid, range, options);
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     Draws draws({.seed = options.seed,
                  .feature = static_cast<std::uint32_t>(k),
                  .source = static_cast<std::uint32_t>(DrawSource::full_search),
                  .frame = frame});
-    if (draws.uniform() < options.full_search_share) ranges[k] = range;
+    if (draws.uniform() < options.full_search_share) ranges[k] = {range};
   }
   return ranges;
 }
 
-/// The kept block of the best score of those that hold a pixel; null if there is none.
-const StretchBlock* best_block_at(const StretchBlocks& grid,
-                                  const StretchOptions& options,
-                                  int x,
-                                  int y) {
-  const int half_x = options.width_px / 2, half_y = options.height_px / 2;
-  const auto first = [](int at, int half, int step) { return std::max(0, (at - half) / step - 1); };
-  const auto last = [](int at, int half, int step, int count) {
-    return std::min(count - 1, (at + half) / step);
-  };
-  const StretchBlock* best = nullptr;
-  const int rows_end = last(y, half_y, options.step_y_px, grid.rows);
-  const int columns_end = last(x, half_x, options.step_x_px, grid.columns);
-  for (int row = first(y, half_y, options.step_y_px); row <= rows_end; ++row) {
-    for (int column = first(x, half_x, options.step_x_px); column <= columns_end; ++column) {
-      const StretchBlock& block =
-          grid.blocks[static_cast<std::size_t>(row * grid.columns + column)];
+/// For every pixel the kept block of the best score that holds it, −1 for none.
+class BestBlocks {
+ public:
+  BestBlocks(const StretchBlocks& grid, const StretchOptions& options, int width, int height)
+      : width_(static_cast<std::size_t>(width)),
+        best_(width_ * static_cast<std::size_t>(height), -1),
+        score_(best_.size(), -1) {
+    const int half_x = options.width_px / 2, half_y = options.height_px / 2;
+    for (std::size_t k = 0; k < grid.blocks.size(); ++k) {
+      const StretchBlock& block = grid.blocks[k];
       if (block.fate != BlockFate::kept) continue;
-      if (std::abs(block.x - x) > half_x || std::abs(block.y - y) > half_y) continue;
-      if (!best || block.score > best->score) best = &block;
+      const int first = std::max(0, block.x - half_x), end = std::min(width, block.x + half_x + 1);
+      for (int y = std::max(0, block.y - half_y); y < std::min(height, block.y + half_y + 1); ++y) {
+        paint(static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(first), end - first,
+              static_cast<int>(k), block.score);
+      }
     }
   }
-  return best;
-}
+
+  int at(int x, int y) const {
+    return best_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)];
+  }
+
+ private:
+  void paint(std::size_t first, int n, int block, float score) {
+    int* const best = best_.data() + first;
+    float* const scores = score_.data() + first;
+    for (int x = 0; x < n; ++x) {
+      const bool better = score > scores[x];
+      best[x] = better ? block : best[x];
+      scores[x] = better ? score : scores[x];
+    }
+  }
+
+  std::size_t width_;
+  std::vector<int> best_;
+  std::vector<float> score_;
+};
 
 }  // namespace
 
@@ -198,14 +215,14 @@ StretchBlocks stretch_blocks(const RectifiedPair& pair,
   check_pair(pair, range);
   check_options(options);
   StretchBlocks grid = block_grid(pair.left.width_px, pair.left.height_px, left_edges, options);
-  std::vector<DisparityRange> ranges;
+  std::vector<BlockRange> ranges;
   if (last) {
     ranges = ranges_after(*last, frame, grid, range, options);
   } else if (options.halvings > 0) {
     const StretchBlocks coarser = coarser_blocks(pair, left_edges, range, options);
     if (!coarser.blocks.empty()) ranges = ranges_about(coarser, 2, grid, range, options);
   }
-  if (ranges.empty()) ranges.assign(grid.blocks.size(), range);
+  if (ranges.empty()) ranges.assign(grid.blocks.size(), BlockRange{range});
   search_blocks(pair, ranges, options, grid);
   decide(options, grid);
   return grid;
@@ -221,12 +238,14 @@ StretchFrame match_by_stretch(const RectifiedPair& pair,
   frame.blocks = stretch_blocks(pair, left_edges, range, options, last ? &last->blocks : nullptr,
                                 frame.number);
   const RightEdges right(pair.right, options);
+  const BestBlocks best_blocks(frame.blocks, options, pair.left.width_px, pair.left.height_px);
   const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
   for (const EdgePoint& edge : left_edges) {
     EdgeDisparity& at = frame.at_edges.emplace_back();
     if (std::abs(edge.normal.x()) < least_sine) continue;
-    const StretchBlock* const block = best_block_at(frame.blocks, options, edge.x, edge.y);
-    if (!block) continue;
+    const int best = best_blocks.at(edge.x, edge.y);
+    if (best < 0) continue;
+    const StretchBlock* const block = &frame.blocks.blocks[static_cast<std::size_t>(best)];
     const float across = edge.row_x_px - static_cast<float>(block->x);
     const float down = static_cast<float>(edge.y - block->y);
     const float disparity =

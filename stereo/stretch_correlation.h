@@ -25,7 +25,7 @@ struct StretchOptions {
   double least_angle_rad = 0.0873;   ///< edges nearer to the row (5°) are left out
   StretchFilter filter = StretchFilter::rank;
   double scale_px = 1;           ///< σ of the derivative's Gaussian
-  int rank_reach_px = 5;         ///< of ranks, to either side
+  int rank_reach_px = 4;         ///< of ranks, to either side
   int stretches = 7;             ///< widths M that are tried, an odd number, from N / r to r N …
   double most_gradient = 1;      ///< … with r = (2 + this) / (2 − this); also between blocks
   int shears = 1;                ///< du_right / dv that are tried, an odd number, evenly …

@@ -20,25 +20,26 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
 
-constexpr int block = 256;
+namespace hn = hwy::HWY_NAMESPACE;
 
-/// Ranks of up to `block` pixels in squares, half the squares' pixels less. `rows` are those from
-/// `reach` above to `reach` below, each from `reach` pixels before the first; loops are for the
-/// compiler to vectorise.
+/// Ranks of n pixels in squares, half the squares' pixels less; more are written, up to a vector.
+/// `rows` are those from `reach` above to `reach` below, each from `reach` pixels before the first.
 void ranks(const std::int16_t* const* rows, int reach, int n, std::int16_t* out) {
-  const std::int16_t* const centre = rows[reach] + reach;
+  const hn::ScalableTag<std::int16_t> lanes;
   const int side = 2 * reach + 1;
-  std::int16_t count[block] = {};
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const std::int16_t* const there = rows[j] + i;
-      for (int x = 0; x < block; ++x) {
-        count[x] = static_cast<std::int16_t>(count[x] + (there[x] < centre[x] ? 1 : 0));
+  const auto half = hn::Set(lanes, static_cast<std::int16_t>(side * side / 2));
+  for (int x = 0; x < n; x += static_cast<int>(hn::Lanes(lanes))) {
+    const auto centre = hn::LoadU(lanes, rows[reach] + reach + x);
+    auto count = hn::Neg(half);
+    for (int j = 0; j < side; ++j) {
+      const std::int16_t* const row = rows[j] + x;
+      for (int i = 0; i < side; ++i) {
+        const auto darker = hn::Lt(hn::LoadU(lanes, row + i), centre);
+        count = hn::Sub(count, hn::VecFromMask(lanes, darker));
       }
     }
+    hn::StoreU(count, lanes, out + x);
   }
-  const auto half = static_cast<std::int16_t>(side * side / 2);
-  for (int x = 0; x < n; ++x) out[x] = static_cast<std::int16_t>(count[x] - half);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -52,11 +53,29 @@ HWY_EXPORT(ranks);
 
 namespace {
 
-constexpr int pixels_at_once = 256;
+constexpr int vector_pixels = 64;  // and more of a row that vectors may read or write
 
 std::int16_t whole(float value) {
   constexpr float most = most_filtered;
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -most, most)));
+}
+
+void repeat_borders(FilteredImage& image) {
+  for (int plane = 0; plane < image.planes; ++plane) {
+    for (int y = 0; y < image.height; ++y) {
+      std::int16_t* const row = image.row(plane, y);
+      std::fill_n(row - image.margin_x, image.margin_x, row[0]);
+      std::fill_n(row + image.width, image.margin_x, row[image.width - 1]);
+    }
+    for (int y = 1; y <= image.margin_y; ++y) {
+      const auto copy = [&](int from, int to) {
+        std::copy_n(image.row(plane, from) - image.margin_x, image.stride(),
+                    image.row(plane, to) - image.margin_x);
+      };
+      copy(0, -y);
+      copy(image.height - 1, image.height - 1 + y);
+    }
+  }
 }
 
 void grey(const GreyLevels& image, FilteredImage& to) {
@@ -91,28 +110,30 @@ void derivative(const GreyLevels& image, double scale_px, FilteredImage& to) {
 FilteredImage fine(const GreyLevels& image, int margin_x, int margin_y) {
   constexpr float steps = 64;
   FilteredImage result{image.width_px, image.height_px, 1, margin_x, margin_y, {}};
-  const PaddedImage padded(image, std::max(margin_x, margin_y));
-  for (int y = -margin_y; y < image.height_px + margin_y; ++y) {
-    const float* const row = padded.row(y);
-    for (int x = -margin_x; x < image.width_px + margin_x; ++x) {
-      const float value = std::clamp(steps * row[x], -32000.0f, 32000.0f);
-      result.values.push_back(static_cast<std::int16_t>(value));
+  result.values.resize(result.stride() * static_cast<std::size_t>(image.height_px + 2 * margin_y));
+  for (int y = 0; y < image.height_px; ++y) {
+    const float* const from =
+        image.values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(result.width);
+    std::int16_t* const to = result.row(0, y);
+    for (int x = 0; x < result.width; ++x) {
+      const float level = std::min(std::max(steps * from[x], -32000.0f), 32000.0f);
+      to[x] = static_cast<std::int16_t>(static_cast<int>(level));
     }
   }
+  repeat_borders(result);
   return result;
 }
 
 void rank(const GreyLevels& image, int reach, FilteredImage& to) {
-  const FilteredImage levels = fine(image, reach + pixels_at_once, reach);
+  const FilteredImage levels = fine(image, reach + vector_pixels, reach);
   std::vector<const std::int16_t*> rows(static_cast<std::size_t>(2 * reach + 1));
+  std::vector<std::int16_t> row(static_cast<std::size_t>(to.width + vector_pixels));
   for (int y = 0; y < to.height; ++y) {
-    for (int x = 0; x < to.width; x += pixels_at_once) {
-      for (int j = -reach; j <= reach; ++j) {
-        rows[static_cast<std::size_t>(j + reach)] = levels.row(0, y + j) + x - reach;
-      }
-      HWY_DYNAMIC_DISPATCH(ranks)
-      (rows.data(), reach, std::min(pixels_at_once, to.width - x), to.row(0, y) + x);
+    for (int j = -reach; j <= reach; ++j) {
+      rows[static_cast<std::size_t>(j + reach)] = levels.row(0, y + j) - reach;
     }
+    HWY_DYNAMIC_DISPATCH(ranks)(rows.data(), reach, to.width, row.data());
+    std::copy_n(row.data(), to.width, to.row(0, y));
   }
 }
 
@@ -132,24 +153,6 @@ void census(const GreyLevels& image, FilteredImage& to) {
         }
       }
       ++plane;
-    }
-  }
-}
-
-void repeat_borders(FilteredImage& image) {
-  for (int plane = 0; plane < image.planes; ++plane) {
-    for (int y = 0; y < image.height; ++y) {
-      std::int16_t* const row = image.row(plane, y);
-      std::fill_n(row - image.margin_x, image.margin_x, row[0]);
-      std::fill_n(row + image.width, image.margin_x, row[image.width - 1]);
-    }
-    for (int y = 1; y <= image.margin_y; ++y) {
-      const auto copy = [&](int from, int to) {
-        std::copy_n(image.row(plane, from) - image.margin_x, image.stride(),
-                    image.row(plane, to) - image.margin_x);
-      };
-      copy(0, -y);
-      copy(image.height - 1, image.height - 1 + y);
     }
   }
 }

@@ -84,30 +84,32 @@ void add_row_sums(const std::int16_t* pairs,
   }
 }
 
-/// For the compiler to vectorise over rows.
+/// A vector of rows at a time.
 void spread_weights(const StretchWarp& warp, const std::int16_t* left, std::int32_t* weights) {
-  constexpr int at_once = 16;
+  const hn::CappedTag<std::int16_t, 16> rows;
   const int stride = StretchWarp::row_stride(warp.rows);
-  constexpr int most_places = 256;
-  std::int16_t sums[most_places * at_once];
-  for (int j = 0; j < stride; j += at_once) {
-    std::fill_n(sums, 2 * warp.pairs * at_once, std::int16_t{0});
+  for (int j = 0; j < warp.rows; j += static_cast<int>(hn::Lanes(rows))) {
+    auto* to = reinterpret_cast<std::int16_t*>(weights + j);
+    auto here = hn::Zero(rows), next = hn::Zero(rows), before = hn::Zero(rows);
+    int place = warp.offset[0];
+    const auto advance = [&]() HWY_ATTR {
+      if ((place - warp.offset[0]) % 2 == 1) {
+        hn::StoreInterleaved2(before, here, rows, to);
+        to += 2 * stride;
+      }
+      before = here;
+      here = next;
+      next = hn::Zero(rows);
+      ++place;
+    };
     for (int i = 0; i < warp.width; ++i) {
       const auto k = static_cast<std::size_t>(i * stride);
-      const std::int16_t* const from = left + k + static_cast<std::size_t>(j);
-      std::int16_t* const to = sums + (warp.place[k] - warp.offset[0]) * at_once;
-      const std::int16_t near = warp.near[k], far = warp.far[k];
-      for (int r = 0; r < at_once; ++r) {
-        to[r] = static_cast<std::int16_t>(to[r] + near * from[r]);
-        to[r + at_once] = static_cast<std::int16_t>(to[r + at_once] + far * from[r]);
-      }
+      while (place < warp.place[k]) advance();
+      const auto values = hn::LoadU(rows, left + k + static_cast<std::size_t>(j));
+      here = hn::Add(here, hn::Mul(values, hn::Set(rows, warp.near[k])));
+      next = hn::Add(next, hn::Mul(values, hn::Set(rows, warp.far[k])));
     }
-    for (int t = 0; t < warp.pairs; ++t) {
-      const std::int16_t* const from = sums + 2 * t * at_once;
-      for (int r = 0; r < at_once; ++r) {
-        weights[t * stride + j + r] = pair_of(from[r], from[r + at_once]);
-      }
-    }
+    while (place < warp.offset[0] + 2 * warp.pairs) advance();
   }
 }
 
@@ -121,6 +123,23 @@ void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32
   for (int k = 0; k < count; ++k) {
     weights[k] = pair_of(static_cast<std::int16_t>(left[k] * near[k]),
                          static_cast<std::int16_t>(left[k] * far[k]));
+  }
+}
+
+void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse) {
+  // Below a hundredth of variance there is nothing to compare.
+  constexpr float least_variance = 0.01f * StretchWarp::steps * StretchWarp::steps;
+  const auto least = hn::Set(real, count * least_variance);
+  const auto all = hn::Set(real, count), one = hn::Set(real, 1.0f);
+  for (int x = 0; x < n; x += static_cast<int>(hn::Lanes(real))) {
+    auto sum = hn::Zero(real), square = hn::Zero(real);
+    for (std::size_t j = 0; j < rows.sums.size(); ++j) {
+      sum = hn::Add(sum, hn::LoadU(real, rows.sums[j] + x));
+      square = hn::Add(square, hn::LoadU(real, rows.squares[j] + x));
+    }
+    const auto spread = hn::Sub(square, hn::Div(hn::Mul(sum, sum), all));
+    hn::StoreU(sum, real, sums + x);
+    hn::StoreU(hn::Div(one, hn::Sqrt(hn::Max(spread, least))), real, inverse + x);
   }
 }
 
@@ -183,6 +202,7 @@ namespace vernier {
 
 HWY_EXPORT(add_row_sums);
 HWY_EXPORT(block_weights);
+HWY_EXPORT(window_sums);
 HWY_EXPORT(block_scores);
 
 void add_row_sums(const std::int16_t* pairs,
@@ -192,6 +212,10 @@ void add_row_sums(const std::int16_t* pairs,
                   float* sums,
                   float* squares) {
   HWY_DYNAMIC_DISPATCH(add_row_sums)(pairs, warp, row, n, sums, squares);
+}
+
+void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse) {
+  HWY_DYNAMIC_DISPATCH(window_sums)(rows, n, count, sums, inverse);
 }
 
 void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32_t* weights) {

@@ -55,6 +55,15 @@ void add_row_sums(const std::int16_t* pairs,
                   float* sums,
                   float* squares);
 
+/// The rows that blocks at a height hold, as add_row_sums leaves them.
+struct WindowRows {
+  std::vector<const float*> sums, squares;
+};
+
+/// Sums over all rows about the first n right centres, and one over the root of the centred sum of
+/// squares of `count` samples. Up to 15 more are written.
+void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse);
+
 /// A left block's pixels (by column and row, as the warp's tables) as weights of the pairs.
 void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32_t* weights);
 

@@ -19,86 +19,117 @@ constexpr int lanes = 32;  // and more of every row that vectors may read or wri
 class RightSums {
  public:
   RightSums(const PairedRows& right, const StretchWarp& warp, int planes, int width)
-      : right_(right), warp_(warp), planes_(planes), width_(width) {
-    const auto size = static_cast<std::size_t>(width + lanes);
-    sums_.resize(size);
-    inverse_.resize(size);
-    kept_ = warp.shear == 0 ? warp.rows : 1;
-    row_sums_.resize(static_cast<std::size_t>(kept_) * size);
-    row_squares_.resize(row_sums_.size());
-    row_.assign(static_cast<std::size_t>(kept_), none);
+      : right_(right),
+        warp_(warp),
+        planes_(planes),
+        width_(width),
+        size_(static_cast<std::size_t>(width + lanes)),
+        sums_(size_),
+        inverse_(size_),
+        row_sums_(static_cast<std::size_t>(warp.rows) * size_),
+        row_squares_(row_sums_.size()),
+        held_(static_cast<std::size_t>(warp.rows), none) {
+    window_.sums.resize(held_.size());
+    window_.squares.resize(held_.size());
   }
 
   /// For blocks whose middle row is y.
   void compute(int y) {
-    std::fill(sums_.begin(), sums_.end(), 0.0f);
-    std::fill(inverse_.begin(), inverse_.end(), 0.0f);
-    for (int j = 0; j < warp_.rows; ++j) add_row(y + j - warp_.rows / 2, j);
-    // Below a grey level's hundredth of variance there is nothing to compare.
-    constexpr float least_variance = 0.01f * StretchWarp::steps * StretchWarp::steps;
+    if (y == y_) return;
+    y_ = y;
+    for (int j = 0; j < warp_.rows; ++j) hold(y + j - warp_.rows / 2, j);
     const auto count = static_cast<float>(warp_.rows * warp_.width * planes_);
-    for (std::size_t x = 0; x < sums_.size(); ++x) {
-      const float squares = inverse_[x] - sums_[x] * sums_[x] / count;
-      inverse_[x] = 1 / std::sqrt(std::max(squares, count * least_variance));
-    }
+    window_sums(window_, width_, count, sums_.data(), inverse_.data());
   }
 
   const float* sums() const { return sums_.data(); }
   const float* inverse() const { return inverse_.data(); }
 
  private:
-  void add_row(int y, int j) {
-    const auto size = sums_.size();
-    const auto slot = static_cast<std::size_t>((y + warp_.rows) % kept_);
-    float *const sums = row_sums_.data() + slot * size, *const squares =
-                                                            row_squares_.data() + slot * size;
-    if (row_[slot] != y || kept_ == 1) {
-      row_[slot] = y;
-      std::fill_n(sums, size, 0.0f);
-      std::fill_n(squares, size, 0.0f);
-      for (int plane = 0; plane < planes_; ++plane) {
-        add_row_sums(right_.row(plane, y), warp_, j, width_, sums, squares);
-      }
+  /// Row y of the image as row j of the block: with a shear that is not the same for all j.
+  void hold(int y, int j) {
+    const auto slot = static_cast<std::size_t>((y + warp_.rows) % warp_.rows);
+    float *const sums = row_sums_.data() + slot * size_, *const squares =
+                                                             row_squares_.data() + slot * size_;
+    window_.sums[static_cast<std::size_t>(j)] = sums;
+    window_.squares[static_cast<std::size_t>(j)] = squares;
+    if (held_[slot] == y && warp_.shear == 0) return;
+    held_[slot] = y;
+    std::fill_n(sums, size_, 0.0f);
+    std::fill_n(squares, size_, 0.0f);
+    for (int plane = 0; plane < planes_; ++plane) {
+      add_row_sums(right_.row(plane, y), warp_, j, width_, sums, squares);
     }
-    for (std::size_t x = 0; x < size; ++x) sums_[x] += sums[x];
-    for (std::size_t x = 0; x < size; ++x) inverse_[x] += squares[x];
   }
 
   static constexpr int none = -1000000;
   const PairedRows& right_;
   const StretchWarp& warp_;
-  int planes_, width_, kept_ = 1;
+  int planes_, width_, y_ = none;
+  std::size_t size_;
   std::vector<float> sums_, inverse_, row_sums_, row_squares_;
-  std::vector<int> row_;
+  std::vector<int> held_;
+  WindowRows window_;
 };
 
-/// A left block's pixels by column and row, and what correlation needs of them.
-struct LeftBlock {
-  std::vector<std::int16_t> values;  // of all planes
-  float mean = 0, deviation = 0;     // the latter of the sum of squares
+/// The rows of the left image that a row of blocks holds, turned: pixels by column and row.
+class LeftStrip {
+ public:
+  LeftStrip(const FilteredImage& image, int width, int rows)
+      : image_(image),
+        width_(width),
+        rows_(rows),
+        stride_(static_cast<std::size_t>(StretchWarp::row_stride(rows))),
+        values_(image.stride() * static_cast<std::size_t>(image.planes) * stride_),
+        sums_(image.stride()),
+        squares_(image.stride()) {}
 
-  void take(const FilteredImage& image, const StretchBlock& block, int width, int rows) {
-    const int stride = StretchWarp::row_stride(rows);
-    values.assign(static_cast<std::size_t>(image.planes * width * stride), 0);
-    std::int64_t sum = 0, squares = 0;
-    std::int16_t* to = values.data();
-    for (int plane = 0; plane < image.planes; ++plane, to += width * stride) {
-      for (int j = 0; j < rows; ++j) {
-        const std::int16_t* const from =
-            image.row(plane, block.y + j - rows / 2) + block.x - width / 2;
-        for (int i = 0; i < width; ++i) {
-          to[i * stride + j] = from[i];
-          sum += from[i];
-          squares += from[i] * from[i];
+  /// For blocks whose middle row is y.
+  void take(int y) {
+    std::fill(sums_.begin(), sums_.end(), 0);
+    std::fill(squares_.begin(), squares_.end(), 0);
+    for (int plane = 0; plane < image_.planes; ++plane) {
+      for (int j = 0; j < rows_; ++j) {
+        const std::int16_t* const row = image_.row(plane, y + j - rows_ / 2) - image_.margin_x;
+        std::int16_t* const to = column(plane, 0) + j;
+        for (std::size_t x = 0; x < sums_.size(); ++x) {
+          to[x * stride_] = row[x];
+          sums_[x] += row[x];
+          squares_[x] += row[x] * row[x];
         }
       }
     }
-    const double count = image.planes * width * rows;
-    mean = static_cast<float>(static_cast<double>(sum) / count);
-    deviation =
-        static_cast<float>(std::sqrt(static_cast<double>(squares) -
-                                     static_cast<double>(sum) * static_cast<double>(sum) / count));
   }
+
+  /// Pixels of the block about column x, and its mean and the root of its centred sum of squares.
+  const std::int16_t* block(int plane, int x) const {
+    return values_.data() +
+           (static_cast<std::size_t>(plane) * image_.stride() + first(x)) * stride_;
+  }
+  void statistics(int x, float& mean, float& deviation) const {
+    std::int64_t sum = 0, squares = 0;
+    for (std::size_t k = first(x); k < first(x) + static_cast<std::size_t>(width_); ++k) {
+      sum += sums_[k];
+      squares += squares_[k];
+    }
+    const double count = image_.planes * width_ * rows_, total = static_cast<double>(sum);
+    mean = static_cast<float>(total / count);
+    deviation = static_cast<float>(std::sqrt(static_cast<double>(squares) - total * total / count));
+  }
+
+ private:
+  std::size_t first(int x) const {
+    return static_cast<std::size_t>(x + image_.margin_x - width_ / 2);
+  }
+  std::int16_t* column(int plane, std::size_t x) {
+    return values_.data() + (static_cast<std::size_t>(plane) * image_.stride() + x) * stride_;
+  }
+
+  const FilteredImage& image_;
+  int width_, rows_;
+  std::size_t stride_;
+  std::vector<std::int16_t> values_;
+  std::vector<int> sums_, squares_;
 };
 
 /// How far the vertex of the parabola through three values at −1, 0 and 1 is from 0, at most half.
@@ -137,100 +168,132 @@ class Search {
 
   /// Rows [first, end) of the blocks.
   void search(StretchBlocks& blocks,
-              const std::vector<DisparityRange>& ranges,
+              const std::vector<BlockRange>& ranges,
               int first,
               int end) const {
-    std::vector<RightSums> sums;
-    for (const StretchWarp& warp : warps_) sums.emplace_back(paired_, warp, right_.planes, width_);
-    Buffers buffers;
+    Buffers buffers{LeftStrip(left_, options_.width_px, options_.height_px), {}, {}, {}, {}};
+    for (const StretchWarp& warp : warps_) {
+      buffers.sums.emplace_back(paired_, warp, right_.planes, width_);
+    }
     for (int row = first; row < end; ++row) {
       const auto begin = static_cast<std::size_t>(row * blocks.columns);
-      const int y = blocks.blocks[begin].y;
       bool known = false;
       for (std::size_t k = begin; k < begin + static_cast<std::size_t>(blocks.columns); ++k) {
         if (blocks.blocks[k].edges < options_.least_edges) continue;
-        if (!known) {
-          for (RightSums& of_warp : sums) of_warp.compute(y);
-        }
+        if (!known) begin_row(blocks.blocks[k].y, buffers);
         known = true;
-        search(blocks.blocks[k], ranges[k], sums, buffers);
+        search(blocks.blocks[k], ranges[k], buffers);
       }
     }
   }
 
  private:
   struct Buffers {
-    LeftBlock left;
+    LeftStrip left;
+    std::vector<RightSums> sums;            // by warp
+    std::vector<const std::int16_t*> rows;  // of the right image
     std::vector<std::int32_t> weights;
     std::vector<float> scores;  // by warp, then by right centre
-    std::vector<const std::int16_t*> rows;
+
+    float* row(std::size_t warp, int n) {
+      return scores.data() + warp * static_cast<std::size_t>(n + lanes);
+    }
   };
 
-  void search(StretchBlock& block,
-              const DisparityRange& range,
-              const std::vector<RightSums>& sums,
-              Buffers& buffers) const {
-    const int first = std::max(0, block.x - range.most_px);
-    const int n = std::min(width_ - 1, block.x - range.least_px) - first + 1;
-    block.searched = std::max(0, n);
-    if (n <= 0) return;
-    buffers.left.take(left_, block, options_.width_px, options_.height_px);
-    if (!(buffers.left.deviation > 0)) return;
+  struct Best {
+    std::size_t warp;
+    float score;
+  };
+
+  void begin_row(int y, Buffers& buffers) const {
+    buffers.left.take(y);
     buffers.rows.clear();
     for (int plane = 0; plane < right_.planes; ++plane) {
       for (int j = 0; j < options_.height_px; ++j) {
-        buffers.rows.push_back(paired_.row(plane, block.y + j - options_.height_px / 2));
+        buffers.rows.push_back(paired_.row(plane, y + j - options_.height_px / 2));
       }
     }
-    const auto stride = static_cast<std::size_t>(n + lanes);
-    buffers.scores.resize(warps_.size() * stride);
-    std::size_t best = 0;
-    float most = -1e30f;
+  }
+
+  void search(StretchBlock& block, const BlockRange& range, Buffers& buffers) const {
+    const int first = std::max(0, block.x - range.disparities.most_px);
+    const int n = std::min(width_ - 1, block.x - range.disparities.least_px) - first + 1;
+    block.searched = std::max(0, n);
+    float mean = 0, deviation = 0;
+    buffers.left.statistics(block.x, mean, deviation);
+    if (n <= 0 || !(deviation > 0)) return;
+    buffers.scores.resize(warps_.size() * static_cast<std::size_t>(n + lanes));
+    Best best{0, -1e30f};
     for (std::size_t w = 0; w < warps_.size(); ++w) {
-      weigh(warps_[w], buffers);
-      const float score =
-          block_scores({warps_[w], right_.planes, buffers.rows.data(), buffers.weights.data(),
-                        buffers.left.mean, first, n, sums[w].sums(), sums[w].inverse()},
-                       buffers.scores.data() + w * stride);
-      if (score <= most) continue;
-      most = score;
-      best = w;
+      if (!is_searched(w % stretches_.size(), range)) continue;
+      const float most = score(block, w, mean, first, n, buffers.row(w, n), buffers);
+      if (most > best.score) best = {w, most};
     }
-    settle(block, first, n, best, most, buffers);
+    // Of equal ones the largest disparity is taken.
+    const float* const row = buffers.row(best.warp, n);
+    const auto k = static_cast<int>(std::find(row, row + n, best.score) - row);
+    settle(block, first, n, k, best.warp, mean, range, buffers);
+    block.score = best.score / deviation;
   }
 
-  void weigh(const StretchWarp& warp, Buffers& buffers) const {
-    const std::size_t stride = static_cast<std::size_t>(StretchWarp::row_stride(warp.rows));
-    const std::size_t count = static_cast<std::size_t>(warp.pairs) * stride;
-    const std::size_t left = static_cast<std::size_t>(warp.width) * stride;
-    buffers.weights.resize(count * static_cast<std::size_t>(right_.planes));
-    for (std::size_t plane = 0; plane < static_cast<std::size_t>(right_.planes); ++plane) {
-      block_weights(warp, buffers.left.values.data() + plane * left,
-                    buffers.weights.data() + plane * count);
+  /// Scores of a warp at n right centres; returns the largest.
+  float score(const StretchBlock& block,
+              std::size_t w,
+              float mean,
+              int first,
+              int n,
+              float* scores,
+              Buffers& buffers) const {
+    weigh(warps_[w], block.x, buffers);
+    RightSums& sums = buffers.sums[w];
+    sums.compute(block.y);
+    return block_scores({warps_[w], right_.planes, buffers.rows.data(), buffers.weights.data(),
+                         mean, first, n, sums.sums(), sums.inverse()},
+                        scores);
+  }
+
+  bool is_searched(std::size_t stretch, const BlockRange& range) const {
+    const std::size_t last = stretches_.size() - 1;
+    return stretches_[std::min(stretch + 1, last)] >= range.least_stretch &&
+           stretches_[stretch == 0 ? 0 : stretch - 1] <= range.most_stretch;
+  }
+
+  void weigh(const StretchWarp& warp, int x, Buffers& buffers) const {
+    const std::size_t count = static_cast<std::size_t>(warp.pairs) *
+                              static_cast<std::size_t>(StretchWarp::row_stride(warp.rows));
+    buffers.weights.resize(
+        std::max(buffers.weights.size(), count * static_cast<std::size_t>(right_.planes)));
+    for (int plane = 0; plane < right_.planes; ++plane) {
+      block_weights(warp, buffers.left.block(plane, x),
+                    buffers.weights.data() + static_cast<std::size_t>(plane) * count);
     }
   }
 
-  /// The best place of the best warp, between the places and stretches that were tried.
+  /// The best place k of the best warp, and what lies between the places and the stretches that
+  /// were tried.
   void settle(StretchBlock& block,
               int first,
               int n,
+              int k,
               std::size_t best,
-              float most,
-              const Buffers& buffers) const {
-    const auto stride = static_cast<std::size_t>(n + lanes);
-    const float* const at = buffers.scores.data() + best * stride;
-    // Of equal ones the largest disparity is taken.
-    const auto k = static_cast<int>(std::find(at, at + n, most) - at);
-    block.score = most / buffers.left.deviation;
+              float mean,
+              const BlockRange& range,
+              Buffers& buffers) const {
+    const float* const at = buffers.row(best, n) + k;
     block.stretch = static_cast<float>(warps_[best].stretch);
     block.shear = static_cast<float>(warps_[best].shear);
     block.disparity_px = static_cast<float>(block.x - first - k);
-    if (k > 0 && k + 1 < n) block.disparity_px -= vertex(at[k - 1], at[k], at[k + 1]);
+    if (k > 0 && k + 1 < n) block.disparity_px -= vertex(at[-1], at[0], at[1]);
     const std::size_t along = best % stretches_.size();
     if (along == 0 || along + 1 == stretches_.size()) return;
-    const float* const narrower = at - stride;
-    const float* const wider = at + stride;
-    const double off = vertex(narrower[k], at[k], wider[k]);
+    const auto beside = [&](std::size_t w) {
+      float* const there = buffers.row(w, n) + k;
+      if (!is_searched(w % stretches_.size(), range)) {
+        score(block, w, mean, first + k, 1, there, buffers);
+      }
+      return *there;
+    };
+    const double off = vertex(beside(best - 1), *at, beside(best + 1));
     block.stretch *= static_cast<float>(std::pow(stretches_[1] / stretches_[0], off));
   }
 
@@ -309,7 +372,7 @@ StretchBlocks block_grid(int width_px,
 }
 
 void search_blocks(const RectifiedPair& pair,
-                   const std::vector<DisparityRange>& ranges,
+                   const std::vector<BlockRange>& ranges,
                    const StretchOptions& options,
                    StretchBlocks& blocks) {
   const Search search(pair, options);

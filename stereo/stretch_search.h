@@ -15,10 +15,17 @@ StretchBlocks block_grid(int width_px,
                          const std::vector<EdgePoint>& left_edges,
                          const StretchOptions& options);
 
+/// What a block is searched for: disparities, and stretches from the one before `least_stretch` to
+/// the one after `most_stretch`.
+struct BlockRange {
+  DisparityRange disparities;
+  float least_stretch = 0, most_stretch = std::numeric_limits<float>::infinity();
+};
+
 /// Finds the best disparity, stretch and shear of every block with edges enough among those of its
 /// own range.
 void search_blocks(const RectifiedPair& pair,
-                   const std::vector<DisparityRange>& ranges,
+                   const std::vector<BlockRange>& ranges,
                    const StretchOptions& options,
                    StretchBlocks& blocks);
 

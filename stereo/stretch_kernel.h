@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stereo/stretch_filter.h"
+
+namespace vernier {
+
+/// Where the samples of a block lie in the right image, for one stretch and one shear: in whole
+/// sixteenths of a pixel, so that all sums are of whole numbers. Tables are by column of the block
+/// and then by row, `row_stride` rows each.
+struct StretchWarp {
+  StretchWarp(double stretch, double shear, int width, int rows);
+
+  static constexpr int steps = 16;  // a pixel
+  static int row_stride(int rows) { return (rows + 15) / 16 * 16; }
+
+  double stretch, shear;
+  int width, rows;
+  std::vector<int> place;               ///< the pixel before a sample, from the right centre
+  std::vector<std::int16_t> near, far;  ///< weights of that pixel and the next
+
+  /// Instead of sampling the right image the left pixels may be spread over it, which is the same
+  /// sum and takes fewer products where right blocks are narrow. In pairs of right pixels:
+  bool spread = false;
+  int pairs = 0;
+  std::vector<int> offset;  ///< of a pair's first pixel from the right centre
+  int most_reach() const;   ///< pixels that a sample is from the right centre, at most
+};
+
+/// Rows in which every pixel is followed by its right neighbour: (v_0, v_1), (v_1, v_2), …
+class PairedRows {
+ public:
+  explicit PairedRows(const FilteredImage& image);
+  const std::int16_t* row(int plane, int y) const {
+    return values_.data() + static_cast<std::size_t>(plane * rows_ + y + margin_y_) * stride_ +
+           2 * static_cast<std::size_t>(margin_x_);
+  }
+
+ private:
+  int rows_, margin_x_, margin_y_;
+  std::size_t stride_;
+  std::vector<std::int16_t> values_;
+};
+
+/// Adds to `sums` and `squares` those of a row's samples about each right centre from 0 to n − 1,
+/// in sixteenths. Up to 15 more are written. `row` is of the block.
+void add_row_sums(const std::int16_t* pairs,
+                  const StretchWarp& warp,
+                  int row,
+                  int n,
+                  float* sums,
+                  float* squares);
+
+/// The rows that blocks at a height hold, as add_row_sums leaves them.
+struct WindowRows {
+  std::vector<const float*> sums, squares;
+};
+
+/// Sums over all rows about the first n right centres, and one over the root of the centred sum of
+/// squares of `count` samples. Up to 15 more are written.
+void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse);
+
+/// A left block's pixels (by column and row, as the warp's tables) as weights of the pairs.
+void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32_t* weights);
+
+/// A block and a range of right centres.
+struct BlockSearch {
+  const StretchWarp& warp;
+  int planes;
+  const std::int16_t* const* rows;  ///< paired rows of the right image, of all planes
+  const std::int32_t* weights;      ///< of all planes
+  float mean;                       ///< of the left block
+  int first, n;                     ///< right centres
+  const float *sums, *inverse;      ///< of the right image, by right centre
+};
+
+/// (Σ L R − mean Σ R) · inverse for the right centres, into `scores`, where up to 31 more are
+/// written. Returns the largest of the n.
+float block_scores(const BlockSearch& search, float* scores);
+
+}  // namespace vernier

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stereo/stretch_correlation.h"
+
+namespace vernier {
+
+/// Blocks over an image in their places, with the edge points they hold, those too near to the row
+/// left out.
+StretchBlocks block_grid(int width_px,
+                         int height_px,
+                         const std::vector<EdgePoint>& left_edges,
+                         const StretchOptions& options);
+
+/// What a block is searched for: disparities, and stretches from the one before `least_stretch` to
+/// the one after `most_stretch`.
+struct BlockRange {
+  DisparityRange disparities;
+  float least_stretch = 0, most_stretch = std::numeric_limits<float>::infinity();
+};
+
+/// Finds the best disparity, stretch and shear of every block with edges enough among those of its
+/// own range.
+void search_blocks(const RectifiedPair& pair,
+                   const std::vector<BlockRange>& ranges,
+                   const StretchOptions& options,
+                   StretchBlocks& blocks);
+
+/// Stretches M / N that are tried, ascending, evenly by their logarithm, with 1 in the middle.
+std::vector<double> stretches_of(const StretchOptions& options);
+
+/// Shears that are tried, ascending, with 0 in the middle.
+std::vector<double> shears_of(const StretchOptions& options);
+
+}  // namespace vernier

@@ -321,7 +321,7 @@ void add_evaluate(CLI::App& app, Session& session) {
       "vernier evaluate --left im2.png --right im6.png --truth disp2.png --truth-scale 4 "
       "--max-disparity 64 --matcher edge,bm,sgbm");
   add_pair_options(verb, *o);
-  verb->add_option("--matcher", o->matchers, "edge, bm, sgbm, with commas between")
+  verb->add_option("--matcher", o->matchers, "edge, stretch, bm, sgbm, with commas between")
       ->capture_default_str();
   verb->add_option("--command", o->commands,
                    "a program as a matcher: its command with {left} {right} {output}, {least} "

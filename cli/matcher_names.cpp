@@ -8,16 +8,19 @@
 #include "stereo/dense_matchers.h"
 #include "stereo/edge_matcher.h"
 #include "stereo/external_matcher.h"
+#include "stereo/stretch_correlation.h"
 
 namespace vernier::cli {
 namespace {
 
 Matcher matcher_named(const std::string& name) {
   if (name == "edge") return edge_matcher();
+  if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
-  throw Error("--matcher", "\"" + name + "\" is no matcher",
-              "name edge, bm or sgbm, with commas between, or give a program with --command");
+  throw Error(
+      "--matcher", "\"" + name + "\" is no matcher",
+      "name edge, stretch, bm or sgbm, with commas between, or give a program with --command");
 }
 
 }  // namespace
@@ -36,7 +39,7 @@ std::vector<Matcher> matchers_named(const std::string& names,
       throw Error("--matcher", "\"" + matchers[i].name + "\" is named twice", "name each once");
     }
   }
-  if (matchers.empty()) throw Error("--matcher", "it names none", "name edge, bm or sgbm");
+  if (matchers.empty()) throw Error("--matcher", "it names none", "name edge, stretch, bm or sgbm");
   return matchers;
 }
 

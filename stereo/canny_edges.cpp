@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "calib/error.h"
@@ -220,7 +221,8 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   const GradientKernel kernel(options.scale_px);
   if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
   const cv::Mat grey = matrix_of(image);
-  const EdgePlaces places(kernel, image_noise(grey));
+  const double not_stated = std::numeric_limits<double>::quiet_NaN();
+  const EdgePlaces places(kernel, options.with_sigma ? image_noise(grey) : not_stated);
   PeakFinder finder(grey.size(), options);
   GradientRows gradient;
   std::vector<EdgePoint> edges;

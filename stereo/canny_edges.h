@@ -14,6 +14,7 @@ struct CannyOptions {
   double low = 2;         ///< grey levels a pixel: weaker points are none
   double high = 5;        ///< grey levels a pixel: a string needs one point as strong
   int least_points = 10;  ///< shorter strings are dropped
+  bool with_sigma = true;  ///< else it is not a number, which saves a quarter of the time
 };
 
 /// Edges of an image, sorted by (y, x) (Canny, "A computational approach to edge detection", PAMI

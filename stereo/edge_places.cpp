@@ -105,6 +105,10 @@ void EdgePlaces::fit(Batch& batch) {
 
 /// var t = σ² Σ_ij q_i q_j nᵀ R(i − j) n with q_i = ∂t / ∂log |g_i| / |g_i|.
 void EdgePlaces::propagate(Batch& batch) const {
+  if (std::isnan(noise_)) {
+    batch.standard_deviation.fill(noise_);
+    return;
+  }
   std::array<Lanes, 9> q;
   Lanes variance{};
   for (int i = 0; i < 9; ++i) {

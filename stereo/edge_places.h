@@ -16,7 +16,7 @@ namespace vernier {
 /// that the image's white noise gives it (canny_edges.h).
 class EdgePlaces {
  public:
-  /// `noise` in grey levels.
+  /// `noise` in grey levels; if it is not a number, nor are the standard deviations.
   EdgePlaces(const GradientKernel& kernel, double noise);
 
   /// Fills in all but the string of points that have a pixel, within the gradient's rows.

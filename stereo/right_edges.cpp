@@ -17,17 +17,18 @@ RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
   const auto least_sine = static_cast<float>(std::sin(0.5 * options.least_angle_rad));
   const std::vector<EdgePoint> edges = canny_edges(right, options.right_edges);
   crossings_.reserve(edges.size());
-  from_pixel_.reserve(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_));
+  from_pixel_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_));
+  int* from = from_pixel_.data();
   auto edge = edges.begin();
   for (int y = 0; y < height_; ++y) {
     int x = 0;
     for (; edge != edges.end() && edge->y == y; ++edge) {
       if (std::abs(edge->normal.x()) < least_sine) continue;
-      for (; x <= edge->x; ++x) from_pixel_.push_back(static_cast<int>(crossings_.size()));
+      for (; x <= edge->x; ++x) *from++ = static_cast<int>(crossings_.size());
       crossings_.push_back({edge->row_x_px, edge->pixel_px.x(), edge->pixel_px.y(),
                             -edge->normal.y() / edge->normal.x(), edge->normal, edge->strength});
     }
-    for (; x <= width_; ++x) from_pixel_.push_back(static_cast<int>(crossings_.size()));
+    for (; x <= width_; ++x) *from++ = static_cast<int>(crossings_.size());
   }
 }
 

@@ -35,7 +35,7 @@ struct StretchOptions {
   double edge_reach_px = 2;      ///< from where the block says to a right edge of the same sign …
   double most_turn_rad = 0.785;  ///< … whose normal differs by no more than this …
   double most_contrast_ratio = 2.5;  ///< … and whose strength by no more than this factor
-  CannyOptions right_edges{.low = 1, .high = 2, .least_points = 3};
+  CannyOptions right_edges{.low = 1, .high = 2, .least_points = 3, .with_sigma = false};
   int halvings = 0;   ///< of the images, to find where to search (coarse to fine); 0: everywhere
   int margin_px = 3;  ///< about disparities of smaller images or the last frame
   double full_search_share = 0.1;  ///< of the blocks that search everywhere all the same

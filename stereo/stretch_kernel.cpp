@@ -39,6 +39,9 @@ Wide add_products(Pairs a, Pairs b, Wide even, Wide& /*odd*/) {
   return hn::Add(even, hn::Set(wide, a.first * b.first + a.second * b.second));
 }
 Wide in_order(Wide even, Wide /*odd*/) { return even; }
+Pairs low_halves(Wide a, Wide b) {
+  return {static_cast<std::int16_t>(hn::GetLane(a)), static_cast<std::int16_t>(hn::GetLane(b))};
+}
 #else
 const hn::Repartition<std::int16_t, decltype(wide)> narrow;
 using Pairs = decltype(hn::Zero(narrow));
@@ -48,12 +51,56 @@ HWY_INLINE Wide add_products(Pairs a, Pairs b, Wide even, Wide& odd) {
   return hn::ReorderWidenMulAccumulate(wide, a, b, even, odd);
 }
 HWY_INLINE Wide in_order(Wide even, Wide odd) { return hn::RearrangeToOddPlusEven(even, odd); }
+HWY_INLINE Pairs low_halves(Wide a, Wide b) {
+  return hn::OddEven(pairs_in(hn::ShiftLeft<16>(b)), pairs_in(a));
+}
 #endif
+
+/// Pairs of pixels weighed.
+HWY_INLINE Wide sample(const std::int16_t* pairs, Wide weights) {
+  Wide odd = hn::Zero(wide);
+  const Wide even = add_products(load_pairs(pairs), pairs_in(weights), hn::Zero(wide), odd);
+  return in_order(even, odd);
+}
 
 HWY_INLINE std::int32_t pair_of(std::int16_t near, std::int16_t far) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint16_t>(near)) |
                                    static_cast<std::uint32_t>(static_cast<std::uint16_t>(far))
                                        << 16);
+}
+
+/// Adds the sums of a row's samples at V vectors of right centres.
+template <int V>
+HWY_INLINE void add_sums_of(
+    const std::int16_t* pairs, const StretchWarp& warp, int row, float* sums, float* squares) {
+  const int stride = StretchWarp::row_stride(warp.rows);
+  const auto lanes = static_cast<int>(hn::Lanes(wide));
+  Wide sum[V], square[V], square_odd[V];
+  for (int v = 0; v < V; ++v) sum[v] = square[v] = square_odd[v] = hn::Zero(wide);
+  for (int i = 0; i < warp.width; i += 2) {
+    const auto k = static_cast<std::size_t>(i * stride + row);
+    const bool two = i + 1 < warp.width;
+    const std::size_t next = two ? k + static_cast<std::size_t>(stride) : k;
+    const auto weights = hn::Set(wide, pair_of(warp.near[k], warp.far[k]));
+    const auto others = hn::Set(wide, two ? pair_of(warp.near[next], warp.far[next]) : 0);
+    const std::int16_t* const at = pairs + 2 * warp.place[k];
+    const std::int16_t* const beside = pairs + 2 * warp.place[next];
+    for (int v = 0; v < V; ++v) {
+      const Wide one = sample(at + 2 * v * lanes, weights);
+      const Wide other = sample(beside + 2 * v * lanes, others);
+      sum[v] = hn::Add(sum[v], hn::Add(one, other));
+      const Pairs both = low_halves(one, other);
+      square[v] = add_products(both, both, square[v], square_odd[v]);
+    }
+  }
+  for (int v = 0; v < V; ++v) {
+    const auto add = [&](float* to, Wide values) HWY_ATTR {
+      to += v * lanes;
+      hn::StoreU(hn::Add(hn::LoadU(real, to), hn::ConvertTo(real, values)), real, to);
+    };
+    add(sums, sum[v]);
+    add(squares, in_order(square[v], square_odd[v]));
+  }
 }
 
 void add_row_sums(const std::int16_t* pairs,
@@ -62,26 +109,13 @@ void add_row_sums(const std::int16_t* pairs,
                   int n,
                   float* sums,
                   float* squares) {
-  const int stride = StretchWarp::row_stride(warp.rows);
-  const auto low_half = hn::Set(wide, 0xffff);
-  for (int x = 0; x < n; x += static_cast<int>(hn::Lanes(wide))) {
-    auto sum = hn::Zero(wide), square = hn::Zero(wide), square_odd = hn::Zero(wide);
-    for (int i = 0; i < warp.width; ++i) {
-      const auto k = static_cast<std::size_t>(i * stride + row);
-      const auto weights = pairs_in(hn::Set(wide, pair_of(warp.near[k], warp.far[k])));
-      auto odd = hn::Zero(wide);
-      const auto even =
-          add_products(load_pairs(pairs + 2 * (x + warp.place[k])), weights, hn::Zero(wide), odd);
-      const auto sample = in_order(even, odd);
-      sum = hn::Add(sum, sample);
-      const auto half = pairs_in(hn::And(sample, low_half));
-      square = add_products(half, half, square, square_odd);
-    }
-    square = in_order(square, square_odd);
-    hn::StoreU(hn::Add(hn::LoadU(real, sums + x), hn::ConvertTo(real, sum)), real, sums + x);
-    hn::StoreU(hn::Add(hn::LoadU(real, squares + x), hn::ConvertTo(real, square)), real,
-               squares + x);
+  const auto lanes = static_cast<int>(hn::Lanes(wide));
+  constexpr int at_once = 4;
+  int x = 0;
+  for (; x + at_once * lanes <= n; x += at_once * lanes) {
+    add_sums_of<at_once>(pairs + 2 * x, warp, row, sums + x, squares + x);
   }
+  for (; x < n; x += lanes) add_sums_of<1>(pairs + 2 * x, warp, row, sums + x, squares + x);
 }
 
 /// A vector of rows at a time.

@@ -24,6 +24,7 @@ enum class DrawSource : std::uint32_t {
   simulated_pairs = 14,  // points, noise and wrong matches of simulated pairs
   noisy_copy = 16,       // corners of calibrations that are solved again, and their priors
   wishart = 17,          // null distribution of a sample covariance's eigenvalues
+  vertical_field = 22,   // triples of matches
   full_search = 23,      // blocks of stretch correlation that search everywhere
 };
 

@@ -99,7 +99,7 @@ Rectified rectify(const Rig& rig,
   r.images = rectified_images(rig, r.geometry, left, right, options.threads);
   const int most = options.most_disparity_px > 0 ? options.most_disparity_px
                                                  : r.geometry.size_px[0] / default_range;
-  r.field = vertical_field(r.images.pair, {0, most}, options.field);
+  r.field = vertical_field(r.images, {0, most}, options.field);
   return r;
 }
 

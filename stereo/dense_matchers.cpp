@@ -128,7 +128,7 @@ DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, cons
   matcher->setUniquenessRatio(o.uniqueness_percent);
   matcher->setDisp12MaxDiff(o.disp12_max_diff_px);
   matcher->setSpeckleWindowSize(o.speckle_px);
-  matcher->setSpeckleRange(o.speckle_range_px);
+  matcher->setSpeckleRange(o.speckle_range_px * fine);  // here in 1/16 px, in SGBM in pixels
   return run(*matcher, pair, range, search, "bm");
 }
 

@@ -12,27 +12,27 @@
 ///
 /// Grey levels are rounded to 8 bits. OpenCV searches a multiple of 16 disparities: the range is
 /// prolonged beyond its upper end, and what is found there is dropped. OpenCV leaves out pixels
-/// whose whole range is not inside the right image, a band as wide as the largest disparity:
-/// both images are prolonged by their border's grey levels, so that the band is matched too, and
-/// what is found outside of the real right image is dropped.
+/// whose whole range is not inside the right image, a band as wide as the largest disparity: both
+/// images are prolonged by their border's grey levels, so that the band is matched too, and what is
+/// found outside of the real right image is dropped.
 ///
 /// Defaults are the settings of the least share of errors above 1 px, at a density above 0.9 (BM)
 /// and 0.97 (SGBM), on the eleven Middlebury pairs of docs/matchers.md. There is no measure of how
 /// sure a disparity is: a curve of error against density takes one matcher for each of several
-/// uniqueness ratios. They run on as many threads as OpenCV is set to
-/// (cv::setNumThreads), which nothing here changes; results do not depend on it. They throw Error
-/// for images of unequal size, an empty range and one beyond the images' width.
+/// uniqueness ratios. They run on as many threads as OpenCV is set to (cv::setNumThreads), which
+/// nothing here changes; results do not depend on it. They throw Error for images of unequal size,
+/// an empty range, one beyond the images' width or 2000 px, and options out of OpenCV's bounds.
 namespace vernier {
 
 /// Block matching by the sum of absolute differences of a horizontal Sobel filter (Konolige, "Small
 /// vision systems", 1997).
 struct BmOptions {
-  int block_px = 13;            ///< side, odd
+  int block_px = 9;             ///< side, odd
   int pre_filter_cap = 31;      ///< of the filter's response
   int texture_threshold = 10;   ///< of the sum of a block's responses
   int uniqueness_percent = 10;  ///< by which the next best has to cost more
   int disp12_max_diff_px = 1;   ///< between the two directions; negative: not checked
-  int speckle_px = 100;         ///< smaller regions are dropped; 0: none
+  int speckle_px = 200;         ///< smaller regions are dropped; 0: none
   int speckle_range_px = 1;     ///< a step above it ends a region
   EdgeSampling sampling = EdgeSampling::foreground;
 };

@@ -231,7 +231,12 @@ void refine_all(const PaddedImage& left,
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const float at = static_cast<float>(starts[i].x) - starts[i].disparity_px;
     const float reach = 5 * std::max(1.0f, starts[i].stretch);
-    const bool inside_right = at > -reach && at < static_cast<float>(right.width()) + reach;
+    const bool usable = starts[i].stretch > 0.25f && starts[i].stretch < 4 &&
+                        std::abs(starts[i].shear) < 1.2f && starts[i].x >= 0 &&
+                        starts[i].x < left.width() && starts[i].y >= 0 &&
+                        starts[i].y < left.height();
+    const bool inside_right =
+        usable && at > -reach && at < static_cast<float>(right.width()) + reach;
     refined.push_back(inside_right ? refine(left, right, starts[i], options) : RefinedDisparity{});
   }
 }

@@ -36,8 +36,9 @@ struct RefinementOptions {
 ///
 ///     K(x − d + r i + s j, y + j) = α I(x + i, y + j) + β,   |i| <= 4, |j| <= 3
 ///
-/// with shift, stretch r, shear s, gain α and offset β unknown, all pixels of one weight, and weak
-/// priors on r and s, so that an edge without texture beside it keeps its start's. Steps are of the
+/// with shift, stretch r, shear s, gain α and offset β unknown, all pixels of one weight. Steps of
+/// r and s are damped as by weak priors, so that an edge without texture beside it stays near its
+/// start's. Steps are of the
 /// inverse composition (Baker and Matthews 2004): gradients of the left patch alone. With N the
 /// normal matrix, the disparity has the variance r² m N⁻¹₀₀ / α², m the residuals' mean square, at
 /// least (noise_left² α² + noise_right²).

@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/edge_matcher.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "calib/error.h"
-#include "stereo/disparity_refinement.h"
+#include "stereo/edge_agreement.h"
+#include "stereo/edge_refinement.h"
 #include "stereo/edge_support.h"
-#include "stereo/image_noise.h"
-#include "stereo/matrix_of.h"
+#include "stereo/matcher_input.h"
 #include "stereo/stretched_image.h"
 
 namespace vernier {
@@ -50,8 +47,7 @@ class Search {
     std::vector<StretchedView> from_left, from_right;
     SupportOptions support;
     if (slanted) {
-      from_left = stretched_views(mirrored(pair_.right));
-      from_right = stretched_views(pair_.left);
+      from_left = stretched_views(mirrored(pair_.right), Facing::opposite);
       support.slope = slanted_slope;
       support.small_step = 10;  // what steps cost would make slopes into stairs
       support.large_step = 600;
@@ -61,23 +57,28 @@ class Search {
     CensusCosts costs{points, left_, mirrored_right_, first, Facing::opposite, count_};
     if (slanted) costs.stretched = &from_left;
     Found found{semi_global_winners(costs, Support::all, support), {}, {}, slanted};
-    confirm(points, slanted ? &from_right : nullptr, support, found);
     for (int p = 0; p < points.size(); ++p) {
-      const auto k = static_cast<std::size_t>(p);
-      const bool ask = slanted && found.confirmed[k];
-      found.stretch.push_back(ask ? 1 / best_scale(costs, p, found.winners[k].index) : 1);
+      const int index = found.winners[static_cast<std::size_t>(p)].index;
+      found.stretch.push_back(slanted ? 1 / best_scale(costs, p, index) : 1);
     }
+    from_left.clear();
+    if (slanted) from_right = stretched_views(pair_.left, Facing::same);
+    confirm(points, slanted ? &from_right : nullptr, support, found);
     return found;
   }
 
   int least() const { return least_; }
 
  private:
-  std::vector<StretchedView> stretched_views(const GreyLevels& image) const {
+  /// Words are of pixels in the images' own order: a mirrored image is turned back for them.
+  std::vector<StretchedView> stretched_views(const GreyLevels& image, Facing facing) const {
     std::vector<StretchedView> views;
     for (const double scale : {1.3, 1.7, 2.1, 2.6, 3.2, 0.74, 0.55, 0.42}) {
       const auto border = static_cast<int>(scale * border_) + 66;
-      views.push_back({scale, census_transform(stretched(image, scale), border)});
+      const GreyLevels wide = stretched(image, scale);
+      views.push_back({scale, facing == Facing::same
+                                  ? census_transform(wide, border)
+                                  : mirrored(census_transform(mirrored(wide), border))});
     }
     return views;
   }
@@ -129,86 +130,6 @@ class Search {
   CensusImage left_, right_, mirrored_right_;
 };
 
-/// Sets of points, each named by one of them.
-class Chains {
- public:
-  explicit Chains(std::size_t count) : root_(count), size_(count, 1) {
-    std::iota(root_.begin(), root_.end(), 0);
-  }
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    if (a == b) return;
-    root_[static_cast<std::size_t>(a)] = b;
-    size_[static_cast<std::size_t>(b)] += size_[static_cast<std::size_t>(a)];
-  }
-  int size_of(int a) { return size_[static_cast<std::size_t>(root(a))]; }
-
- private:
-  int root(int a) {
-    while (root_[static_cast<std::size_t>(a)] != a) {
-      int& up = root_[static_cast<std::size_t>(a)];
-      a = up = root_[static_cast<std::size_t>(up)];
-    }
-    return a;
-  }
-  std::vector<int> root_, size_;
-};
-
-/// Drops points that fewer than `least_points` agree with, in a chain of matched points within
-/// reach of each other in row and column whose disparities differ by at most one, and by `slope`
-/// for every column between them.
-void drop_lonely(const PointsByRow& points,
-                 const EdgeMatcherOptions& options,
-                 double slope,
-                 std::vector<float>& disparity) {
-  const int reach = options.agreement_reach_px;
-  std::vector<int> matched;  // by row
-  std::vector<int> row_begin{0};
-  Chains chains(points.x.size());
-  const auto height = static_cast<int>(points.row_begin.size()) - 1;
-  for (int y = 0; y < height; ++y) {
-    std::vector<int> from;  // the first of each row above that is not too far left
-    for (int j = std::max(0, y - reach); j < y; ++j) {
-      from.push_back(row_begin[static_cast<std::size_t>(j)]);
-    }
-    const auto row = static_cast<std::size_t>(y);
-    for (int p = points.row_begin[row]; p < points.row_begin[row + 1]; ++p) {
-      const auto k = static_cast<std::size_t>(p);
-      if (std::isnan(disparity[k])) continue;
-      const int x = points.x[k];
-      const auto join_near = [&](int& begin, int end) {
-        while (begin < end &&
-               points.x[static_cast<std::size_t>(matched[static_cast<std::size_t>(begin)])] <
-                   x - reach) {
-          ++begin;
-        }
-        for (int i = begin; i < end; ++i) {
-          const int q = matched[static_cast<std::size_t>(i)];
-          if (points.x[static_cast<std::size_t>(q)] > x + reach) break;
-          const double most = 1 + slope * std::abs(points.x[static_cast<std::size_t>(q)] - x);
-          if (std::abs(disparity[static_cast<std::size_t>(q)] - disparity[k]) <= most) {
-            chains.join(p, q);
-          }
-        }
-      };
-      for (std::size_t j = 0; j < from.size(); ++j) {
-        const auto above = static_cast<std::size_t>(y) - from.size() + j;
-        join_near(from[j], row_begin[above + 1]);
-      }
-      int own = row_begin[row];
-      const auto end = static_cast<int>(matched.size());
-      own = std::max(own, end - reach);
-      join_near(own, end);
-      matched.push_back(p);
-    }
-    row_begin.push_back(static_cast<int>(matched.size()));
-  }
-  for (const int p : matched) {
-    if (chains.size_of(p) >= options.least_points) continue;
-    disparity[static_cast<std::size_t>(p)] = std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
 /// Disparities that pass all tests, not a number for the others.
 std::vector<float> accepted(const PointsByRow& points,
                             const Search& search,
@@ -220,152 +141,34 @@ std::vector<float> accepted(const PointsByRow& points,
     if (!found.confirmed[k] || !(best.margin > options.least_margin)) continue;
     disparity[k] = static_cast<float>(search.least() + best.index) + best.offset;
   }
-  drop_lonely(points, options, found.slanted ? slanted_slope : 0, disparity);
+  drop_lonely(points, options.least_points, options.agreement_reach_px,
+              found.slanted ? slanted_slope : 0, disparity);
   return disparity;
 }
 
-/// Least squares at points: at first where disparities were found, then from neighbours that are
-/// settled already, whose surface says where to start.
-class Refinement {
- public:
-  Refinement(const RectifiedPair& pair,
-             const PointsByRow& points,
-             bool slanted,
-             const EdgeMatcherOptions& options)
-      : pair_(pair),
-        points_(points),
-        least_score_(slanted ? options.least_slanted_score : options.least_score),
-        fits_(points.x.size()) {
-    how_.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
-    how_.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
-    how_.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
-  }
-
-  void from(const std::vector<float>& disparity, const std::vector<double>& stretch) {
-    std::vector<RefinementStart> starts;
-    std::vector<int> at;
-    for (int p = 0; p < points_.size(); ++p) {
-      const auto k = static_cast<std::size_t>(p);
-      if (std::isnan(disparity[k])) continue;
-      starts.push_back({points_.x[k], points_.y[k], disparity[k], static_cast<float>(stretch[k])});
-      at.push_back(p);
-    }
-    take(starts, at);
-  }
-
-  /// One sweep over the points that are not settled; returns how many were won.
-  int grow() {
-    std::vector<RefinementStart> starts;
-    std::vector<int> at;
-    for (int p = 0; p < points_.size(); ++p) {
-      if (settled(p)) continue;
-      std::vector<float> tried;
-      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
-        constexpr double reach_px = 12;
-        if (q < 0 || !settled(q) || points_.distance_px(p, q) > reach_px) continue;
-        const RefinementStart start = seen_from(q, p);
-        constexpr float same_px = 0.3f;
-        const bool again = std::any_of(tried.begin(), tried.end(), [&](float d) {
-          return std::abs(d - start.disparity_px) < same_px;
-        });
-        if (again) continue;
-        tried.push_back(start.disparity_px);
-        starts.push_back(start);
-        at.push_back(p);
-      }
-    }
-    return take(starts, at);
-  }
-
-  /// Unsettles points whose surface most of their settled neighbours contradict by over a pixel.
-  void drop_contradicted() {
-    std::vector<int> dropped;
-    for (int p = 0; p < points_.size(); ++p) {
-      if (!settled(p)) continue;
-      int agree = 0, contradict = 0;
-      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
-        if (q < 0 || !settled(q)) continue;
-        const float off =
-            seen_from(q, p).disparity_px - fits_[static_cast<std::size_t>(p)].disparity_px;
-        (std::abs(off) <= 1 ? agree : contradict)++;
-      }
-      if (contradict > agree) dropped.push_back(p);
-    }
-    for (const int p : dropped) fits_[static_cast<std::size_t>(p)].settled = false;
-  }
-
-  bool settled(int p) const { return fits_[static_cast<std::size_t>(p)].settled; }
-  const RefinedDisparity& fit(int p) const { return fits_[static_cast<std::size_t>(p)]; }
-
- private:
-  /// Where point p would be on the surface found at q.
-  RefinementStart seen_from(int q, int p) const {
-    const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>(p);
-    const RefinedDisparity& fit = fits_[a];
-    const auto dx = static_cast<float>(points_.x[b] - points_.x[a]);
-    const auto dy = static_cast<float>(points_.y[b] - points_.y[a]);
-    return {points_.x[b], points_.y[b], fit.disparity_px + (1 - fit.stretch) * dx - fit.shear * dy,
-            fit.stretch, fit.shear};
-  }
-
-  /// Keeps the fits that correlate better than what a point has.
-  int take(const std::vector<RefinementStart>& starts, const std::vector<int>& at) {
-    const std::vector<RefinedDisparity> found =
-        refine_disparities(pair_.left, pair_.right, starts, how_);
-    int won = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
-      if (!found[i].settled || !(found[i].score > least_score_)) continue;
-      if (best.settled && best.score >= found[i].score) continue;
-      won += !best.settled;
-      best = found[i];
-    }
-    return won;
-  }
-
-  const RectifiedPair& pair_;
-  const PointsByRow& points_;
-  double least_score_;
-  RefinementOptions how_;
-  std::vector<RefinedDisparity> fits_;
-};
-
-}  // namespace
-
-void check_pair(const RectifiedPair& pair, const DisparityRange& range) {
-  const auto size = [](const GreyLevels& image) {
-    return fmt::format("{}x{}", image.width_px, image.height_px);
-  };
-  if (pair.left.width_px != pair.right.width_px || pair.left.height_px != pair.right.height_px) {
-    throw Error("stereo pair",
-                "the left image is " + size(pair.left) + ", the right one " + size(pair.right),
-                "give images of one size, rectified");
-  }
-  if (pair.left.width_px <= 0 || pair.left.height_px <= 0) {
-    throw Error("stereo pair", "its images have no pixels", "give images");
-  }
-  const auto pixels =
-      static_cast<std::size_t>(pair.left.width_px) * static_cast<std::size_t>(pair.left.height_px);
-  if (pair.left.values.size() != pixels || pair.right.values.size() != pixels) {
-    throw Error("stereo pair", "an image's values do not fill it", "give width times height");
-  }
-  if (range.most_px < range.least_px) {
-    throw Error("disparity range", fmt::format("{} to {} is empty", range.least_px, range.most_px),
-                "give the least first");
-  }
-  if (range.most_px >= pair.left.width_px || range.least_px <= -pair.left.width_px) {
-    throw Error("disparity range",
-                fmt::format("{} to {} reaches beyond the image's width of {} pixels",
-                            range.least_px, range.most_px, pair.left.width_px),
-                "give disparities below the width");
+/// Throws Error unless the edges are points of the image in the order of (y, x).
+void check_edges(const std::vector<EdgePoint>& edges, const GreyLevels& image) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const EdgePoint& e = edges[i];
+    const bool inside = e.x >= 0 && e.y >= 0 && e.x < image.width_px && e.y < image.height_px;
+    const bool in_order =
+        i == 0 || edges[i - 1].y < e.y || (edges[i - 1].y == e.y && edges[i - 1].x < e.x);
+    if (inside && in_order) continue;
+    throw Error("edge",
+                inside ? "the edge points are not in the order of their rows and columns"
+                       : "an edge point lies outside of the left image",
+                "give those that canny_edges finds in it");
   }
 }
+
+}  // namespace
 
 std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
                                    const std::vector<EdgePoint>& left_edges,
                                    const DisparityRange& range,
                                    const EdgeMatcherOptions& options) {
-  check_pair(pair, range);
+  check_matcher_input(pair, range, "edge");
+  check_edges(left_edges, pair.left);
   std::vector<EdgeMatch> matches(left_edges.size());
   const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
   std::vector<int> x, y;
@@ -389,7 +192,8 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
       disparity = accepted(points, search, found, options);
     }
   }
-  Refinement refinement(pair, points, found.slanted, options);
+  EdgeRefinement refinement(pair, points, range, found.slanted,
+                            found.slanted ? options.least_slanted_score : options.least_score);
   if (options.refine) {
     refinement.from(disparity, found.stretch);
     if (found.slanted) {

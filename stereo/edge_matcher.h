@@ -11,14 +11,15 @@ namespace vernier {
 struct EdgeMatcherOptions {
   double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
   double least_margin = 0;          ///< of the best disparity over the next other one, relative
-  int least_points = 8;             ///< fewer points that agree with each other are dropped …
+  int least_points = 6;             ///< fewer points that agree with each other are dropped …
   int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
   double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
   bool refine = true;          ///< least squares, with a standard deviation for each point
   double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
-  double least_slanted_score = 0.8;  ///< the same where surfaces slant
+  double least_slanted_score = 0.7;  ///< the same where surfaces slant
   double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
-  double sigma_floor_px = 0;         ///< of refined points, added in squares
+  double sigma_floor_px =
+      0.2;  ///< of refined points, added in squares: what real images have beyond noise
 };
 
 /// What `edge` knows of a left edge point.
@@ -48,9 +49,5 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
 
 /// The same as a plug-in of the name `edge`.
 Matcher edge_matcher(const EdgeMatcherOptions& options = {});
-
-/// Throws Error where a matcher cannot take the pair: unequal sizes, no pixels, values missing, an
-/// empty range, or one wider than the image.
-void check_pair(const RectifiedPair& pair, const DisparityRange& range);
 
 }  // namespace vernier

@@ -128,25 +128,22 @@ struct Step {
   int reach;  ///< disparities that a small step may take
 };
 
-/// Values of a missing neighbour: 0 everywhere, so that nothing is added.
-constexpr int most_disparities = 4096;
-std::int16_t no_neighbour[most_disparities + 128] = {};
-
 HWY_INLINE Step step_from(const PointsByRow& points,
                           int p,
                           int r,
                           bool backward,
                           const SupportOptions& options,
+                          const std::int16_t* nothing,
                           RecentValues& recent) {
   const auto k = static_cast<std::size_t>(p);
   const int n = points.neighbours[k][static_cast<std::size_t>(r + (backward ? directions : 0))];
   std::int16_t* const to = recent.values(p, r);
-  if (n < 0) return {no_neighbour + 64, 0, 0, 0, to, 1};
+  if (n < 0) return {nothing, 0, 0, 0, to, 1};
   const auto m = static_cast<std::size_t>(n);
   const auto dx = static_cast<float>(points.x[m] - points.x[k]);
   const auto dy = static_cast<float>(points.y[m] - points.y[k]);
   const float share = share_at(std::sqrt(dx * dx + dy * dy), options);
-  if (share < 0) return {no_neighbour + 64, 0, 0, 0, to, 1};
+  if (share < 0) return {nothing, 0, 0, 0, to, 1};
   const auto reach = static_cast<int>(options.slope * std::abs(dx) + 0.5);
   return {recent.values(n, r),
           recent.least(n, r),
@@ -156,8 +153,8 @@ HWY_INLINE Step step_from(const PointsByRow& points,
           std::max(1, reach)};
 }
 
-/// Before a step of more than one disparity: each value as the least within reach less one, so that
-/// the step's own neighbours see the rest. The value itself stays free of the small step's price.
+/// Before a step of more than one disparity: each value as the least within reach. The value itself
+/// stays free of the small step's price.
 void widen(Step& step, int n, std::vector<std::int16_t>& wide) {
   if (step.reach <= 1) return;
   const auto size = static_cast<std::size_t>(n) + 128;
@@ -251,6 +248,7 @@ void semi_global_winners(const CensusCosts& costs,
   const PointsByRow& points = costs.points;
   const int n = costs.disparities;
   std::vector<std::int16_t> cost(static_cast<std::size_t>(n)), wide[directions];
+  const std::vector<std::int16_t> nothing(static_cast<std::size_t>(n) + 128, 0);  // of no neighbour
   for (const bool backward : {false, true}) {
     if (backward && support == Support::from_above) break;
     RecentValues recent(points, n);
@@ -258,7 +256,7 @@ void semi_global_winners(const CensusCosts& costs,
       const int p = backward ? points.size() - 1 - k : k;
       Step steps[directions];
       for (int r = 0; r < directions; ++r) {
-        steps[r] = step_from(points, p, r, backward, options, recent);
+        steps[r] = step_from(points, p, r, backward, options, nothing.data() + 64, recent);
         widen(steps[r], n, wide[r]);
       }
       std::int16_t* const sum = sums + (support == Support::all ? static_cast<std::size_t>(p) : 0) *

@@ -16,6 +16,12 @@ constexpr std::int16_t no_place_cost = 560;
 /// Whether two images are walked through in the same direction, or the other one is mirrored.
 enum class Facing { same, opposite };
 
+/// Another image stretched along its rows.
+struct StretchedView {
+  double scale = 1;  ///< place p of the other image is at scale p here
+  CensusImage image;
+};
+
 /// Costs of points at their places in another image: Hamming distances of the 3 x 3 census words
 /// about both, summed, 0 to 558. The places of a point are first_place + k, k from 0, so that
 /// disparities grow with k: seen from the left image the right one is mirrored,
@@ -24,10 +30,6 @@ enum class Facing { same, opposite };
 ///     from the right:   other = left,            first place = x + least disparity
 ///
 /// `disparities` is a multiple of 32, and all places are within the images' border.
-struct StretchedView {
-  double scale = 1;  ///< place p of the other image is at scale p here
-  CensusImage image;
-};
 struct CensusCosts {
   const PointsByRow& points;
   const CensusImage &own, &other;

@@ -14,6 +14,7 @@ class PaddedImage {
  public:
   PaddedImage(const GreyLevels& image, int margin_px)
       : width_(image.width_px),
+        height_(image.height_px),
         margin_(margin_px),
         stride_(static_cast<std::size_t>(image.width_px + 2 * margin_px)),
         values_(stride_ * static_cast<std::size_t>(image.height_px + 2 * margin_px)) {
@@ -29,6 +30,7 @@ class PaddedImage {
   }
 
   int width() const { return width_; }
+  int height() const { return height_; }
   /// Its pixel 0; −margin to width + margin − 1 are there.
   const float* row(int y) const {
     return values_.data() + static_cast<std::size_t>(y + margin_) * stride_ +
@@ -36,7 +38,7 @@ class PaddedImage {
   }
 
  private:
-  int width_, margin_;
+  int width_, height_, margin_;
   std::size_t stride_;
   std::vector<float> values_;
 };

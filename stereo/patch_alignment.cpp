@@ -65,10 +65,13 @@ double weighed(const cv::Mat& image,
 Eigen::MatrixXd grid_about(const cv::Mat& image, const Eigen::Vector2d& p, int reach) {
   const int left = static_cast<int>(std::floor(p.x())), top = static_cast<int>(std::floor(p.y()));
   const auto wx = cubic_weights(p.x() - left), wy = cubic_weights(p.y() - top);
+  const bool whole = p.x() == left && p.y() == top && left - reach >= 0 && top - reach >= 0 &&
+                     left + reach < image.cols && top + reach < image.rows;
   Eigen::MatrixXd grid(2 * reach + 1, 2 * reach + 1);
   for (int j = -reach; j <= reach; ++j) {
     for (int i = -reach; i <= reach; ++i) {
-      grid(i + reach, j + reach) = weighed(image, left + i, top + j, wx, wy);
+      grid(i + reach, j + reach) =
+          whole ? image.at<float>(top + j, left + i) : weighed(image, left + i, top + j, wx, wy);
     }
   }
   return grid;

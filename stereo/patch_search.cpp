@@ -9,8 +9,25 @@
 namespace vernier {
 namespace {
 
-constexpr float flat_variance = 1;  // grey values²; a patch with less has nothing to correlate
+constexpr float flat_variance = 4;  // grey values²; a patch with less has nothing to correlate
 constexpr int apart_px = 2;         // the second best lies beyond this of the best
+
+bool is_inside(const cv::Mat& image, cv::Point centre, int half) {
+  return centre.x >= half && centre.y >= half && centre.x + half < image.cols &&
+         centre.y + half < image.rows;
+}
+
+struct Moments {
+  float mean = 0, deviation = 0;
+  bool flat() const { return !(deviation * deviation > flat_variance); }
+};
+
+Moments moments(const cv::Mat& image, cv::Point centre, int half) {
+  cv::Scalar mean, deviation;
+  const int side = 2 * half + 1;
+  cv::meanStdDev(image(cv::Rect(centre.x - half, centre.y - half, side, side)), mean, deviation);
+  return {static_cast<float>(mean[0]), static_cast<float>(deviation[0])};
+}
 
 /// Offset of the vertex of a parabola through three scores, from the middle one.
 double vertex(float before, float at, float after) {
@@ -20,6 +37,10 @@ double vertex(float before, float at, float after) {
 }
 
 }  // namespace
+
+bool has_texture(const cv::Mat& image, cv::Point centre, int half_px) {
+  return is_inside(image, centre, half_px) && !moments(image, centre, half_px).flat();
+}
 
 PatchSearch::PatchSearch(const cv::Mat& image, int half_px) : image_(image), half_(half_px) {
   const cv::Size side(2 * half_px + 1, 2 * half_px + 1);
@@ -64,27 +85,22 @@ void PatchSearch::correlate(const cv::Mat& other,
 std::optional<FoundPatch> PatchSearch::find(const cv::Mat& other,
                                             cv::Point centre,
                                             SearchWindow w) {
-  const auto inside = [&](int x, int size) { return x >= half_ && x + half_ < size; };
-  if (!inside(centre.x, other.cols) || !inside(centre.y, other.rows)) return std::nullopt;
+  if (!has_texture(other, centre, half_)) return std::nullopt;
   w.least_x = std::max(w.least_x, half_);
   w.least_y = std::max(w.least_y, half_);
   w.most_x = std::min(w.most_x, image_.cols - 1 - half_);
   w.most_y = std::min(w.most_y, image_.rows - 1 - half_);
   if (w.least_x > w.most_x || w.least_y > w.most_y) return std::nullopt;
 
-  cv::Scalar mean, deviation;
-  const int side = 2 * half_ + 1;
-  cv::meanStdDev(other(cv::Rect(centre.x - half_, centre.y - half_, side, side)), mean, deviation);
-  if (!(deviation[0] * deviation[0] > flat_variance)) return std::nullopt;
-  correlate(other, centre, static_cast<float>(mean[0]), w);
-  const float own = 1 / static_cast<float>(side * deviation[0]);
-
+  const Moments own = moments(other, centre, half_);
+  correlate(other, centre, own.mean, w);
+  const float inverse = 1 / (static_cast<float>(2 * half_ + 1) * own.deviation);
   const int columns = w.most_x - w.least_x + 1, rows = w.most_y - w.least_y + 1;
   const auto best =
       static_cast<int>(std::max_element(scores_.begin(), scores_.end()) - scores_.begin());
   const int bx = best % columns, by = best / columns;
   const auto at = [&](int x, int y) { return scores_[static_cast<std::size_t>(y) * columns + x]; };
-  FoundPatch found{{w.least_x + bx, w.least_y + by}, {}, own * at(bx, by)};
+  FoundPatch found{{w.least_x + bx, w.least_y + by}, {}, inverse * at(bx, by)};
   found.peak_px = {found.pixel.x + 0.0, found.pixel.y + 0.0};
   if (bx > 0 && bx + 1 < columns) {
     found.peak_px.x() += vertex(at(bx - 1, by), at(bx, by), at(bx + 1, by));
@@ -96,7 +112,7 @@ std::optional<FoundPatch> PatchSearch::find(const cv::Mat& other,
     const bool near_row = std::abs(y - by) <= apart_px;
     for (int x = 0; x < columns; ++x) {
       if (near_row && std::abs(x - bx) <= apart_px) continue;
-      found.second = std::max(found.second, own * at(x, y));
+      found.second = std::max(found.second, inverse * at(x, y));
     }
   }
   return found;

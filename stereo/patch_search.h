@@ -21,6 +21,10 @@ struct FoundPatch {
   float second = -1;        ///< best score more than two pixels away
 };
 
+/// Whether the patch of 2 half + 1 pixels about a pixel lies in the image and is not flat: grey
+/// values that differ by less than a standard deviation of 2 are nothing to correlate.
+bool has_texture(const cv::Mat& image, cv::Point centre, int half_px);
+
 /// An image to seek patches of 2 half + 1 pixels in (CV_32F). It prepares the mean and the length
 /// of every patch, once for all searches:
 ///
@@ -31,7 +35,7 @@ class PatchSearch {
 
   /// Where in the window the patch about `centre` of another image correlates best, of equals the
   /// first in reading order. The part of the window whose patches lie in the image counts; nothing
-  /// where there is none, where the patch itself does not lie in its image, or is flat.
+  /// where there is none or the patch itself has no texture.
   std::optional<FoundPatch> find(const cv::Mat& other, cv::Point centre, SearchWindow window);
 
  private:

@@ -107,7 +107,11 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
   }
   at.known = map.known(x, edge.y);
   at.discontinuity = !all_known || MapWindow(map, x, edge.y, 2).has_step();
-  at.disparity_px = step ? at.most_px : at.known ? along_row(map, edge.row_x_px, edge.y) : NAN;
+  at.own_px = at.known ? along_row(map, edge.row_x_px, edge.y) : NAN;
+  at.own_occluded =
+      truth.occluded[static_cast<std::size_t>(edge.y) * static_cast<std::size_t>(map.width_px) +
+                     static_cast<std::size_t>(x)] != 0;
+  at.disparity_px = step ? at.most_px : at.own_px;
   at.occluded =
       truth.occluded[static_cast<std::size_t>(source_y) * static_cast<std::size_t>(map.width_px) +
                      static_cast<std::size_t>(source_x)] != 0;

@@ -39,8 +39,10 @@ struct TruthAtEdge {
   /// Where the 3 x 3 pixels about the edge point hold a step, the foreground's, which is the
   /// largest of them; else, interpolated along the row, that of the sub-pixel edge.
   float disparity_px = std::numeric_limits<float>::quiet_NaN();
-  bool known = false;          ///< at the edge's nearest pixel
-  bool occluded = false;       ///< of the pixel that the disparity is of
+  bool known = false;     ///< at the edge's nearest pixel
+  bool occluded = false;  ///< of the pixel that the disparity is of
+  float own_px = std::numeric_limits<float>::quiet_NaN();  ///< along the row, whatever is about it
+  bool own_occluded = false;                               ///< of the edge's own pixel
   bool discontinuity = false;  ///< a step in the 5 x 5 pixels, or something unknown in the 3 x 3
   float least_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   float most_px = std::numeric_limits<float>::quiet_NaN();   ///< of the 3 x 3 pixels

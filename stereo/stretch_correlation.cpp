@@ -8,7 +8,7 @@
 #include "calib/draw_sources.h"
 #include "calib/error.h"
 #include "calib/random.h"
-#include "stereo/edge_matcher.h"
+#include "stereo/matcher_input.h"
 #include "stereo/right_edges.h"
 #include "stereo/stretch_search.h"
 
@@ -212,7 +212,7 @@ StretchBlocks stretch_blocks(const RectifiedPair& pair,
                              const StretchOptions& options,
                              const StretchBlocks* last,
                              std::uint32_t frame) {
-  check_pair(pair, range);
+  check_matcher_input(pair, range, "stretch");
   check_options(options);
   StretchBlocks grid = block_grid(pair.left.width_px, pair.left.height_px, left_edges, options);
   std::vector<BlockRange> ranges;

@@ -93,8 +93,8 @@ struct StretchFrame {
 ///
 /// With `last`, blocks of the pair before, a block searches the disparities that kept blocks about
 /// it had there and `margin_px` more on either side; everything where there are none, and with a
-/// chance of `full_search_share`, drawn for `frame`. Throws Error on what check_pair refuses and on
-/// options that leave nothing to compare.
+/// chance of `full_search_share`, drawn for `frame`. Throws Error on what other matchers refuse and
+/// on options that leave nothing to compare.
 StretchBlocks stretch_blocks(const RectifiedPair& pair,
                              const std::vector<EdgePoint>& left_edges,
                              const DisparityRange& range,

@@ -13,15 +13,16 @@
 #include "stereo/harris_corners.h"
 #include "stereo/patch_alignment.h"
 #include "stereo/patch_search.h"
+#include "stereo/rectified_images.h"
 #include "stereo/vertical_field_fit.h"
 
 namespace vernier {
 namespace {
 
-constexpr int cells = 8;              // corners are spread over cells x cells parts of the image
+constexpr double corners_a_cell = 2;  // of the parts of the image that corners are spread over
 constexpr int border_px = 5;          // of corners, at half size
 constexpr int half_px = 4;            // of patches searched, at half size
-constexpr int aligned_half_px = 6;    // of patches aligned, at full size
+constexpr int aligned_half_px = 5;    // of patches aligned, at full size
 constexpr double smoothing_px = 0.8;  // against the aliasing of sharp images, which draws
                                       // alignments towards whole pixels: 0.05 px became 0.02
 constexpr double least_found = 0.7;   // ZNCC at half size
@@ -79,6 +80,11 @@ cv::Mat smoothed(const cv::Mat& image) {
   return smooth;
 }
 
+cv::Point pixel_of(const ImageCorner& corner) {
+  return {static_cast<int>(std::lround(corner.pixel_px.x())),
+          static_cast<int>(std::lround(corner.pixel_px.y()))};
+}
+
 /// Both images at full size, smoothed, and a search in each at half its size.
 struct Search {
   cv::Mat half_left, half_right, left, right;
@@ -118,8 +124,7 @@ std::vector<RowOffset> row_offsets(Search& search,
                                    const VerticalFieldOptions& options) {
   std::vector<RowOffset> offsets;
   for (const ImageCorner& corner : corners) {
-    const cv::Point p(static_cast<int>(std::lround(corner.pixel_px.x())),
-                      static_cast<int>(std::lround(corner.pixel_px.y())));
+    const cv::Point p = pixel_of(corner);
     const auto place = search.place_of(p);
     if (!place) continue;
     // A whole left pixel half a pixel beside the patch's centre: its values need no interpolation.
@@ -160,32 +165,67 @@ std::string tilt(double px, double sd, const char* far, const char* near) {
                      px >= 0 ? "lower" : "higher", sd, far, near);
 }
 
+/// Whether the pixels of a patch at half size have a source, asked at nine of them.
+bool is_valid(const ValidPixels& valid, cv::Point half_size) {
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const int x = 2 * (half_size.x + i * (half_px + 1)),
+                y = 2 * (half_size.y + j * (half_px + 1));
+      if (x < 0 || y < 0 || x >= valid.width_px || y >= valid.height_px || !valid(x, y))
+        return false;
+    }
+  }
+  return true;
+}
+
+/// `left_valid` may be nothing.
+VerticalField found_field(const RectifiedPair& pair,
+                          const ValidPixels* left_valid,
+                          const DisparityRange& range,
+                          const VerticalFieldOptions& options) {
+  check(pair, range, options);
+  const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
+  if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
+  Search search(pair, range, options.band_px);
+  const int cells = std::max(1, static_cast<int>(std::sqrt(options.corners / corners_a_cell)));
+  auto corners = harris_corners(search.half_left, 0,
+                                {.count = options.corners, .cells = cells, .border_px = border_px});
+  std::erase_if(corners, [&](const ImageCorner& corner) {
+    const cv::Point p = pixel_of(corner);
+    return !has_texture(search.half_left, p, half_px) || (left_valid && !is_valid(*left_valid, p));
+  });
+  return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
+                            size, options);
+}
+
 }  // namespace
 
 VerticalField vertical_field(const RectifiedPair& pair,
                              const DisparityRange& range,
                              const VerticalFieldOptions& options) {
-  check(pair, range, options);
-  const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
-  if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
-  Search search(pair, range, options.band_px);
-  const auto corners = harris_corners(
-      search.half_left, 0, {.count = options.corners, .cells = cells, .border_px = border_px});
-  return fit_vertical_field(row_offsets(search, corners, options), static_cast<int>(corners.size()),
-                            size, options);
+  return found_field(pair, nullptr, range, options);
+}
+
+VerticalField vertical_field(const RectifiedImages& images,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options) {
+  return found_field(images.pair, &images.left_valid, range, options);
 }
 
 std::string describe(const VerticalField& field) {
   const Eigen::Vector3d& p = field.coefficients_px;
   const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
   if (!field.known && !field.unrectified) {
-    return fmt::format("too few corners match to tell whether one image lies lower ({} of {})",
-                       field.matched, field.corners);
+    return fmt::format(
+        "too few corners match, or too near each other, to tell whether one image lies lower ({} "
+        "of {})",
+        field.matched, field.corners);
   }
   if (!field.known) {
     return fmt::format(
-        "the images are not rectified, or not of one scene: {} of {} corners have a partner within "
-        "{} rows and the disparities, and {} of these agree on a vertical field",
+        "the images are not rectified, or not of one scene, or left and right are exchanged or "
+        "disparities beyond the range: {} of {} corners have a partner within {} rows, and {} of "
+        "these agree on a vertical field",
         field.matched, field.corners, field.band_px, field.used);
   }
   const std::string of = fmt::format("from {} of {} matched corners", field.used, field.matched);

@@ -9,9 +9,11 @@
 
 namespace vernier {
 
+struct RectifiedImages;
+
 struct VerticalFieldOptions {
   int band_px = 5;           ///< rows above and below that are searched, 1 to 10
-  int corners = 128;         ///< of the left image, spread evenly over it
+  int corners = 98;          ///< of the left image, spread evenly over it
   double least_score = 0.8;  ///< ZNCC of aligned patches
   double worth_px = 0.1;     ///< a field that is nowhere larger is not worth a repair
 };
@@ -28,7 +30,7 @@ struct VerticalField {
   Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Zero();  ///< of the coefficients
   int width_px = 0, height_px = 0;
   double residual_px = 0;    ///< robust standard deviation of a match about the field
-  int corners = 0;           ///< of the left image
+  int corners = 0;           ///< of the left image, where it has texture
   int matched = 0;           ///< of them
   int used = 0;              ///< matches that the field explains
   bool known = false;        ///< enough matches agree; else the coefficients are not to be used
@@ -57,6 +59,12 @@ struct VerticalField {
 /// The same for any number of threads. Throws Error on images of unequal size or with too few
 /// values, an empty range or options out of bounds.
 VerticalField vertical_field(const RectifiedPair& pair,
+                             const DisparityRange& range,
+                             const VerticalFieldOptions& options = {});
+
+/// The same of rectified images (stereo/rectified_images.h); corners beside pixels that have no
+/// source are left out.
+VerticalField vertical_field(const RectifiedImages& images,
                              const DisparityRange& range,
                              const VerticalFieldOptions& options = {});
 

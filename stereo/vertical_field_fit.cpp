@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "calib/draw_sources.h"
 #include "calib/random.h"
 
 namespace vernier {
@@ -23,12 +24,13 @@ constexpr double floor_px = 0.05;    // added to what alignments say of themselv
 constexpr double least_scale = 0.3;  // which equal matches would bring to 0
 constexpr int most_rounds = 50;
 constexpr double settled_px = 1e-6;
-constexpr int least_used = 12;          // matches: four a coefficient
+constexpr int least_fitted = 12;  // matches: four a coefficient …
+constexpr int least_used = 20;    // … that must agree: among fewer a wrong one bends the field
 constexpr double least_share = 0.35;    // of the matches, that agree
 constexpr double most_residual_px = 1;  // of these
 constexpr double widest_sd_px = 0.5;    // of dy anywhere in the image
 constexpr int plenty = 40;              // corners of which …
-constexpr double hardly_any = 0.08;     // … no more match where the images do not belong together
+constexpr double hardly_any = 0.1;      // … no more match where the images do not belong together
 constexpr double chi2_3_999 = 16.266;   // 99.9 % of χ² with three degrees of freedom
 
 struct Problem {
@@ -75,7 +77,7 @@ Vector3d best_triple(const Problem& problem) {
     return (problem.dy - problem.X * p).cwiseAbs().cwiseMin(near_px).squaredNorm();
   };
   double least = cost_of(best);
-  Draws draws({.seed = 1, .source = 96});
+  Draws draws({.seed = 1, .source = static_cast<std::uint32_t>(DrawSource::vertical_field)});
   const auto n = static_cast<std::uint32_t>(problem.dy.size());
   for (int i = 0; i < triples; ++i) {
     Matrix3d X;
@@ -199,7 +201,7 @@ VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
   field.corners = corners;
   field.matched = static_cast<int>(offsets.size());
   field.unrectified = corners >= plenty && field.matched <= hardly_any * corners;
-  if (offsets.size() < least_used) return field;
+  if (field.matched < least_fitted) return field;
   const Problem problem = problem_of(offsets, size_px);
   const Fit fit = reweighted(problem, best_triple(problem));
   if (!fit.holds) return field;

@@ -96,6 +96,35 @@ TEST(DenseMatchers, SearchTheRangeThatIsAskedFor) {
   }
 }
 
+/// OpenCV takes the step that ends a region in pixels for SGBM, and in sixteenths for BM.
+TEST(DenseMatchers, KeepSlantedPlanesWhole) {
+  constexpr float gradient = 0.2f;
+  RectifiedPair pair = plane(0);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float at = std::min(static_cast<float>(x) / (1 - gradient), width - 1.001f);
+      const int first = static_cast<int>(at);
+      const float part = at - static_cast<float>(first);
+      pair.right.values[static_cast<std::size_t>(y * width + x)] =
+          (1 - part) * pair.left(first, y) + part * pair.left(first + 1, y);
+    }
+  }
+  const auto right_ones = [&](const DisparityMap& map) {
+    int right = 0;
+    for (int i = 0; i < width * height; ++i) {
+      right += std::abs(map.values[static_cast<std::size_t>(i)] - gradient * (i % width)) < 1;
+    }
+    return right;
+  };
+  BmOptions bm_all;
+  SgbmOptions sgbm_all;
+  bm_all.speckle_px = sgbm_all.speckle_px = 0;
+  const DisparityRange range{0, 47};
+  EXPECT_GT(right_ones(bm_map(pair, range)), 0.9 * right_ones(bm_map(pair, range, bm_all)));
+  EXPECT_GT(right_ones(sgbm_map(pair, range)), 0.9 * right_ones(sgbm_map(pair, range, sgbm_all)));
+  EXPECT_GT(right_ones(bm_map(pair, range)), 0.4 * width * height);
+}
+
 TEST(DenseMatchers, AreTheSameForAnyNumberOfThreads) {
   const RectifiedPair pair = plane(9);
   const int threads = cv::getNumThreads();

@@ -10,32 +10,10 @@
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"
-#include "tests/support/stereo_scenes.h"
+#include "tests/support/scene_files.h"
 
 namespace vernier {
 namespace {
-
-/// A scene's files; a compressed archive is written anew as what the library reads.
-StereoSceneFile files_of(const test::StereoScene& scene, const test::Folder& folder) {
-  StereoSceneFile files;
-  files.left = scene.left;
-  files.right = scene.right;
-  files.truth = scene.disparity;
-  files.truth_scale = scene.disparity_scale;
-  if (std::filesystem::exists(scene.right_disparity)) files.right_truth = scene.right_disparity;
-  if (files.truth.extension() == ".npz") {
-    const GreyLevels left = read_grey_levels(scene.left);
-    const cv::Mat map = test::read_npz(files.truth, {left.width_px, left.height_px});
-    files.truth = folder.path() / "truth.png";
-    DisparityMap known{map.cols, map.rows, {map.begin<float>(), map.end<float>()}};
-    for (float& d : known.values) {
-      if (d == 0) d = std::numeric_limits<float>::quiet_NaN();
-    }
-    files.truth_scale = 256;
-    write_disparity(files.truth, known);
-  }
-  return files;
-}
 
 /// Median difference of grey levels between left pixels and where the truth says they are in the
 /// right image, of those that are seen there and of those that are hidden behind something.
@@ -78,7 +56,7 @@ TEST(TruthOfMiddlebury, HidesWhatLooksDifferentInTheRightImage) {
   const test::Folder scratch;
   int scenes = 0;
   for (const test::StereoScene& scene : test::middlebury_scenes(*folder)) {
-    const StereoSceneFile files = files_of(scene, scratch);
+    const StereoSceneFile files = test::files_of(scene, scratch.path());
     const GreyLevels left = read_grey_levels(files.left), right = read_grey_levels(files.right);
     const StereoTruth truth = read_stereo_truth(files, left.width_px, left.height_px);
     const Likeness like = likeness(truth, left, right);

@@ -181,6 +181,27 @@ TEST(VerticalField, TooLittleToTellIsSaid) {
   }
 }
 
+/// White walls about a poster: the noise there has corners that match nothing, which does not make
+/// the pair another one.
+TEST(VerticalField, WhiteWallsAreNotTakenForAnotherScene) {
+  RectifiedPair pair = photographed(pair_rig());
+  Draws draws({.seed = 5, .source = 206});
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y * width + x);
+      if (y < 100 || y > 220 || x < 160 || x > 300) {
+        pair.left.values[i] = static_cast<float>(200 + 2 * draws.normal());
+      }
+      if (y < 100 || y > 220 || x < 130 || x > 270) {
+        pair.right.values[i] = static_cast<float>(200 + 2 * draws.normal());
+      }
+    }
+  }
+  const VerticalField field = vertical_field(pair, {0, 64});
+  EXPECT_FALSE(field.unrectified);
+  EXPECT_FALSE(field.significant);
+}
+
 TEST(VerticalField, BadInputIsNamed) {
   const GreyLevels image{64, 64, std::vector<float>(64 * 64, 1)};
   const GreyLevels other{64, 60, std::vector<float>(64 * 60, 1)};

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/disparity_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/atomic_file.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr int enlarged = 2;  // so that edges side by side can be told
+
+cv::Mat faded(const GreyLevels& image) {
+  cv::Mat canvas(image.height_px, image.width_px, CV_8UC3);
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      const auto grey = cv::saturate_cast<uchar>(170 + image(x, y) / 3);
+      canvas.at<cv::Vec3b>(y, x) = {grey, grey, grey};
+    }
+  }
+  cv::resize(canvas, canvas, {}, enlarged, enlarged, cv::INTER_NEAREST);
+  return canvas;
+}
+
+void mark(cv::Mat& canvas, const EdgePoint& edge, const cv::Scalar& colour) {
+  cv::rectangle(canvas, cv::Rect(enlarged * edge.x, enlarged * edge.y, enlarged, enlarged), colour,
+                cv::FILLED);
+}
+
+void write(const cv::Mat& canvas, const std::filesystem::path& file) {
+  std::vector<unsigned char> png;
+  cv::imencode(".png", canvas, png);
+  write_atomically(file, std::string(png.begin(), png.end()));
+}
+
+/// Blue for 0 to red for 1.
+cv::Scalar colour(double share) {
+  const double hue = 120 * (1 - std::clamp(share, 0.0, 1.0));
+  const cv::Mat hsv(1, 1, CV_8UC3, cv::Scalar(hue, 255, 225));
+  cv::Mat bgr;
+  cv::cvtColor(hsv, bgr, cv::COLOR_HSV2BGR);
+  const auto c = bgr.at<cv::Vec3b>(0, 0);
+  return {double(c[0]), double(c[1]), double(c[2])};
+}
+
+}  // namespace
+
+void write_disparity_picture(const GreyLevels& image,
+                             const std::vector<EdgePoint>& edges,
+                             const std::vector<EdgeDisparity>& found,
+                             const DisparityRange& range,
+                             const std::filesystem::path& file) {
+  cv::Mat canvas = faded(image);
+  const double span = std::max(1, range.most_px - range.least_px);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    mark(canvas, edges[i],
+         found[i].matched() ? colour((found[i].disparity_px - range.least_px) / span)
+                            : cv::Scalar(120, 120, 120));
+  }
+  write(canvas, file);
+}
+
+void write_error_picture(const GreyLevels& image,
+                         const std::vector<EdgePoint>& edges,
+                         const std::vector<double>& errors_px,
+                         const std::filesystem::path& file) {
+  cv::Mat canvas = faded(image);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double error = std::abs(errors_px[i]);
+    cv::Scalar colour(0, 0, 0);  // BGR; nothing is known
+    if (std::isinf(error)) colour = {230, 90, 30};
+    if (error <= 0.5) colour = {60, 160, 20};
+    if (error > 0.5 && error <= 1) colour = {0, 200, 230};
+    if (error > 1 && error <= 3) colour = {0, 120, 255};
+    if (error > 3 && !std::isinf(error)) colour = {20, 20, 220};
+    mark(canvas, edges[i], colour);
+  }
+  write(canvas, file);
+}
+
+}  // namespace vernier::cli

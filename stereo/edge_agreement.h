@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stereo/edge_points_by_row.h"
+
+namespace vernier {
+
+/// Drops points that fewer than `least_points` agree with, in a chain of matched points within
+/// reach of each other in row and column whose disparities differ by at most one, and by `slope`
+/// for every column between them.
+void drop_lonely(const PointsByRow& points,
+                 int least_points,
+                 int reach,
+                 double slope,
+                 std::vector<float>& disparity);
+
+}  // namespace vernier

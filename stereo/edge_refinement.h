@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stereo/disparity_refinement.h"
+#include "stereo/edge_points_by_row.h"
+#include "stereo/image_noise.h"
+#include "stereo/matcher.h"
+#include "stereo/matrix_of.h"
+
+namespace vernier {
+
+/// Least squares at points: at first where disparities were found, then from neighbours that are
+/// settled already, whose surface says where to start.
+class EdgeRefinement {
+ public:
+  EdgeRefinement(const RectifiedPair& pair,
+                 const PointsByRow& points,
+                 const DisparityRange& range,
+                 bool slanted,
+                 double least_score)
+      : pair_(pair),
+        points_(points),
+        range_(range),
+        least_score_(least_score),
+        fits_(points.x.size()) {
+    how_.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
+    how_.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
+    how_.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
+  }
+
+  void from(const std::vector<float>& disparity, const std::vector<double>& stretch) {
+    std::vector<RefinementStart> starts;
+    std::vector<int> at;
+    for (int p = 0; p < points_.size(); ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      if (std::isnan(disparity[k])) continue;
+      starts.push_back({points_.x[k], points_.y[k], disparity[k], static_cast<float>(stretch[k])});
+      at.push_back(p);
+    }
+    take(starts, at);
+  }
+
+  /// One sweep over the points that are not settled; returns how many were won.
+  int grow() {
+    std::vector<RefinementStart> starts;
+    std::vector<int> at;
+    for (int p = 0; p < points_.size(); ++p) {
+      if (settled(p)) continue;
+      std::vector<float> tried;
+      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
+        constexpr double reach_px = 12;
+        if (q < 0 || !settled(q) || points_.distance_px(p, q) > reach_px) continue;
+        const RefinementStart start = seen_from(q, p);
+        constexpr float same_px = 0.3f;
+        const bool again = std::any_of(tried.begin(), tried.end(), [&](float d) {
+          return std::abs(d - start.disparity_px) < same_px;
+        });
+        if (again) continue;
+        tried.push_back(start.disparity_px);
+        starts.push_back(start);
+        at.push_back(p);
+      }
+    }
+    return take(starts, at);
+  }
+
+  /// Unsettles points whose surface most of their settled neighbours contradict by over a pixel.
+  void drop_contradicted() {
+    std::vector<int> dropped;
+    for (int p = 0; p < points_.size(); ++p) {
+      if (!settled(p)) continue;
+      int agree = 0, contradict = 0;
+      for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
+        if (q < 0 || !settled(q)) continue;
+        const float off =
+            seen_from(q, p).disparity_px - fits_[static_cast<std::size_t>(p)].disparity_px;
+        (std::abs(off) <= 1 ? agree : contradict)++;
+      }
+      if (contradict > agree) dropped.push_back(p);
+    }
+    for (const int p : dropped) fits_[static_cast<std::size_t>(p)].settled = false;
+  }
+
+  bool settled(int p) const { return fits_[static_cast<std::size_t>(p)].settled; }
+  const RefinedDisparity& fit(int p) const { return fits_[static_cast<std::size_t>(p)]; }
+
+ private:
+  /// Where point p would be on the surface found at q.
+  RefinementStart seen_from(int q, int p) const {
+    const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>(p);
+    const RefinedDisparity& fit = fits_[a];
+    const auto dx = static_cast<float>(points_.x[b] - points_.x[a]);
+    const auto dy = static_cast<float>(points_.y[b] - points_.y[a]);
+    return {points_.x[b], points_.y[b], fit.disparity_px + (1 - fit.stretch) * dx - fit.shear * dy,
+            fit.stretch, fit.shear};
+  }
+
+  /// Keeps the fits that correlate better than what a point has.
+  int take(const std::vector<RefinementStart>& starts, const std::vector<int>& at) {
+    const std::vector<RefinedDisparity> found =
+        refine_disparities(pair_.left, pair_.right, starts, how_);
+    int won = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
+      if (!found[i].settled || !(found[i].score > least_score_)) continue;
+      const float d = found[i].disparity_px;
+      if (d < static_cast<float>(range_.least_px) - 1 ||
+          d > static_cast<float>(range_.most_px) + 1) {
+        continue;
+      }
+      if (best.settled && best.score >= found[i].score) continue;
+      won += !best.settled;
+      best = found[i];
+    }
+    return won;
+  }
+
+  const RectifiedPair& pair_;
+  const PointsByRow& points_;
+  DisparityRange range_;
+  double least_score_;
+  RefinementOptions how_;
+  std::vector<RefinedDisparity> fits_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier evaluate as a user calls it, on a pair made here: boxes before a wall.
+
+    evaluate_test.py PROGRAM
+"""
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = ''
+WIDTH, HEIGHT = 200, 120
+
+
+def write_pgm(file, rows):
+    with open(file, 'wb') as out:
+        out.write(b'P5\n%d %d\n255\n' % (len(rows[0]), len(rows)))
+        for row in rows:
+            out.write(bytes(row))
+
+
+def pair():
+    """A wall at disparity 6 and a box at 14, each with patches of its own; rows of grey values."""
+    draw = random.Random(5)
+    wide = WIDTH + 40
+
+    def patches():
+        grey = [[128] * wide for _ in range(HEIGHT)]
+        for _ in range(700):
+            x, y, w, h = draw.randrange(wide), draw.randrange(HEIGHT), draw.randrange(3, 16), \
+                draw.randrange(3, 16)
+            value = draw.randrange(60, 200)
+            for row in grey[y:y + h]:
+                row[x:x + w] = [value] * len(row[x:x + w])
+        return grey
+    wall, box = patches(), patches()
+    left, right, truth = [], [], []
+    for y in range(HEIGHT):
+        inside = [40 <= y < 90 and 80 <= x < 140 for x in range(wide)]
+        left.append([(box if inside[x] else wall)[y][x] for x in range(WIDTH)])
+        truth.append([4 * (14 if inside[x] else 6) for x in range(WIDTH)])
+        right.append([box[y][x + 14] if inside[x + 14] else wall[y][x + 6] for x in range(WIDTH)])
+    return left, right, truth
+
+
+class Evaluate(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        for name, rows in zip(('left', 'right', 'truth'), pair()):
+            write_pgm(cls.folder / f'{name}.pgm', rows)
+        write_pgm(cls.folder / 'blank.pgm', [[100] * WIDTH for _ in range(HEIGHT)])
+        write_pgm(cls.folder / 'small.pgm', [[100] * 50 for _ in range(40)])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def run_it(self, *more, left='left', right='right', truth='truth', most=24):
+        return subprocess.run(
+            [PROGRAM, 'evaluate', '--left', f'{left}.pgm', '--right', f'{right}.pgm', '--truth',
+             f'{truth}.pgm', '--truth-scale', '4', '--max-disparity', str(most), *more],
+            cwd=self.folder, capture_output=True, text=True)
+
+    def complains(self, *more, of, **files):
+        done = self.run_it('-q', *more, **files)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, '')
+        self.assertIn(of, done.stderr.splitlines()[-1])
+
+    def test_scores(self):
+        done = self.run_it('--matcher', 'edge,bm,sgbm', '--json', '--picture', 'd.png',
+                           '--error-picture', 'e.png')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual(list(said['matchers']), ['edge', 'bm', 'sgbm'])
+        for name, score in said['matchers'].items():
+            for key in ('density', 'bad_0_5', 'bad_1', 'bad_2', 'mismatch', 'rms_inlier_px',
+                        'time_ms'):
+                self.assertIsInstance(score[key], (int, float), f'{name} {key}')
+        self.assertGreater(said['matchers']['edge']['density'], 0.9)
+        self.assertLess(said['matchers']['edge']['bad_1'], 0.03)
+        for picture in ('d.png', 'e.png'):
+            self.assertEqual((self.folder / picture).read_bytes()[:4], b'\x89PNG')
+        self.assertIn('density', self.run_it().stdout)
+
+    def test_a_program_as_a_matcher(self):
+        script = self.folder / 'mine.py'
+        script.write_text('import sys, struct\n'
+                          f'w, h = {WIDTH}, {HEIGHT}\n'
+                          'with open(sys.argv[1], "wb") as f:\n'
+                          '    f.write(b"Pf\\n%d %d\\n-1\\n" % (w, h))\n'
+                          '    f.write(struct.pack("<%df" % (w * h), *[6.0] * (w * h)))\n')
+        done = self.run_it('--matcher', '', '--command',
+                           f'{sys.executable} mine.py {{output}} {{left}} {{right}}', '--json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        score, = json.loads(done.stdout)['matchers'].values()
+        self.assertGreater(score['density'], 0.99)
+        self.assertGreater(score['mismatch'], 0.1)  # the box
+        self.assertLess(score['mismatch'], 0.5)
+
+    def test_bad_input(self):
+        self.complains(of='small.pgm', right='small')
+        self.complains(of='no edges', left='blank', right='blank')
+        self.complains(of='small.pgm', truth='small')
+        self.complains(of='exchanged', left='right', right='left')
+        self.complains(of='width', most=400)
+        self.complains('--matcher', 'best', of='"best" is no matcher')
+        self.complains('--picture', 'a.png', '--error-picture', './a.png', of='another output')
+        done = subprocess.run([PROGRAM, 'evaluate', '--left', 'left.pgm'], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+
+
+if __name__ == '__main__':
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()

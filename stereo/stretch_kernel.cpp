@@ -125,9 +125,9 @@ void spread_weights(const StretchWarp& warp, const std::int16_t* left, std::int3
   for (int j = 0; j < warp.rows; j += static_cast<int>(hn::Lanes(rows))) {
     auto* to = reinterpret_cast<std::int16_t*>(weights + j);
     auto here = hn::Zero(rows), next = hn::Zero(rows), before = hn::Zero(rows);
-    int place = warp.offset[0];
+    int place = warp.first_offset;
     const auto advance = [&]() HWY_ATTR {
-      if ((place - warp.offset[0]) % 2 == 1) {
+      if ((place - warp.first_offset) % 2 == 1) {
         hn::StoreInterleaved2(before, here, rows, to);
         to += 2 * stride;
       }
@@ -143,7 +143,7 @@ void spread_weights(const StretchWarp& warp, const std::int16_t* left, std::int3
       here = hn::Add(here, hn::Mul(values, hn::Set(rows, warp.near[k])));
       next = hn::Add(next, hn::Mul(values, hn::Set(rows, warp.far[k])));
     }
-    while (place < warp.offset[0] + 2 * warp.pairs) advance();
+    while (place < warp.first_offset + 2 * warp.pairs) advance();
   }
 }
 
@@ -185,17 +185,17 @@ HWY_INLINE void scores_of(const BlockSearch& search, int first, float* scores) {
   const auto lanes = static_cast<int>(hn::Lanes(wide));
   Wide even[V], odd[V];
   for (int v = 0; v < V; ++v) even[v] = odd[v] = hn::Zero(wide);
-  for (int plane = 0; plane < search.planes; ++plane) {
-    const std::int16_t* const* const rows = search.rows + plane * warp.rows;
-    const std::int32_t* const weights = search.weights + plane * warp.pairs * stride;
-    for (int j = 0; j < warp.rows; ++j) {
-      const std::int16_t* const row = rows[j] + 2 * first;
-      for (int t = 0; t < warp.pairs; ++t) {
-        const int k = t * stride + j;
-        const auto weight = pairs_in(hn::Set(wide, weights[k]));
-        const std::int16_t* const at = row + 2 * warp.offset[static_cast<std::size_t>(k)];
+  const std::int32_t* weights = search.weights;
+  for (int plane = 0; plane < search.planes; ++plane, weights += warp.pairs * stride) {
+    const std::int16_t* const centre = search.right.row(plane, search.top) + 2 * first;
+    for (int t = 0; t < warp.pairs; ++t) {
+      const std::int32_t* const weight = weights + t * stride;
+      const int* const jump = warp.jump.data() + t * stride;
+      for (int j = 0; j < warp.rows; ++j) {
+        const auto factors = pairs_in(hn::Set(wide, weight[j]));
+        const std::int16_t* const at = centre + 2 * static_cast<std::ptrdiff_t>(jump[j]);
         for (int v = 0; v < V; ++v) {
-          even[v] = add_products(load_pairs(at + 2 * v * lanes), weight, even[v], odd[v]);
+          even[v] = add_products(load_pairs(at + 2 * v * lanes), factors, even[v], odd[v]);
         }
       }
     }
@@ -260,7 +260,7 @@ float block_scores(const BlockSearch& search, float* scores) {
   return HWY_DYNAMIC_DISPATCH(block_scores)(search, scores);
 }
 
-StretchWarp::StretchWarp(double stretch_, double shear_, int width_, int rows_)
+StretchWarp::StretchWarp(double stretch_, double shear_, int width_, int rows_, int row_pairs)
     : stretch(stretch_), shear(shear_), width(width_), rows(rows_) {
   const int stride = row_stride(rows);
   for (int i = 0; i < width; ++i) {
@@ -275,20 +275,17 @@ StretchWarp::StretchWarp(double stretch_, double shear_, int width_, int rows_)
       far.push_back(there ? part : std::int16_t{0});
     }
   }
-  const int first = place.front(), places = place.back() + 2 - first;
+  first_offset = place.front();
+  const int places = place.back() + 2 - first_offset;
   spread = shear == 0 && (places + 1) / 2 < width;
   pairs = spread ? (places + 1) / 2 : width;
-  offset = place;
-  if (!spread) return;
-  offset.clear();
-  for (int t = 0; t < pairs; ++t)
-    offset.insert(offset.end(), static_cast<std::size_t>(stride), first + 2 * t);
-}
-
-int StretchWarp::most_reach() const {
-  int most = 0;
-  for (const int at : place) most = std::max(most, std::abs(at));
-  return most + 2;
+  for (int t = 0; t < pairs; ++t) {
+    for (int j = 0; j < stride; ++j) {
+      const int offset =
+          spread ? first_offset + 2 * t : place[static_cast<std::size_t>(t * stride + j)];
+      jump.push_back(j * row_pairs + offset);
+    }
+  }
 }
 
 PairedRows::PairedRows(const FilteredImage& image)

@@ -13,7 +13,8 @@ namespace vernier {
 /// sixteenths of a pixel, so that all sums are of whole numbers. Tables are by column of the block
 /// and then by row, `row_stride` rows each.
 struct StretchWarp {
-  StretchWarp(double stretch, double shear, int width, int rows);
+  /// `row_pairs` are in a row of the right image (PairedRows).
+  StretchWarp(double stretch, double shear, int width, int rows, int row_pairs);
 
   static constexpr int steps = 16;  // a pixel
   static int row_stride(int rows) { return (rows + 15) / 16 * 16; }
@@ -27,14 +28,16 @@ struct StretchWarp {
   /// sum and takes fewer products where right blocks are narrow. In pairs of right pixels:
   bool spread = false;
   int pairs = 0;
-  std::vector<int> offset;  ///< of a pair's first pixel from the right centre
-  int most_reach() const;   ///< pixels that a sample is from the right centre, at most
+  int first_offset = 0;   ///< of the first pair's first pixel from the right centre
+  std::vector<int> jump;  ///< from the right centre in the block's top row to a pair, in pairs
 };
 
 /// Rows in which every pixel is followed by its right neighbour: (v_0, v_1), (v_1, v_2), …
 class PairedRows {
  public:
   explicit PairedRows(const FilteredImage& image);
+  std::size_t row_pairs() const { return stride_ / 2; }
+  std::size_t plane_pairs() const { return row_pairs() * static_cast<std::size_t>(rows_); }
   const std::int16_t* row(int plane, int y) const {
     return values_.data() + static_cast<std::size_t>(plane * rows_ + y + margin_y_) * stride_ +
            2 * static_cast<std::size_t>(margin_x_);
@@ -70,12 +73,13 @@ void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32
 /// A block and a range of right centres.
 struct BlockSearch {
   const StretchWarp& warp;
+  const PairedRows& right;
   int planes;
-  const std::int16_t* const* rows;  ///< paired rows of the right image, of all planes
-  const std::int32_t* weights;      ///< of all planes
-  float mean;                       ///< of the left block
-  int first, n;                     ///< right centres
-  const float *sums, *inverse;      ///< of the right image, by right centre
+  int top;                      ///< row of the block
+  const std::int32_t* weights;  ///< of all planes
+  float mean;                   ///< of the left block
+  int first, n;                 ///< right centres
+  const float *sums, *inverse;  ///< of the right image, by right centre
 };
 
 /// (Σ L R − mean Σ R) · inverse for the right centres, into `scores`, where up to 31 more are

@@ -138,20 +138,22 @@ float vertex(float before, float at, float after) {
   return bend < 0 ? std::clamp(0.5f * (before - after) / bend, -0.5f, 0.5f) : 0;
 }
 
-std::vector<StretchWarp> warps_of(const StretchOptions& options) {
+/// Pixels that a sample is from its block's right centre, at most, and what vectors need.
+int right_margin(const StretchOptions& options) {
+  const double most = stretches_of(options).back() * (options.width_px / 2) +
+                      std::abs(shears_of(options).back()) * (options.height_px / 2);
+  return static_cast<int>(std::ceil(most)) + 2 + lanes;
+}
+
+std::vector<StretchWarp> warps_of(const StretchOptions& options, std::size_t row_pairs) {
   std::vector<StretchWarp> warps;
   for (const double shear : shears_of(options)) {
     for (const double stretch : stretches_of(options)) {
-      warps.emplace_back(stretch, shear, options.width_px, options.height_px);
+      warps.emplace_back(stretch, shear, options.width_px, options.height_px,
+                         static_cast<int>(row_pairs));
     }
   }
   return warps;
-}
-
-int most_reach(const std::vector<StretchWarp>& warps) {
-  int most = 0;
-  for (const StretchWarp& warp : warps) most = std::max(most, warp.most_reach());
-  return most;
 }
 
 /// What all blocks of a pair share.
@@ -161,17 +163,17 @@ class Search {
       : options_(options),
         width_(pair.left.width_px),
         stretches_(stretches_of(options)),
-        warps_(warps_of(options)),
         left_(filtered(pair.left, options, options.width_px / 2, options.height_px / 2)),
-        right_(filtered(pair.right, options, most_reach(warps_) + lanes, options.height_px / 2)),
-        paired_(right_) {}
+        right_(filtered(pair.right, options, right_margin(options), options.height_px / 2)),
+        paired_(right_),
+        warps_(warps_of(options, paired_.row_pairs())) {}
 
   /// Rows [first, end) of the blocks.
   void search(StretchBlocks& blocks,
               const std::vector<BlockRange>& ranges,
               int first,
               int end) const {
-    Buffers buffers{LeftStrip(left_, options_.width_px, options_.height_px), {}, {}, {}, {}};
+    Buffers buffers{LeftStrip(left_, options_.width_px, options_.height_px), {}, {}, {}};
     for (const StretchWarp& warp : warps_) {
       buffers.sums.emplace_back(paired_, warp, right_.planes, width_);
     }
@@ -180,7 +182,7 @@ class Search {
       bool known = false;
       for (std::size_t k = begin; k < begin + static_cast<std::size_t>(blocks.columns); ++k) {
         if (blocks.blocks[k].edges < options_.least_edges) continue;
-        if (!known) begin_row(blocks.blocks[k].y, buffers);
+        if (!known) buffers.left.take(blocks.blocks[k].y);
         known = true;
         search(blocks.blocks[k], ranges[k], buffers);
       }
@@ -190,8 +192,7 @@ class Search {
  private:
   struct Buffers {
     LeftStrip left;
-    std::vector<RightSums> sums;            // by warp
-    std::vector<const std::int16_t*> rows;  // of the right image
+    std::vector<RightSums> sums;  // by warp
     std::vector<std::int32_t> weights;
     std::vector<float> scores;  // by warp, then by right centre
 
@@ -204,16 +205,6 @@ class Search {
     std::size_t warp;
     float score;
   };
-
-  void begin_row(int y, Buffers& buffers) const {
-    buffers.left.take(y);
-    buffers.rows.clear();
-    for (int plane = 0; plane < right_.planes; ++plane) {
-      for (int j = 0; j < options_.height_px; ++j) {
-        buffers.rows.push_back(paired_.row(plane, y + j - options_.height_px / 2));
-      }
-    }
-  }
 
   void search(StretchBlock& block, const BlockRange& range, Buffers& buffers) const {
     const int first = std::max(0, block.x - range.disparities.most_px);
@@ -247,8 +238,8 @@ class Search {
     weigh(warps_[w], block.x, buffers);
     RightSums& sums = buffers.sums[w];
     sums.compute(block.y);
-    return block_scores({warps_[w], right_.planes, buffers.rows.data(), buffers.weights.data(),
-                         mean, first, n, sums.sums(), sums.inverse()},
+    return block_scores({warps_[w], paired_, right_.planes, block.y - options_.height_px / 2,
+                         buffers.weights.data(), mean, first, n, sums.sums(), sums.inverse()},
                         scores);
   }
 
@@ -300,9 +291,9 @@ class Search {
   const StretchOptions& options_;
   int width_;
   std::vector<double> stretches_;
-  std::vector<StretchWarp> warps_;
   FilteredImage left_, right_;
   PairedRows paired_;
+  std::vector<StretchWarp> warps_;
 };
 
 }  // namespace

@@ -26,17 +26,18 @@ struct StretchOptions {
   StretchFilter filter = StretchFilter::rank;
   double scale_px = 1;           ///< σ of the derivative's Gaussian
   int rank_reach_px = 4;         ///< of ranks, to either side
+  double rank_least_grey = 4;    ///< grey levels: what is darker or brighter by no more is neither
   int stretches = 7;             ///< widths M that are tried, an odd number, from N / r to r N …
   double most_gradient = 1;      ///< … with r = (2 + this) / (2 − this); also between blocks
   int shears = 1;                ///< du_right / dv that are tried, an odd number, evenly …
   double most_shear = 0.5;       ///< … from minus this to this
-  double least_score = 0.6;      ///< ZNCC
+  double least_score = 0.65;     ///< ZNCC
   int least_support = 5;         ///< of the eight blocks around within the disparity gradient
   double edge_reach_px = 2;      ///< from where the block says to a right edge of the same sign …
   double most_turn_rad = 0.785;  ///< … whose normal differs by no more than this …
   double most_contrast_ratio = 2.5;  ///< … and whose strength by no more than this factor
   CannyOptions right_edges{.low = 1, .high = 2, .least_points = 3, .with_sigma = false};
-  int halvings = 0;   ///< of the images, to find where to search (coarse to fine); 0: everywhere
+  int halvings = 1;   ///< of the images, to find where to search (coarse to fine); 0: everywhere
   int margin_px = 3;  ///< about disparities of smaller images or the last frame
   double full_search_share = 0.1;  ///< of the blocks that search everywhere all the same
   std::uint64_t seed = 1;          ///< of which blocks these are

@@ -22,20 +22,24 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Ranks of n pixels in squares, half the squares' pixels less; more are written, up to a vector.
-/// `rows` are those from `reach` above to `reach` below, each from `reach` pixels before the first.
-void ranks(const std::int16_t* const* rows, int reach, int n, std::int16_t* out) {
+/// Of n pixels, how many more of the squares about them are darker than brighter, by more than
+/// `least`; more are written, up to a vector. `rows` are those from `reach` above to `reach` below,
+/// each from `reach` pixels before the first.
+void ranks(
+    const std::int16_t* const* rows, int reach, std::int16_t least, int n, std::int16_t* out) {
   const hn::ScalableTag<std::int16_t> lanes;
   const int side = 2 * reach + 1;
-  const auto half = hn::Set(lanes, static_cast<std::int16_t>(side * side / 2));
+  const auto apart = hn::Set(lanes, least);
   for (int x = 0; x < n; x += static_cast<int>(hn::Lanes(lanes))) {
     const auto centre = hn::LoadU(lanes, rows[reach] + reach + x);
-    auto count = hn::Neg(half);
+    const auto low = hn::SaturatedSub(centre, apart), high = hn::SaturatedAdd(centre, apart);
+    auto count = hn::Zero(lanes);
     for (int j = 0; j < side; ++j) {
       const std::int16_t* const row = rows[j] + x;
       for (int i = 0; i < side; ++i) {
-        const auto darker = hn::Lt(hn::LoadU(lanes, row + i), centre);
-        count = hn::Sub(count, hn::VecFromMask(lanes, darker));
+        const auto there = hn::LoadU(lanes, row + i);
+        count = hn::Sub(count, hn::VecFromMask(lanes, hn::Lt(there, low)));
+        count = hn::Add(count, hn::VecFromMask(lanes, hn::Lt(high, there)));
       }
     }
     hn::StoreU(count, lanes, out + x);
@@ -106,9 +110,10 @@ void derivative(const GreyLevels& image, double scale_px, FilteredImage& to) {
   }
 }
 
+constexpr float grey_steps = 64;
+
 /// Grey levels in sixty-fourths.
 FilteredImage fine(const GreyLevels& image, int margin_x, int margin_y) {
-  constexpr float steps = 64;
   FilteredImage result{image.width_px, image.height_px, 1, margin_x, margin_y, {}};
   result.values.resize(result.stride() * static_cast<std::size_t>(image.height_px + 2 * margin_y));
   for (int y = 0; y < image.height_px; ++y) {
@@ -116,7 +121,7 @@ FilteredImage fine(const GreyLevels& image, int margin_x, int margin_y) {
         image.values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(result.width);
     std::int16_t* const to = result.row(0, y);
     for (int x = 0; x < result.width; ++x) {
-      const float level = std::min(std::max(steps * from[x], -32000.0f), 32000.0f);
+      const float level = std::min(std::max(grey_steps * from[x], -32000.0f), 32000.0f);
       to[x] = static_cast<std::int16_t>(static_cast<int>(level));
     }
   }
@@ -124,7 +129,8 @@ FilteredImage fine(const GreyLevels& image, int margin_x, int margin_y) {
   return result;
 }
 
-void rank(const GreyLevels& image, int reach, FilteredImage& to) {
+void rank(const GreyLevels& image, int reach, double least_grey, FilteredImage& to) {
+  const auto least = static_cast<std::int16_t>(std::lround(grey_steps * least_grey));
   const FilteredImage levels = fine(image, reach + vector_pixels, reach);
   std::vector<const std::int16_t*> rows(static_cast<std::size_t>(2 * reach + 1));
   std::vector<std::int16_t> row(static_cast<std::size_t>(to.width + vector_pixels));
@@ -132,7 +138,7 @@ void rank(const GreyLevels& image, int reach, FilteredImage& to) {
     for (int j = -reach; j <= reach; ++j) {
       rows[static_cast<std::size_t>(j + reach)] = levels.row(0, y + j) - reach;
     }
-    HWY_DYNAMIC_DISPATCH(ranks)(rows.data(), reach, to.width, row.data());
+    HWY_DYNAMIC_DISPATCH(ranks)(rows.data(), reach, least, to.width, row.data());
     std::copy_n(row.data(), to.width, to.row(0, y));
   }
 }
@@ -175,7 +181,7 @@ FilteredImage filtered(const GreyLevels& image,
       derivative(image, options.scale_px, result);
       break;
     case StretchFilter::rank:
-      rank(image, options.rank_reach_px, result);
+      rank(image, options.rank_reach_px, options.rank_least_grey, result);
       break;
     case StretchFilter::census:
       census(image, result);

@@ -17,9 +17,7 @@ namespace {
 std::pair<double, double> density_and_mismatch(const test::LeafPlane& plane, std::uint64_t seed) {
   const RectifiedPair pair = test::leaf_pair(plane, seed);
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
-  StretchOptions options;
-  options.filter = StretchFilter::grey;  // ranks of leaves without texture are those of noise
-  const auto found = stretch_matcher(options).match(pair, edges, {0, 60});
+  const auto found = stretch_matcher().match(pair, edges, {0, 60});
   int asked = 0, matched = 0, wrong = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double x = edges[i].row_x_px, truth = plane.disparity_at(x, edges[i].y);

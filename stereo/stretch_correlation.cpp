@@ -34,6 +34,9 @@ void check_options(const StretchOptions& o) {
           "give 1 px, for instance");
   require(o.rank_reach_px >= 1 && o.rank_reach_px <= 7, "ranks do not reach 1 to 7 px",
           "give 5, for instance");
+  require(o.rank_least_grey >= 0 && o.rank_least_grey <= 255,
+          "what is darker or brighter in ranks is not from 0 to 255 grey levels",
+          "give 4, for instance");
   require(o.halvings >= 0 && o.halvings <= 6, "halvings are not from 0 to 6", "give 1 or 2");
   require(o.edge_reach_px >= 0 && o.most_contrast_ratio >= 1 && o.margin_px >= 0,
           "a reach or a margin is negative or a contrast ratio below 1", "give larger ones");

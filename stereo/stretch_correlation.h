@@ -14,7 +14,7 @@ namespace vernier {
 enum class StretchFilter {
   grey,        ///< grey levels
   derivative,  ///< differences along the row, smoothed along it by a Gaussian
-  rank,        ///< how many of the pixels about a pixel are darker
+  rank,        ///< how many more of the pixels about a pixel are darker than brighter
   census,      ///< which of eight pixels about a pixel are brighter, as eight images of signs
 };
 
@@ -92,10 +92,12 @@ struct StretchFrame {
 ///
 ///     |d − d'| ≤ gradient · |cyclopean separation|,   (x − x' − (d − d') / 2, y − y')
 ///
-/// With `last`, blocks of the pair before, a block searches the disparities that kept blocks about
-/// it had there and `margin_px` more on either side; everything where there are none, and with a
-/// chance of `full_search_share`, drawn for `frame`. Throws Error on what other matchers refuse and
-/// on options that leave nothing to compare.
+/// Coarse to fine, the images at half their size are searched first, `halvings` times over. A block
+/// then searches the disparities that kept blocks about it had there and `margin_px` more on either
+/// side, and the stretches that they had and one more; everything where there are none. With
+/// `last`, blocks of the pair before, it does the same by those, but for searching everything with
+/// a chance of `full_search_share`, drawn for `frame`. Throws Error on what other matchers refuse
+/// and on options that leave nothing to compare.
 StretchBlocks stretch_blocks(const RectifiedPair& pair,
                              const std::vector<EdgePoint>& left_edges,
                              const DisparityRange& range,

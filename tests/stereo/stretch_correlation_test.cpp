@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The blocks of stretch correlation against the definition, sample by sample, and sequences.
+// The blocks of stretch correlation against the definition, sample by sample; edges of planes.
 #include "stereo/stretch_correlation.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +16,7 @@
 #include "stereo/stretch_search.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
+#include "tests/support/plane_figures.h"
 
 namespace vernier {
 namespace {
@@ -200,31 +201,12 @@ TEST(StretchCorrelation, BlocksAreKeptBySupport) {
   EXPECT_GT(lonely, 0);
 }
 
-/// Edges well inside the right image: the share of them matched, and of these more than 3 px wrong.
-struct Figures {
-  double density = 0, mismatch = 0;
-};
-
-Figures figures(const test::LeafPlane& plane,
-                const std::vector<EdgePoint>& edges,
-                const std::vector<EdgeDisparity>& found) {
-  int asked = 0, matched = 0, wrong = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const double x = edges[i].row_x_px, truth = plane.disparity_at(x, edges[i].y);
-    if (std::abs(edges[i].normal.x()) < 0.0872f || truth < 0) continue;
-    if (x - truth < 20 || x - truth > plane.width_px - 20) continue;
-    ++asked;
-    if (!found[i].matched()) continue;
-    ++matched;
-    wrong += std::abs(found[i].disparity_px - truth) > 3 ? 1 : 0;
-  }
-  return {static_cast<double>(matched) / asked, static_cast<double>(wrong) / matched};
-}
-
-Figures match_plane(const test::LeafPlane& plane, int most_px, const StretchOptions& options) {
+test::PlaneFigures match_plane(const test::LeafPlane& plane,
+                               int most_px,
+                               const StretchOptions& options) {
   const RectifiedPair pair = leaf_pair(plane, 304);
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
-  return figures(plane, edges, stretch_matcher(options).match(pair, edges, {0, most_px}));
+  return test::figures(plane, edges, stretch_matcher(options).match(pair, edges, {0, most_px}));
 }
 
 TEST(StretchCorrelation, FollowsPlanes) {
@@ -240,8 +222,8 @@ TEST(StretchCorrelation, FollowsPlanes) {
   for (const auto& p : planes) {
     StretchOptions options;
     options.shears = p.shears;
-    const Figures f = match_plane({.disparity_px = p.disparity_px, .by_x = p.by_x, .by_y = p.by_y},
-                                  p.most_px, options);
+    const test::PlaneFigures f = match_plane(
+        {.disparity_px = p.disparity_px, .by_x = p.by_x, .by_y = p.by_y}, p.most_px, options);
     EXPECT_GT(f.density, p.density) << p.by_x << " " << p.by_y;
     EXPECT_LT(f.mismatch, 0.01) << p.by_x << " " << p.by_y;
   }
@@ -264,32 +246,31 @@ TEST(StretchCorrelation, EveryFilterFindsAPlane) {
     StretchOptions options;
     options.filter = filter;
     if (filter == StretchFilter::census) options.least_score = 0.3;  // noise has signs too
-    const Figures f = match_plane({.disparity_px = 28, .noise = 1}, 60, options);
+    const test::PlaneFigures f = match_plane({.disparity_px = 28, .noise = 1}, 60, options);
     EXPECT_GT(f.density, 0.7) << static_cast<int>(filter);
     EXPECT_LT(f.mismatch, 0.02) << static_cast<int>(filter);
   }
-}
-
-long searched(const StretchFrame& frame) {
-  long sum = 0;
-  for (const StretchBlock& block : frame.blocks.blocks) sum += block.searched;
-  return sum;
 }
 
 TEST(StretchCorrelation, CoarseToFineSearchesLessAndFindsTheSame) {
   const test::LeafPlane plane{.disparity_px = 40, .by_x = 0.1};
   const RectifiedPair pair = leaf_pair(plane, 306);
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
+  const auto searched = [](const StretchFrame& frame) {
+    long sum = 0;
+    for (const StretchBlock& block : frame.blocks.blocks) sum += block.searched;
+    return sum;
+  };
   StretchOptions options;
   options.halvings = 0;
   const StretchFrame all = match_by_stretch(pair, edges, {0, 90}, options);
-  const Figures of_all = figures(plane, edges, all.at_edges);
+  const test::PlaneFigures of_all = test::figures(plane, edges, all.at_edges);
   for (const int halvings : {1, 2}) {
     options.halvings = halvings;
     const StretchFrame some = match_by_stretch(pair, edges, {0, 90}, options);
     EXPECT_LT(searched(some), searched(all) / 3);
-    EXPECT_GT(figures(plane, edges, some.at_edges).density, of_all.density - 0.02);
-    EXPECT_LT(figures(plane, edges, some.at_edges).mismatch, 0.01);
+    EXPECT_GT(test::figures(plane, edges, some.at_edges).density, of_all.density - 0.02);
+    EXPECT_LT(test::figures(plane, edges, some.at_edges).mismatch, 0.01);
   }
 }
 
@@ -399,11 +380,12 @@ TEST(StretchCorrelation, BlankAndTinyImages) {
 TEST(StretchCorrelation, RefusesOptionsThatLeaveNothing) {
   const RectifiedPair pair = leaf_pair({.width_px = 60, .height_px = 40, .disparity_px = 5}, 311);
   const std::vector<std::function<void(StretchOptions&)>> faults = {
-      [](auto& o) { o.width_px = 16; },       [](auto& o) { o.height_px = 0; },
-      [](auto& o) { o.step_x_px = 0; },       [](auto& o) { o.stretches = 4; },
-      [](auto& o) { o.most_gradient = 2; },   [](auto& o) { o.shears = 0; },
-      [](auto& o) { o.rank_reach_px = 12; },  [](auto& o) { o.halvings = -1; },
-      [](auto& o) { o.edge_reach_px = NAN; }, [](auto& o) { o.scale_px = 0; },
+      [](auto& o) { o.width_px = 16; },        [](auto& o) { o.height_px = 0; },
+      [](auto& o) { o.step_x_px = 0; },        [](auto& o) { o.stretches = 4; },
+      [](auto& o) { o.most_gradient = 2; },    [](auto& o) { o.shears = 0; },
+      [](auto& o) { o.rank_reach_px = 12; },   [](auto& o) { o.halvings = -1; },
+      [](auto& o) { o.edge_reach_px = NAN; },  [](auto& o) { o.scale_px = 0; },
+      [](auto& o) { o.rank_least_grey = -1; },
   };
   for (std::size_t k = 0; k < faults.size(); ++k) {
     StretchOptions options;
@@ -414,89 +396,6 @@ TEST(StretchCorrelation, RefusesOptionsThatLeaveNothing) {
               "")
         << k;
   }
-}
-
-/// A plane that comes nearer by a pixel and a half a frame.
-class StretchSequence : public testing::Test {
- protected:
-  StretchSequence() { options.halvings = 0; }
-
-  static constexpr DisparityRange range{0, 80};
-  static test::LeafPlane plane(int frame) {
-    return {.disparity_px = 20 + 1.5 * frame, .by_x = 0.05};
-  }
-  struct View {
-    explicit View(int frame) : pair(leaf_pair(plane(frame), 312)), edges(canny_edges(pair.left)) {}
-    RectifiedPair pair;
-    std::vector<EdgePoint> edges;
-  };
-  StretchFrame match(const View& view, const StretchFrame* last = nullptr) const {
-    return match_by_stretch(view.pair, view.edges, range, options, last);
-  }
-
-  StretchOptions options;
-};
-
-TEST_F(StretchSequence, FollowsAPlaneWithFewerSearches) {
-  StretchFrame last;
-  for (int k = 0; k < 5; ++k) {
-    const View view(k);
-    StretchFrame now = match(view, k == 0 ? nullptr : &last);
-    const StretchFrame alone = match(view);
-    const Figures f = figures(plane(k), view.edges, now.at_edges);
-    EXPECT_EQ(now.number, static_cast<std::uint32_t>(k));
-    EXPECT_GT(f.density, figures(plane(k), view.edges, alone.at_edges).density - 0.02);
-    EXPECT_LT(f.mismatch, 0.01);
-    if (k > 0) {
-      EXPECT_LT(searched(now), searched(alone) / 3);
-    }
-    last = std::move(now);
-  }
-}
-
-TEST_F(StretchSequence, SomeBlocksSearchEverywhere) {
-  const View view(0);
-  const StretchFrame first = match(view);
-  const auto everywhere = [&](double share, const StretchFrame& last) {
-    options.full_search_share = share;
-    const StretchFrame next = match(view, &last);
-    std::vector<bool> full;
-    for (std::size_t k = 0; k < next.blocks.blocks.size(); ++k) {
-      const int own = next.blocks.blocks[k].searched;
-      full.push_back(own > 0 && own == first.blocks.blocks[k].searched);
-    }
-    return full;
-  };
-  const auto count = [](const std::vector<bool>& v) {
-    return static_cast<double>(std::count(v.begin(), v.end(), true));
-  };
-  const std::vector<bool> none = everywhere(0, first), tenth = everywhere(0.1, first);
-  const double rest = count(everywhere(1, first)) - count(none);
-  // Within five standard deviations of a binomial: false alarm below 1e-6.
-  EXPECT_NEAR(count(tenth) - count(none), 0.1 * rest, 5 * std::sqrt(0.09 * rest));
-  EXPECT_EQ(everywhere(0.1, first), tenth);
-  StretchFrame later = first;
-  later.number = 7;
-  EXPECT_NE(everywhere(0.1, later), tenth);  // other blocks in another frame
-}
-
-TEST_F(StretchSequence, RecoversFromAWrongPast) {
-  const View view(0);
-  StretchFrame frame = match(view);
-  for (StretchBlock& block : frame.blocks.blocks) block.disparity_px = 60;
-  for (int k = 0; k < 3; ++k) frame = match(view, &frame);
-  const Figures f = figures(plane(0), view.edges, frame.at_edges);
-  EXPECT_GT(f.density, 0.85);
-  EXPECT_LT(f.mismatch, 0.01);
-}
-
-TEST_F(StretchSequence, RefusesAnotherSize) {
-  const StretchFrame last = match(View(0));
-  const RectifiedPair small = leaf_pair({.width_px = 100, .height_px = 60}, 313);
-  EXPECT_NE(test::error_message([&] {
-              match_by_stretch(small, {}, {0, 40}, {}, &last);
-            }).find("another size"),
-            std::string::npos);
 }
 
 }  // namespace

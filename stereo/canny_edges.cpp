@@ -9,6 +9,7 @@
 #include <span>
 
 #include "calib/error.h"
+#include "stereo/connected_sets.h"
 #include "stereo/edge_places.h"
 #include "stereo/image_gradient.h"
 #include "stereo/image_noise.h"
@@ -18,27 +19,6 @@ namespace vernier {
 namespace {
 
 constexpr int strip = 48;  // rows at a time, for the processor's cache
-
-/// Sets of connected points; the first of each is its root.
-class ConnectedSets {
- public:
-  int add() {
-    parents_.push_back(static_cast<int>(parents_.size()));
-    return parents_.back();
-  }
-  int root(int i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parents_;
-};
 
 enum Peak : int { no_peak = 0, weak_peak = 1, sharp_peak = 2 };
 

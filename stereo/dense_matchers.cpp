@@ -9,6 +9,7 @@
 
 #include "calib/error.h"
 #include "stereo/matcher_input.h"
+#include "stereo/matrix_of.h"
 
 namespace vernier {
 namespace {
@@ -38,8 +39,7 @@ Search search_of(const DisparityRange& range, int block_px) {
 }
 
 cv::Mat eight_bits(const GreyLevels& grey, const Border& border) {
-  const cv::Mat levels(grey.height_px, grey.width_px, CV_32F,
-                       const_cast<float*>(grey.values.data()));
+  const cv::Mat levels = matrix_of(grey);
   cv::Mat rounded, wide;
   levels.convertTo(rounded, CV_8U);
   cv::copyMakeBorder(rounded, wide, border.sides_px, border.sides_px, border.left_px,

@@ -5,38 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "stereo/connected_sets.h"
 
 namespace vernier {
-namespace {
-
-/// Sets of points, each named by one of them.
-class Chains {
- public:
-  explicit Chains(std::size_t count) : root_(count), size_(count, 1) {
-    std::iota(root_.begin(), root_.end(), 0);
-  }
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    if (a == b) return;
-    root_[static_cast<std::size_t>(a)] = b;
-    size_[static_cast<std::size_t>(b)] += size_[static_cast<std::size_t>(a)];
-  }
-  int size_of(int a) { return size_[static_cast<std::size_t>(root(a))]; }
-
- private:
-  int root(int a) {
-    while (root_[static_cast<std::size_t>(a)] != a) {
-      int& up = root_[static_cast<std::size_t>(a)];
-      a = up = root_[static_cast<std::size_t>(up)];
-    }
-    return a;
-  }
-  std::vector<int> root_, size_;
-};
-
-}  // namespace
-
 void drop_lonely(const PointsByRow& points,
                  int least_points,
                  int reach,
@@ -44,7 +16,8 @@ void drop_lonely(const PointsByRow& points,
                  std::vector<float>& disparity) {
   std::vector<int> matched;  // by row
   std::vector<int> row_begin{0};
-  Chains chains(points.x.size());
+  ConnectedSets chains;
+  for (int p = 0; p < points.size(); ++p) chains.add();
   const auto height = static_cast<int>(points.row_begin.size()) - 1;
   for (int y = 0; y < height; ++y) {
     std::vector<int> from;  // the first of each row above that is not too far left
@@ -83,8 +56,10 @@ void drop_lonely(const PointsByRow& points,
     }
     row_begin.push_back(static_cast<int>(matched.size()));
   }
+  std::vector<int> size(points.x.size(), 0);
+  for (const int p : matched) ++size[static_cast<std::size_t>(chains.root(p))];
   for (const int p : matched) {
-    if (chains.size_of(p) >= least_points) continue;
+    if (size[static_cast<std::size_t>(chains.root(p))] >= least_points) continue;
     disparity[static_cast<std::size_t>(p)] = std::numeric_limits<float>::quiet_NaN();
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "calib/error.h"
 #include "stereo/edge_agreement.h"
@@ -192,17 +193,18 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
       disparity = accepted(points, search, found, options);
     }
   }
-  EdgeRefinement refinement(pair, points, range, found.slanted,
-                            found.slanted ? options.least_slanted_score : options.least_score);
+  std::optional<EdgeRefinement> refinement;
   if (options.refine) {
-    refinement.from(disparity, found.stretch);
+    refinement.emplace(pair, points, range, found.slanted,
+                       found.slanted ? options.least_slanted_score : options.least_score);
+    refinement->from(disparity, found.stretch);
     if (found.slanted) {
       constexpr int sweeps = 20;
       for (int sweep = 0; sweep < sweeps; ++sweep) {
-        refinement.drop_contradicted();
-        if (refinement.grow() == 0) break;
+        refinement->drop_contradicted();
+        if (refinement->grow() == 0) break;
       }
-      refinement.drop_contradicted();
+      refinement->drop_contradicted();
       std::fill(disparity.begin(), disparity.end(), std::numeric_limits<float>::quiet_NaN());
     }
   }
@@ -210,13 +212,13 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
     EdgeMatch& match = matches[edge[k]];
     match.at.disparity_px = disparity[k];
     match.at.confidence = found.winners[k].margin;
-    if (!options.refine) continue;
-    match.refined = refinement.settled(static_cast<int>(k));
+    if (!refinement) continue;
+    match.refined = refinement->settled(static_cast<int>(k));
     if (!std::isnan(disparity[k])) {
       match.at.sigma_px = static_cast<float>(options.unrefined_sigma_px);
     }
     if (!match.refined) continue;
-    const RefinedDisparity& fit = refinement.fit(static_cast<int>(k));
+    const RefinedDisparity& fit = refinement->fit(static_cast<int>(k));
     const float off_centre = left_edges[edge[k]].row_x_px - static_cast<float>(points.x[k]);
     match.at.disparity_px = fit.disparity_px + (1 - fit.stretch) * off_centre;
     match.at.sigma_px = std::hypot(fit.sigma_px, static_cast<float>(options.sigma_floor_px));

@@ -18,6 +18,7 @@
 #include "calib/image_file.h"
 #include "calib/program_run.h"
 #include "stereo/matcher_input.h"
+#include "stereo/matrix_of.h"
 
 namespace vernier {
 namespace {
@@ -127,8 +128,7 @@ std::vector<std::string> filled(const Command& command,
 }
 
 void write_image(const fs::path& file, const GreyLevels& grey) {
-  const cv::Mat levels(grey.height_px, grey.width_px, CV_32F,
-                       const_cast<float*>(grey.values.data()));
+  const cv::Mat levels = matrix_of(grey);
   cv::Mat rounded;
   levels.convertTo(rounded, CV_8U);
   std::vector<uchar> bytes;

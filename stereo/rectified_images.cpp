@@ -8,6 +8,7 @@
 
 #include "calib/error.h"
 #include "calib/ordered_parallel.h"
+#include "stereo/matrix_of.h"
 #include "stereo/patch_alignment.h"
 
 namespace vernier {
@@ -39,7 +40,7 @@ void rectify(const Rig& rig,
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   rectified = {width, height, std::vector<float>(pixels)};
   valid = {width, height, std::vector<std::uint8_t>(pixels)};
-  const cv::Mat image(raw.height_px, raw.width_px, CV_32F, const_cast<float*>(raw.values.data()));
+  const cv::Mat image = matrix_of(raw);
   const RawPixels source(rig, geometry, camera);
   for_each_index(static_cast<std::size_t>(height), threads, [&](std::size_t y) {
     for (int x = 0; x < width; ++x) {

@@ -11,6 +11,7 @@
 
 #include "calib/error.h"
 #include "stereo/harris_corners.h"
+#include "stereo/matrix_of.h"
 #include "stereo/patch_alignment.h"
 #include "stereo/patch_search.h"
 #include "stereo/rectified_images.h"
@@ -62,10 +63,6 @@ void check(const RectifiedPair& pair,
   }
 }
 
-cv::Mat view_of(const GreyLevels& image) {
-  return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
-}
-
 /// At half its size: pixel (x, y) is the mean of four and lies at (2x + 0.5, 2y + 0.5).
 cv::Mat halved(const cv::Mat& image) {
   cv::Mat half;
@@ -92,10 +89,10 @@ struct Search {
   int least_x, most_x, rows;  ///< half-size pixels: disparities, and rows of the band
 
   Search(const RectifiedPair& pair, const DisparityRange& range, int band_px)
-      : half_left(halved(view_of(pair.left))),
-        half_right(halved(view_of(pair.right))),
-        left(smoothed(view_of(pair.left))),
-        right(smoothed(view_of(pair.right))),
+      : half_left(halved(matrix_of(pair.left))),
+        half_right(halved(matrix_of(pair.right))),
+        left(smoothed(matrix_of(pair.left))),
+        right(smoothed(matrix_of(pair.right))),
         in_left(half_left, half_px),
         in_right(half_right, half_px),
         least_x(static_cast<int>(std::floor(0.5 * range.least_px)) - 1),

@@ -13,14 +13,11 @@
 #include "calib/simulated_pairs.h"
 #include "tests/support/bent_board.h"
 #include "tests/support/pair_priors.h"
+#include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
-
-double in_sigma(const Rig& a, const Rig& b, const Eigen::MatrixXd& covariance) {
-  return difference(a, b).cwiseQuotient(covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
-}
 
 /// Largest relative difference of standard deviations.
 double sd_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
@@ -33,7 +30,7 @@ TEST(CombineEvidence, ABentBoardStaysAnUnknown) {
   const RigEstimate bent =
       calibrate(views, {.pixel_sigma_px = 0.2, .warp = BoardWarp::free, .check_input = false});
   const JointCalibration one = combine({{"bent", bent, {}}}).joint;
-  EXPECT_LT(in_sigma(one.estimate.rig, bent.rig, *bent.covariance_mvb), 1e-5);
+  EXPECT_LT(test::worst_sigmas(one.estimate.rig, bent.rig, *bent.covariance_mvb), 1e-5);
   EXPECT_LT(sd_difference(*one.estimate.covariance_mvb, *bent.covariance_mvb), 1e-5);
   EXPECT_LT((one.estimate.evidence->warp_m - bent.evidence->warp_m).norm(), 1e-8);
   EXPECT_EQ(one.estimate.calibration->dof, bent.calibration->dof);
@@ -48,7 +45,7 @@ TEST(CombineEvidence, ABentBoardStaysAnUnknown) {
       combine({{"first", calibrate(first, how), {}}, {"second", calibrate(second, how), {}}},
               {.keep_disagreeing = true})
           .joint;
-  EXPECT_LT(in_sigma(two.estimate.rig, bent.rig, *bent.covariance_mvb), 1e-5);
+  EXPECT_LT(test::worst_sigmas(two.estimate.rig, bent.rig, *bent.covariance_mvb), 1e-5);
   EXPECT_LT(sd_difference(*two.estimate.covariance_mvb, *bent.covariance_mvb), 1e-5);
 }
 
@@ -78,7 +75,7 @@ TEST(CombineEvidence, ABoardKeepsThePriorItWasCalibratedWith) {
   const RigEstimate with = calibrate(board.observations, how);
   ASSERT_EQ(with.evidence->priors.size(), 2u);
   const JointCalibration one = combine({{"with", with, {}}}).joint;
-  EXPECT_LT(in_sigma(one.estimate.rig, with.rig, *with.covariance_mvb), 1e-5);
+  EXPECT_LT(test::worst_sigmas(one.estimate.rig, with.rig, *with.covariance_mvb), 1e-5);
   EXPECT_LT(sd_difference(*one.estimate.covariance_mvb, *with.covariance_mvb), 1e-5);
 }
 
@@ -120,7 +117,7 @@ TEST(CombineEvidence, FewPairsAnImageAndAnEstimatedScaleKeepTheOrderIndifferent)
   const CombineInput datasheet{"datasheet", prior, {}};
   const RigEstimate one = combine({datasheet, batch(37), batch(38)}).joint.estimate;
   const RigEstimate two = combine({datasheet, batch(38), batch(37)}).joint.estimate;
-  EXPECT_LT(in_sigma(one.rig, two.rig, *one.covariance_mvb), 3e-6);
+  EXPECT_LT(test::worst_sigmas(one.rig, two.rig, *one.covariance_mvb), 3e-6);
   EXPECT_EQ(one.calibration->pair_outliers.size(), two.calibration->pair_outliers.size());
 }
 
@@ -215,9 +212,9 @@ TEST(CombineEvidence, BoardsAndPairsWithoutAPriorInAnyOrder) {
       b{"b", {}, simulate_pairs(truth, 51, 0, few)};
   const RigEstimate one = combine({{"board", board, {}}, a, b}).joint.estimate;
   const RigEstimate two = combine({{"board", board, {}}, b, a}).joint.estimate;
-  EXPECT_LT(in_sigma(one.rig, two.rig, *one.covariance_mvb), 3e-6);
+  EXPECT_LT(test::worst_sigmas(one.rig, two.rig, *one.covariance_mvb), 3e-6);
   const RigEstimate again = combine({{"one", one, {}}}).joint.estimate;
-  EXPECT_LT(in_sigma(one.rig, again.rig, *one.covariance_mvb), 3e-6);
+  EXPECT_LT(test::worst_sigmas(one.rig, again.rig, *one.covariance_mvb), 3e-6);
 }
 
 TEST(CombineEvidence, DriftHasTheSpreadThatIsStated) {

@@ -21,6 +21,7 @@
 #include "tests/support/error_message.h"
 #include "tests/support/jet_sampson.h"
 #include "tests/support/pair_priors.h"
+#include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -38,11 +39,6 @@ CombineInput as_input(const RigKnowledge& known) {
 
 Eigen::Vector4d exchanged(const Eigen::Vector4d& y) { return {y[2], y[3], y[0], y[1]}; }
 
-/// Largest distance of two rigs, in standard deviations of `covariance`.
-double in_sigma(const Rig& a, const Rig& b, const Eigen::MatrixXd& covariance) {
-  return difference(a, b).cwiseQuotient(covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
-}
-
 TEST(JointCalibration, CeresAndTheResolverAgreeWithJetsOnPairs) {
   const Rig truth = test::stereo_rig();
   const PairObservations pairs = simulate_pairs(truth, 51);
@@ -53,8 +49,8 @@ TEST(JointCalibration, CeresAndTheResolverAgreeWithJetsOnPairs) {
   const EpipolarMinimum again = PairResolver(pairs).minimise(known.rig, {.priors = {prior}});
   const Rig jets = test::solve_by_jets(pairs, prior, known.rig);
   const Eigen::MatrixXd& C = *ours.estimate.covariance_mvb;
-  EXPECT_LT(in_sigma(ours.estimate.rig, again.rig, C), 1e-6);
-  EXPECT_LT(in_sigma(ours.estimate.rig, jets, C), 1e-6);
+  EXPECT_LT(test::worst_sigmas(ours.estimate.rig, again.rig, C), 1e-6);
+  EXPECT_LT(test::worst_sigmas(ours.estimate.rig, jets, C), 1e-6);
   const EpipolarSystem system =
       epipolar_system(PackedPairs(pairs), ours.estimate.rig, {.priors = {prior}},
                       Eigen::MatrixXd::Identity(16, 16));
@@ -134,7 +130,7 @@ TEST(JointCalibration, SampsonIsFullBundleAdjustmentToATenThousandthOfASigma) {
   const Eigen::MatrixXd C = epipolar_system(PackedPairs(pairs), sampson.rig, {.priors = {prior}},
                                             Eigen::MatrixXd::Identity(16, 16))
                                 .information.inverse();
-  const double distance = in_sigma(sampson.rig, bundle, C);
+  const double distance = test::worst_sigmas(sampson.rig, bundle, C);
   RecordProperty("sampson_against_bundle_sigma", std::to_string(distance));
   EXPECT_LT(distance, 2e-4);
 }
@@ -159,7 +155,8 @@ TEST(Combine, BatchesInAnyOrderAreTheBatchSolution) {
     inputs.insert(inputs.end(), batches.begin(), batches.end());
     const Combination combined = combine(inputs, options);
     for (const CombinedInput& input : combined.inputs) EXPECT_TRUE(input.used) << input.name;
-    worst = std::max(worst, in_sigma(combined.joint.estimate.rig, at_once.estimate.rig, C));
+    worst =
+        std::max(worst, test::worst_sigmas(combined.joint.estimate.rig, at_once.estimate.rig, C));
     std::rotate(batches.begin(), batches.begin() + 3, batches.end());
     std::swap(batches[0], batches[5]);
   }
@@ -205,10 +202,10 @@ TEST(Combine, BoardsPairsAndDatasheetsGoThroughOneCost) {
   for (Eigen::Index i = 0; i < 16; ++i) {
     EXPECT_LT(C(i, i), 1.02 * std::min((*a.covariance_mvb)(i, i), (*b.covariance_mvb)(i, i)));
   }
-  EXPECT_LT(in_sigma(all.rig, truth, C), 5);
+  EXPECT_LT(test::worst_sigmas(all.rig, truth, C), 5);
   // And a board alone goes through unchanged.
   const Combination one = combine({{"a", a, {}}});
-  EXPECT_LT(in_sigma(one.joint.estimate.rig, a.rig, *a.covariance_mvb), 1e-6);
+  EXPECT_LT(test::worst_sigmas(one.joint.estimate.rig, a.rig, *a.covariance_mvb), 1e-6);
   EXPECT_TRUE(one.joint.estimate.covariance_mvb->isApprox(*a.covariance_mvb, 1e-6));
 }
 
@@ -252,7 +249,8 @@ TEST(JointCalibration, ARigFileKeepsPairsAndPriors) {
   EXPECT_GT(read.calibration->pair_outliers.size(), 0u);
   // What is in the file gives the same rig again.
   const Combination again = combine({{"rig.json", read, {}}});
-  EXPECT_LT(in_sigma(again.joint.estimate.rig, joint.estimate.rig, *joint.estimate.covariance_mvb),
+  EXPECT_LT(test::worst_sigmas(again.joint.estimate.rig, joint.estimate.rig,
+                               *joint.estimate.covariance_mvb),
             1e-6);
 }
 

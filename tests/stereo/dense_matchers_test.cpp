@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "calib/random.h"
+#include "tests/support/edge_at.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
@@ -142,18 +143,9 @@ TEST(DenseMatchers, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-EdgePoint edge_at(float row_x, int y) {
-  EdgePoint edge;
-  edge.pixel_px << row_x, static_cast<float>(y);
-  edge.normal << 1, 0;
-  edge.x = static_cast<int>(std::lround(row_x));
-  edge.y = y;
-  edge.row_x_px = row_x;
-  return edge;
-}
-
 TEST(DenseMatchers, GiveTheMapAtEdges) {
-  const std::vector<EdgePoint> edges = {edge_at(50.3f, 20), edge_at(120, 41), edge_at(2, 5)};
+  const std::vector<EdgePoint> edges = {test::edge_at(50.3f, 20), test::edge_at(120, 41),
+                                        test::edge_at(2, 5)};
   for (const Matcher& matcher : {bm(), sgbm()}) {
     EXPECT_FALSE(matcher.of_edges);
     const auto found = matcher.match(plane(9), edges, {0, 40});
@@ -179,7 +171,7 @@ TEST(DenseMatchers, BecomeSparserByUniqueness) {
   }
   std::vector<EdgePoint> edges;
   for (int i = 0; i < 3000; ++i) {
-    edges.push_back(edge_at(static_cast<float>(30 + i % 160), 5 + i / 160));
+    edges.push_back(test::edge_at(static_cast<float>(30 + i % 160), 5 + i / 160));
   }
   for (const auto& matchers : {by_uniqueness(BmOptions{}), by_uniqueness(SgbmOptions{})}) {
     ASSERT_EQ(matchers.size(), 9u);
@@ -246,8 +238,8 @@ TEST(SampleAtEdges, InterpolatesAlongTheRowAndTakesTheForegroundAtAStep) {
     for (int x = 0; x < 60; ++x) map.values.push_back(x < 30 ? 0.5f * x : 40.0f);
   }
   map.values[4 * 60 + 50] = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<EdgePoint> edges = {edge_at(10.3f, 4), edge_at(29.2f, 4), edge_at(50, 4),
-                                        edge_at(50.8f, 4)};
+  const std::vector<EdgePoint> edges = {test::edge_at(10.3f, 4), test::edge_at(29.2f, 4),
+                                        test::edge_at(50, 4), test::edge_at(50.8f, 4)};
   const auto at = sample_at_edges(map, edges);
   EXPECT_NEAR(at[0].disparity_px, 5.15, 1e-5);
   EXPECT_EQ(at[1].disparity_px, 40);
@@ -256,7 +248,7 @@ TEST(SampleAtEdges, InterpolatesAlongTheRowAndTakesTheForegroundAtAStep) {
   EXPECT_EQ(at[3].disparity_px, 40);
   EXPECT_EQ(sample_at_edges(map, edges, EdgeSampling::nearest)[1].disparity_px, 14.5f);
   EXPECT_NE(test::error_message([&] {
-              sample_at_edges(map, {edge_at(60, 4)});
+              sample_at_edges(map, {test::edge_at(60, 4)});
             }).find("disparity map: is 60x9 pixels large, and an edge is at (60, 4)"),
             std::string::npos);
 }

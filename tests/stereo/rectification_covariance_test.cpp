@@ -11,23 +11,12 @@
 #include "calib/error.h"
 #include "calib/sampler.h"
 #include "stereo/vertical_disparity.h"
+#include "tests/support/calibrations_covariance.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 namespace {
-
-/// A covariance with standard deviations a calibration would have, correlated.
-Covariance covariance(const Rig& rig) {
-  const int n = parameter_count(rig);
-  Eigen::MatrixXd root(n, n);
-  for (int i = 0; i < n; ++i) {
-    const std::string name = parameter_names(rig)[i];
-    const bool px = name.find("_px") != std::string::npos;
-    for (int j = 0; j < n; ++j) root(i, j) = (px ? 0.3 : 5e-4) * std::sin(1.0 + 7 * i * n + 3 * j);
-  }
-  return {CovarianceKind::prior, parameter_names(rig), root * root.transpose()};
-}
 
 /// (d, dy) of a raw pair in the images that a rig rectifies, at a focal length and centre.
 Eigen::Vector2d disparities(const Rig& rig, const RectifiedGeometry& at, const PixelPair& raw) {
@@ -41,7 +30,7 @@ TEST(RectificationCovariance, DerivativesAreThoseOfDifferences) {
   for (const char* model : {"pinhole", "radial1", "opencv4", "opencv5", "opencv8", "fisheye4"}) {
     const Rig rig = test::stereo_rig(camera_model(model));
     const RectifiedGeometry g = rectified_geometry(rig);
-    const RectificationUncertainty uncertainty(rig, covariance(rig).matrix, g);
+    const RectificationUncertainty uncertainty(rig, test::calibrations_covariance(rig).matrix, g);
     for (const auto& left_px : {Eigen::Vector2d(320, 240), {600, 20}, {150, 430}}) {
       const PixelPair raw{raw_pixel(rig, g, 0, left_px).value(),
                           raw_pixel(rig, g, 1, left_px - Eigen::Vector2d(40, 0)).value()};
@@ -65,7 +54,7 @@ TEST(RectificationCovariance, DerivativesAreThoseOfDifferences) {
 TEST(RectificationCovariance, GaugeFacts) {
   const Rig rig = test::stereo_rig();
   const RectifiedGeometry g = rectified_geometry(rig);
-  const RectificationUncertainty uncertainty(rig, covariance(rig).matrix, g);
+  const RectificationUncertainty uncertainty(rig, test::calibrations_covariance(rig).matrix, g);
   Eigen::VectorXd longer = Eigen::VectorXd::Zero(parameter_count(rig));
   longer.tail<3>() = rig.T_camera_first[1].t;
   const auto J = uncertainty.by_rig({200, 100}, 30).value();
@@ -75,9 +64,10 @@ TEST(RectificationCovariance, GaugeFacts) {
   level.cameras[1].parameters = level.cameras[0].parameters;
   level.T_camera_first[1] = Pose{Eigen::Matrix3d::Identity(), {-0.2, 0, 0}};
   const RectifiedGeometry same = rectified_geometry(level, {.f_px = level.cameras[0].f_px()});
-  const auto by_rig = RectificationUncertainty(level, covariance(level).matrix, same)
-                          .by_rig({200, 100}, 30)
-                          .value();
+  const auto by_rig =
+      RectificationUncertainty(level, test::calibrations_covariance(level).matrix, same)
+          .by_rig({200, 100}, 30)
+          .value();
   Eigen::VectorXd centres = Eigen::VectorXd::Zero(14);
   centres[2] = centres[6] = 1;  // left and right ox_px
   EXPECT_LT((by_rig * centres).norm(), 1e-10);
@@ -124,7 +114,7 @@ TEST(RectificationCovariance, TurnAboutTheBaselineScalesTheVerticalPart) {
 TEST(RectificationCovariance, SampledIsTheLinearOneAtSmallPsi) {
   RigEstimate estimate;
   estimate.rig = test::stereo_rig();
-  estimate.covariance = covariance(estimate.rig);
+  estimate.covariance = test::calibrations_covariance(estimate.rig);
   const RectifiedGeometry g = rectified_geometry(estimate.rig);
   const RectificationUncertainty uncertainty(estimate.rig, estimate.covariance->matrix, g);
   const RigSampler sampler(estimate);
@@ -198,7 +188,7 @@ TEST(RectificationCovariance, BadInputIsNamed) {
   Rig folded = test::stereo_rig(Radial1{});
   for (Camera& camera : folded.cameras) camera.parameters[4] = -0.6;
   const RectifiedGeometry wide = rectified_geometry(folded, {.f_px = 300});
-  const RectificationUncertainty u(folded, covariance(folded).matrix, wide);
+  const RectificationUncertainty u(folded, test::calibrations_covariance(folded).matrix, wide);
   EXPECT_FALSE(u.covariance_px2(wide.centre_px + Eigen::Vector2d(315, 0), 5).has_value());
 }
 

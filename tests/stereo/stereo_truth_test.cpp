@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/random.h"
+#include "tests/support/edge_at.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
@@ -130,18 +131,8 @@ TEST(StereoTruth, HidesNothingOfASlantedPlane) {
   }
 }
 
-EdgePoint edge_at(float row_x, int y) {
-  EdgePoint edge;
-  edge.pixel_px << row_x, static_cast<float>(y);
-  edge.normal << 1, 0;
-  edge.x = static_cast<int>(std::lround(row_x));
-  edge.y = y;
-  edge.row_x_px = row_x;
-  return edge;
-}
-
 TruthAtEdge truth_of(const StereoTruth& truth, float row_x, int y) {
-  return truth_at(truth, {edge_at(row_x, y)}).at(0);
+  return truth_at(truth, {test::edge_at(row_x, y)}).at(0);
 }
 
 TEST(TruthAtEdge, IsThatOfTheSubpixelEdgeOnASlantedPlane) {
@@ -233,7 +224,7 @@ TEST(StereoTruthOfFiles, IsRefusedWithTheFileNamed) {
   write_disparity(scene.right_truth, {4, 3, std::vector<float>(12, unknown)});
   EXPECT_NE(complaint(4, 3).find("right.pfm: holds no known disparity"), std::string::npos);
   EXPECT_NE(test::error_message([&] {
-              truth_at(stereo_truth(map), {edge_at(4, 0)});
+              truth_at(stereo_truth(map), {test::edge_at(4, 0)});
             }).find("4x3 pixels large, and an edge is at (4, 0)"),
             std::string::npos);
 }

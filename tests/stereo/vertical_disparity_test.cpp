@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calib/error.h"
+#include "tests/support/calibrations_covariance.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
@@ -18,18 +19,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
-}
-
-/// A covariance with standard deviations a calibration would have, correlated.
-Covariance covariance(const Rig& rig) {
-  const int n = parameter_count(rig);
-  Eigen::MatrixXd root(n, n);
-  for (int i = 0; i < n; ++i) {
-    const std::string name = parameter_names(rig)[i];
-    const bool px = name.find("_px") != std::string::npos;
-    for (int j = 0; j < n; ++j) root(i, j) = (px ? 0.3 : 5e-4) * std::sin(1.0 + 7 * i * n + 3 * j);
-  }
-  return {CovarianceKind::prior, parameter_names(rig), root * root.transpose()};
 }
 
 TEST(VerticalDisparity, IsNoneForTheRigThatMadeThePixels) {
@@ -70,7 +59,8 @@ TEST(VerticalDisparity, OfACentreThatMovesDownIsThatMuchEverywhere) {
 
 TEST(VerticalDisparity, PointsThatTheRightCameraDoesNotSeeAreAbsentAndCounted) {
   const Rig rig = test::stereo_rig();
-  const VerticalDisparityMap map = vertical_disparity_map(rig, covariance(rig).matrix, 10, 8, 0.5);
+  const VerticalDisparityMap map =
+      vertical_disparity_map(rig, test::calibrations_covariance(rig).matrix, 10, 8, 0.5);
   int nans = 0;
   for (const double sd : map.sd_px) nans += std::isnan(sd);
   EXPECT_EQ(nans, map.absent);
@@ -85,7 +75,7 @@ TEST(VerticalDisparity, PointsThatTheRightCameraDoesNotSeeAreAbsentAndCounted) {
 TEST(VerticalDisparity, SampledIsTheLinearOneAtSmallPsi) {
   RigEstimate estimate;
   estimate.rig = test::stereo_rig();
-  estimate.covariance = covariance(estimate.rig);
+  estimate.covariance = test::calibrations_covariance(estimate.rig);
   const std::vector<PixelPair> pairs{pair_at_distance(estimate.rig, {320, 240}, 3).value(),
                                      pair_at_distance(estimate.rig, {200, 40}, 3).value(),
                                      pair_at_distance(estimate.rig, {600, 440}, 3).value()};
@@ -104,7 +94,7 @@ TEST(VerticalDisparity, SampledIsTheLinearOneAtSmallPsi) {
 
 TEST(VerticalDisparity, BadInputIsNamed) {
   const Rig rig = test::stereo_rig();
-  const Eigen::MatrixXd C = covariance(rig).matrix;
+  const Eigen::MatrixXd C = test::calibrations_covariance(rig).matrix;
   const auto complaint = [&](const Rig& r, int columns, double distance_m) {
     try {
       vertical_disparity_map(r, C, columns, 9, distance_m);

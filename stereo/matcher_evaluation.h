@@ -49,7 +49,7 @@ struct MatcherScore {
 bool is_occluded(const TruthAtEdge& truth, OutlineRule rule);
 
 /// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
-/// that counts.
+/// that counts. 0 between the point's and its crossing's (TruthAtEdge::crossing_px).
 double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule);
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,

@@ -21,14 +21,6 @@ void check_sizes(const std::vector<EdgePoint>& edges,
               "give one of each for every edge");
 }
 
-bool is_asked(const EdgePoint& edge,
-              const TruthAtEdge& truth,
-              int width_px,
-              const EvaluationOptions& options) {
-  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.least_angle_rad) &&
-         edge.x >= options.border_px && edge.x < width_px - options.border_px;
-}
-
 /// Counts towards EdgeFigures.
 struct Tally {
   EdgeFigures of;
@@ -70,6 +62,14 @@ int angle_bin(const EdgePoint& edge) {
 }
 
 }  // namespace
+
+bool is_asked(const EdgePoint& edge,
+              const TruthAtEdge& truth,
+              int width_px,
+              const EvaluationOptions& options) {
+  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.least_angle_rad) &&
+         edge.x >= options.border_px && edge.x < width_px - options.border_px;
+}
 
 bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
   return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;

@@ -45,6 +45,13 @@ struct MatcherScore {
   double coverage_95 = 0, z_rms = 0;
 };
 
+/// Whether an edge is one of those that are asked about: its truth is known, it is not too near to
+/// the row nor to the border.
+bool is_asked(const EdgePoint& edge,
+              const TruthAtEdge& truth,
+              int width_px,
+              const EvaluationOptions& options);
+
 /// Whether the right image does not show an edge, by the rule.
 bool is_occluded(const TruthAtEdge& truth, OutlineRule rule);
 

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cctype>
 #include <opencv2/core/utility.hpp>
 
+#include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "cli/disparity_picture.h"
 #include "cli/evaluate_draws.h"
@@ -11,6 +13,7 @@
 #include "cli/evaluate_scene.h"
 #include "cli/matcher_names.h"
 #include "cli/option_checks.h"
+#include "cli/report_evaluation.h"
 #include "cli/session.h"
 #include "cli/spare_inputs.h"
 #include "stereo/canny_edges.h"
@@ -21,11 +24,13 @@
 namespace vernier::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
   StereoSceneFile scene;
   std::string scenes, matchers = "edge,sgbm", outline = "either", picture, error_picture;
   std::vector<std::string> commands;
-  std::string psi_c, rows_px;
+  std::string psi_c, rows_px, output;
   DrawOptions draws;
   bool repair = false, equal_density = false;
 };
@@ -37,21 +42,49 @@ std::vector<StereoSceneFile> scene_files(const Options& options) {
   return {scene};
 }
 
-void write_pictures(const Options& options, const Scene& scene, const Run& run, OutlineRule rule) {
-  if (!options.picture.empty()) {
-    write_disparity_picture(scene.pair.left, scene.edges, run.found, scene.file.range,
-                            options.picture);
+void write_pictures(const std::string& disparities,
+                    const std::string& errors,
+                    const Scene& scene,
+                    const Run& run,
+                    OutlineRule rule) {
+  if (!disparities.empty()) {
+    write_disparity_picture(scene.pair.left, scene.edges, run.found, scene.file.range, disparities);
   }
-  if (options.error_picture.empty()) return;
-  std::vector<double> errors;
+  if (errors.empty()) return;
+  std::vector<double> errors_px;
   for (std::size_t i = 0; i < scene.edges.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
     const bool asked = truth.known && !is_occluded(truth, rule);
-    errors.push_back(!asked                    ? std::numeric_limits<double>::quiet_NaN()
-                     : !run.found[i].matched() ? std::numeric_limits<double>::infinity()
-                                               : error_px(run.found[i], truth, rule));
+    errors_px.push_back(!asked                    ? std::numeric_limits<double>::quiet_NaN()
+                        : !run.found[i].matched() ? std::numeric_limits<double>::infinity()
+                                                  : error_px(run.found[i], truth, rule));
   }
-  write_error_picture(scene.pair.left, scene.edges, errors, options.error_picture);
+  write_error_picture(scene.pair.left, scene.edges, errors_px, errors);
+}
+
+/// The folder of a report, made if it is not there; an evaluation in it is replaced.
+fs::path folder_of(const Options& options) {
+  const fs::path folder = options.output;
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!fs::is_directory(folder)) {
+    throw Error(options.output, "cannot be made a folder: " + failed.message(),
+                "name another with -o");
+  }
+  if (fs::exists(folder / "study.toml")) {
+    throw Error(options.output, "holds a study", "give the evaluation a folder of its own");
+  }
+  fs::remove(folder / evaluation_file);  // its pictures are about to be replaced
+  return folder;
+}
+
+/// A scene's name as part of a file's.
+std::string file_stem(std::size_t number, const std::string& name) {
+  std::string stem = fmt::format("{:02}-", number + 1);
+  for (const char c : name) {
+    stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  }
+  return stem;
 }
 
 void check_outputs(const Options& options, const std::vector<StereoSceneFile>& files) {
@@ -135,10 +168,23 @@ void run(const Options& options, Session& session) {
   Report report{std::vector<std::vector<Json>>(matchers.size())};
   Progress progress(session, "evaluating");
   int done = 0;
+  const fs::path folder = options.output.empty() ? fs::path() : folder_of(options);
   for (const StereoSceneFile& file : files) {
     const Scene scene = read_scene(file, options.repair, session);
     const std::vector<Run> runs = run_scene(scene, matchers, how, report);
-    if (done == 0) write_pictures(options, scene, runs.front(), how.outline);
+    if (done == 0) {
+      write_pictures(options.picture, options.error_picture, scene, runs[0], how.outline);
+    }
+    if (!folder.empty()) {
+      const std::string stem = file_stem(static_cast<std::size_t>(done), file.name);
+      const std::string disparity = stem + ".disparity.png", error = stem + ".error.png";
+      write_pictures(folder / disparity, folder / error, scene, runs[0], how.outline);
+      report.scenes.back()["pictures"] = {{"matcher", matchers[0].name},
+                                          {"disparity", disparity},
+                                          {"error", error},
+                                          {"least_px", file.range.least_px},
+                                          {"most_px", file.range.most_px}};
+    }
     if (options.equal_density) equal_density.add(scene, runs, how);
     under_error.add(scene, session);
     progress.update(++done, static_cast<int>(files.size()));
@@ -150,6 +196,7 @@ void run(const Options& options, Session& session) {
     report.text += equal_density.text();
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
+  if (!folder.empty()) write_atomically(folder / evaluation_file, json.dump(1) + "\n");
   session.result(json, report.text + under_error.text());
 }
 
@@ -220,6 +267,8 @@ void add_evaluate(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"either", "foreground"}))
       ->capture_default_str();
   verb->add_flag("--repair", o->repair, "take away what rows differ by, found from corners");
+  verb->add_option("-o,--output", o->output,
+                   "folder for the figures and pictures of every pair, for vernier report");
   verb->add_option("--picture", o->picture,
                    "PNG of the first pair's edges by the first matcher, blue far to red near")
       ->check(png_name);

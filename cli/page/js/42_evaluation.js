@@ -135,7 +135,9 @@ function calibration_error_section(evaluation, names) {
     + ` covariance (${rig}) would rectify it. ${PSI_MEANING} Matches are scored against the`
     + " disparities that the pair then has: a mismatch was matched to something else. What the"
     + " geometry itself does to disparities stands apart, as bias; the error in found disparities"
-    + " holds both. Repair takes away what the rows differ by, found from corners of the pair."));
+    + " holds both. Repair takes away what the rows differ by, found from corners of the pair."
+    + " The pair as given is taken to have exact rows: where it has not, what repair takes away of"
+    + " its own error is shown as rows."));
   const drawn = cells.filter((cell) => cell.psi_c > 0);
   if (drawn.length > 2) made.append(mismatch_figure(drawn, names) || "");
   const rows = cells.flatMap((cell) => names.map((name) =>

@@ -29,8 +29,23 @@ double cpu_ms() {
          ms(ended.ru_utime) + ms(ended.ru_stime);
 }
 
+[[noreturn]] void refuse_exchanged(const Scene& scene, const std::string& why) {
+  throw Error(scene.file.left.string(), "left and right seem exchanged: " + why,
+              "exchange --left and --right");
+}
+
+/// Corners that match only the other way round.
+void check_corners_not_exchanged(const Scene& scene, const VerticalField& field) {
+  if (field.known || !field.unrectified) return;
+  const VerticalField other = vertical_field({scene.pair.right, scene.pair.left}, scene.file.range);
+  if (!other.known || other.unrectified) return;
+  refuse_exchanged(scene, fmt::format("{} corners match as given, {} the other way round",
+                                      field.matched, other.matched));
+}
+
 void repair(Scene& scene, bool wanted, Session& session) {
   const VerticalField field = vertical_field(scene.pair, scene.file.range);
+  check_corners_not_exchanged(scene, field);
   if (!field.significant && !field.unrectified && !wanted) return;
   session.say(scene.file.name + ": " + describe(field));
   if (field.unrectified) {
@@ -100,12 +115,9 @@ void check_not_exchanged(const Matcher& matcher, const Scene& scene, const Run& 
   const double exchanged =
       count(matcher.match(other, edges, scene.file.range)) / static_cast<double>(edges.size());
   if (exchanged < few || exchanged < times_more * given) return;
-  throw Error(
-      scene.file.left.string(),
-      fmt::format("left and right seem exchanged: {:.0f} % of the edges are found as given, "
-                  "{:.0f} % the other way round",
-                  100 * given, 100 * exchanged),
-      "exchange --left and --right");
+  refuse_exchanged(scene, fmt::format("{:.0f} % of the edges are found as given, {:.0f} % the "
+                                      "other way round",
+                                      100 * given, 100 * exchanged));
 }
 
 }  // namespace vernier::cli

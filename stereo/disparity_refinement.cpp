@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stereo/padded_image.h"
-
 // As in stereo/edge_support.cpp.
 #define HWY_WANT_AVX3_DL
 #define HWY_DISABLED_TARGETS \
@@ -250,15 +248,22 @@ namespace vernier {
 
 HWY_EXPORT(refine_all);
 
-std::vector<RefinedDisparity> refine_disparities(const GreyLevels& left,
-                                                 const GreyLevels& right,
-                                                 const std::vector<RefinementStart>& starts,
-                                                 const RefinementOptions& options) {
-  constexpr int margin_px = 48;  // of patches stretched fourfold at the border
+namespace {
+
+constexpr int margin_px = 48;  // of patches stretched fourfold at the border
+
+}  // namespace
+
+DisparityRefiner::DisparityRefiner(const GreyLevels& left,
+                                   const GreyLevels& right,
+                                   const RefinementOptions& options)
+    : left_(left, margin_px), right_(right, margin_px), options_(options) {}
+
+std::vector<RefinedDisparity> DisparityRefiner::refine(
+    const std::vector<RefinementStart>& starts) const {
   std::vector<RefinedDisparity> refined;
   refined.reserve(starts.size());
-  HWY_DYNAMIC_DISPATCH(refine_all)
-  (PaddedImage(left, margin_px), PaddedImage(right, margin_px), starts, options, refined);
+  HWY_DYNAMIC_DISPATCH(refine_all)(left_, right_, starts, options_, refined);
   return refined;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stereo/grey_levels.h"
+#include "stereo/padded_image.h"
 
 namespace vernier {
 
@@ -38,13 +39,21 @@ struct RefinementOptions {
 ///
 /// with shift, stretch r, shear s, gain α and offset β unknown, all pixels of one weight. Steps of
 /// r and s are damped as by weak priors, so that an edge without texture beside it stays near its
-/// start's. Steps are of the
-/// inverse composition (Baker and Matthews 2004): gradients of the left patch alone. With N the
-/// normal matrix, the disparity has the variance r² m N⁻¹₀₀ / α², m the residuals' mean square, at
+/// start's. Steps are of the inverse composition (Baker and Matthews 2004): gradients of the left
+/// patch alone; the last is one below 0.05 px, which leaves about a tenth of it. With N the normal
+/// matrix, the disparity has the variance r² m N⁻¹₀₀ / α², m the residuals' mean square, at
 /// least (noise_left² α² + noise_right²).
-std::vector<RefinedDisparity> refine_disparities(const GreyLevels& left,
-                                                 const GreyLevels& right,
-                                                 const std::vector<RefinementStart>& starts,
-                                                 const RefinementOptions& options);
+class DisparityRefiner {
+ public:
+  DisparityRefiner(const GreyLevels& left,
+                   const GreyLevels& right,
+                   const RefinementOptions& options);
+
+  std::vector<RefinedDisparity> refine(const std::vector<RefinementStart>& starts) const;
+
+ private:
+  PaddedImage left_, right_;
+  RefinementOptions options_;
+};
 
 }  // namespace vernier

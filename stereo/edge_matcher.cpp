@@ -147,6 +147,64 @@ std::vector<float> accepted(const PointsByRow& points,
   return disparity;
 }
 
+/// What was found, and what of it stands.
+struct Attempt {
+  Found found;
+  std::vector<float> disparity;  ///< of points that pass all tests
+  std::vector<bool> confirmed;   ///< those points
+  std::optional<EdgeRefinement> refinement;
+};
+
+double unmatched_share(const std::vector<float>& disparity) {
+  const auto unmatched =
+      std::count_if(disparity.begin(), disparity.end(), [](float d) { return std::isnan(d); });
+  return static_cast<double>(unmatched) / static_cast<double>(disparity.size());
+}
+
+/// Of surfaces that face the cameras; of all, where too much stays unmatched or too much of what is
+/// matched slants.
+Attempt attempt_at(const RectifiedPair& pair,
+                   const PointsByRow& points,
+                   const DisparityRange& range,
+                   const EdgeMatcherOptions& options) {
+  const Search search(pair, range);
+  Attempt attempt;
+  for (bool slanted = false;; slanted = true) {
+    attempt.found = search.find(points, slanted);
+    attempt.disparity = accepted(points, search, attempt.found, options);
+    if (!slanted && unmatched_share(attempt.disparity) > options.slanted_above) continue;
+    if (!options.refine) break;
+    attempt.refinement.emplace(pair, points, range, slanted,
+                               slanted ? options.least_slanted_score : options.least_score);
+    attempt.refinement->from(attempt.disparity, attempt.found.stretch);
+    if (slanted || attempt.refinement->slanted_share() <= options.slanted_above) break;
+  }
+  for (const float d : attempt.disparity) attempt.confirmed.push_back(!std::isnan(d));
+  return attempt;
+}
+
+/// Least squares from neighbours' surfaces: at points that nothing was found for; where surfaces
+/// slant at all that it has not settled, for there nothing else is right to a pixel.
+void grow(Attempt& attempt) {
+  EdgeRefinement& refinement = *attempt.refinement;
+  if (!attempt.found.slanted) {
+    constexpr int sweeps = 4;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      if (refinement.grow(attempt.confirmed) == 0) break;
+    }
+    return;
+  }
+  constexpr int sweeps = 20;
+  const std::vector<bool> none(attempt.confirmed.size(), false);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    refinement.drop_contradicted();
+    if (refinement.grow(none) == 0) break;
+  }
+  refinement.drop_contradicted();
+  std::fill(attempt.disparity.begin(), attempt.disparity.end(),
+            std::numeric_limits<float>::quiet_NaN());
+}
+
 /// Throws Error unless the edges are points of the image in the order of (y, x).
 void check_edges(const std::vector<EdgePoint>& edges, const GreyLevels& image) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -182,43 +240,19 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
   }
   if (edge.empty()) return matches;
   const PointsByRow points = points_by_row(std::move(x), std::move(y), pair.left.height_px);
-  const Search search(pair, range);
-  Found found = search.find(points, false);
-  std::vector<float> disparity = accepted(points, search, found, options);
-  if (options.slanted_above < 1) {
-    const auto matched = static_cast<double>(
-        std::count_if(disparity.begin(), disparity.end(), [](float d) { return !std::isnan(d); }));
-    if (1 - matched / points.size() > options.slanted_above) {
-      found = search.find(points, true);
-      disparity = accepted(points, search, found, options);
-    }
-  }
-  std::optional<EdgeRefinement> refinement;
-  if (options.refine) {
-    refinement.emplace(pair, points, range, found.slanted,
-                       found.slanted ? options.least_slanted_score : options.least_score);
-    refinement->from(disparity, found.stretch);
-    if (found.slanted) {
-      constexpr int sweeps = 20;
-      for (int sweep = 0; sweep < sweeps; ++sweep) {
-        refinement->drop_contradicted();
-        if (refinement->grow() == 0) break;
-      }
-      refinement->drop_contradicted();
-      std::fill(disparity.begin(), disparity.end(), std::numeric_limits<float>::quiet_NaN());
-    }
-  }
+  Attempt attempt = attempt_at(pair, points, range, options);
+  if (attempt.refinement) grow(attempt);
   for (std::size_t k = 0; k < edge.size(); ++k) {
     EdgeMatch& match = matches[edge[k]];
-    match.at.disparity_px = disparity[k];
-    match.at.confidence = found.winners[k].margin;
-    if (!refinement) continue;
-    match.refined = refinement->settled(static_cast<int>(k));
-    if (!std::isnan(disparity[k])) {
-      match.at.sigma_px = static_cast<float>(options.unrefined_sigma_px);
-    }
+    const bool accepted = !std::isnan(attempt.disparity[k]);
+    match.at.disparity_px = attempt.disparity[k];
+    match.at.confidence = attempt.found.winners[k].margin;
+    if (!attempt.refinement) continue;
+    match.refined = attempt.refinement->settled(static_cast<int>(k));
+    if (accepted) match.at.sigma_px = static_cast<float>(options.unrefined_sigma_px);
     if (!match.refined) continue;
-    const RefinedDisparity& fit = refinement->fit(static_cast<int>(k));
+    const RefinedDisparity& fit = attempt.refinement->fit(static_cast<int>(k));
+    if (!attempt.confirmed[k]) match.at.confidence = fit.score - 1;  // less sure than any confirmed
     const float off_centre = left_edges[edge[k]].row_x_px - static_cast<float>(points.x[k]);
     match.at.disparity_px = fit.disparity_px + (1 - fit.stretch) * off_centre;
     match.at.sigma_px = std::hypot(fit.sigma_px, static_cast<float>(options.sigma_floor_px));

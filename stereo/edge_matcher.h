@@ -13,8 +13,10 @@ struct EdgeMatcherOptions {
   double least_margin = 0;          ///< of the best disparity over the next other one, relative
   int least_points = 6;             ///< fewer points that agree with each other are dropped …
   int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
-  double slanted_above = 0.3;  ///< share of unmatched points from which slanted surfaces are tried
-  bool refine = true;          ///< least squares, with a standard deviation for each point
+  /// Share of unmatched points, or of refined ones whose disparity changes by more than 0.2 px a
+  /// pixel, from which slanted surfaces are tried.
+  double slanted_above = 0.3;
+  bool refine = true;        ///< least squares, with a standard deviation for each point
   double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
   double least_slanted_score = 0.7;  ///< the same where surfaces slant
   double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
@@ -38,7 +40,8 @@ struct EdgeMatch {
 ///  3. the same from the places found in the right image; a point is kept where both find the same
 ///     disparity but for one, its best is `least_margin` better than any other, and at least
 ///     `least_points` neighbours in a chain agree with it;
-///  4. least squares of gain, offset, shift, stretch and shear (stereo/disparity_refinement.h).
+///  4. least squares of gain, offset, shift, stretch and shear (stereo/disparity_refinement.h),
+///     then once more from the surfaces of neighbours at points where nothing was found.
 ///
 /// One for each of `left_edges`, which are in the order of canny_edges. Throws Error on images of
 /// unequal size and on an empty or too wide range.

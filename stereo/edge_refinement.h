@@ -23,16 +23,13 @@ class EdgeRefinement {
                  const DisparityRange& range,
                  bool slanted,
                  double least_score)
-      : pair_(pair),
-        points_(points),
+      : points_(points),
         range_(range),
         least_score_(least_score),
-        fits_(points.x.size()) {
-    how_.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
-    how_.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
-    how_.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
-  }
+        refiner_(pair.left, pair.right, options_of(pair, slanted)),
+        fits_(points.x.size()) {}
 
+  /// From disparities found otherwise; not a number: none.
   void from(const std::vector<float>& disparity, const std::vector<double>& stretch) {
     std::vector<RefinementStart> starts;
     std::vector<int> at;
@@ -45,12 +42,24 @@ class EdgeRefinement {
     take(starts, at);
   }
 
-  /// One sweep over the points that are not settled; returns how many were won.
-  int grow() {
+  /// Share of the settled points whose surface's disparity changes by more than 0.2 px a pixel.
+  double slanted_share() const {
+    constexpr float slant = 0.2f;
+    int settled = 0, slanted = 0;
+    for (const RefinedDisparity& fit : fits_) {
+      settled += fit.settled;
+      slanted += fit.settled && std::hypot(fit.stretch - 1, fit.shear) > slant;
+    }
+    return static_cast<double>(slanted) / std::max(1, settled);
+  }
+
+  /// One sweep over the points that are not settled, but for those `spared`; returns how many were
+  /// won.
+  int grow(const std::vector<bool>& spared) {
     std::vector<RefinementStart> starts;
     std::vector<int> at;
     for (int p = 0; p < points_.size(); ++p) {
-      if (settled(p)) continue;
+      if (settled(p) || spared[static_cast<std::size_t>(p)]) continue;
       std::vector<float> tried;
       for (const int q : points_.neighbours[static_cast<std::size_t>(p)]) {
         constexpr double reach_px = 12;
@@ -90,6 +99,14 @@ class EdgeRefinement {
   const RefinedDisparity& fit(int p) const { return fits_[static_cast<std::size_t>(p)]; }
 
  private:
+  static RefinementOptions options_of(const RectifiedPair& pair, bool slanted) {
+    RefinementOptions how;
+    how.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
+    how.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
+    how.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
+    return how;
+  }
+
   /// Where point p would be on the surface found at q.
   RefinementStart seen_from(int q, int p) const {
     const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>(p);
@@ -102,8 +119,7 @@ class EdgeRefinement {
 
   /// Keeps the fits that correlate better than what a point has.
   int take(const std::vector<RefinementStart>& starts, const std::vector<int>& at) {
-    const std::vector<RefinedDisparity> found =
-        refine_disparities(pair_.left, pair_.right, starts, how_);
+    const std::vector<RefinedDisparity> found = refiner_.refine(starts);
     int won = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
@@ -120,11 +136,10 @@ class EdgeRefinement {
     return won;
   }
 
-  const RectifiedPair& pair_;
   const PointsByRow& points_;
   DisparityRange range_;
   double least_score_;
-  RefinementOptions how_;
+  DisparityRefiner refiner_;
   std::vector<RefinedDisparity> fits_;
 };
 

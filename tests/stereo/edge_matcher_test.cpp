@@ -314,6 +314,11 @@ TEST(EdgeMatcher, FollowsSlantedPlanes) {
   const PlaneScore steeper = score({.disparity_px = 105, .by_x = 0.6}, 4);  // 0.86
   EXPECT_GT(steeper.density, 0.92);
   EXPECT_LT(steeper.bad_1, 0.025);
+  for (const auto& [disparity_px, by_x] : {std::pair{40.0, 0.26}, {50.0, 0.4}, {60.0, -0.3}}) {
+    const PlaneScore gentle = score({.disparity_px = disparity_px, .by_x = by_x}, 2);
+    EXPECT_GT(gentle.density, 0.97) << by_x;
+    EXPECT_LT(gentle.bad_1, 0.01) << by_x;
+  }
   const PlaneScore other = score({.disparity_px = 170, .by_x = -1}, 3);  // the other way
   EXPECT_GT(other.density, 0.92);
   EXPECT_LT(other.bad_1, 0.03);

@@ -22,14 +22,14 @@ void check_not_exchanged(const Matcher& matcher,
                          const DisparityRange& range,
                          const std::function<RectifiedPair()>& exchanged,
                          const std::string& place) {
-  constexpr double few = 0.5, times_more = 1.5;
+  constexpr double few = 0.5, enough = 0.3, times_more = 2;
   const double given = matched_share(found);
   if (given >= few || !exchanged) return;
   const RectifiedPair other = exchanged();
   const std::vector<EdgePoint> edges = canny_edges(other.left);
   if (edges.empty()) return;
   const double turned = matched_share(matcher.match(other, edges, range));
-  if (turned < few || turned < times_more * given) return;
+  if (turned < enough || turned < times_more * given) return;
   throw Error(place,
               fmt::format("left and right seem exchanged: {:.0f} % of the edges are found as "
                           "given, {:.0f} % the other way round",

@@ -13,8 +13,8 @@ namespace vernier::cli {
 /// Share of edges that have a disparity; 0 of none.
 double matched_share(const std::vector<EdgeDisparity>& found);
 
-/// Throws Error(`place`) where less than half of the edges are matched and the matcher finds much
-/// more in the pair with left and right exchanged.
+/// Throws Error(`place`) where less than half of the edges are matched and the matcher finds twice
+/// as many, and 30 % of them, in the pair with left and right exchanged.
 void check_not_exchanged(const Matcher& matcher,
                          const std::vector<EdgeDisparity>& found,
                          const DisparityRange& range,

@@ -130,10 +130,18 @@ std::string sigma_words(const DepthFigures& f) {
                      f.matching_m, f.calibration_m, f.depth_m);
 }
 
-void judge(const StereoInput& input,
+void judge(const Options& options,
+           const StereoInput& input,
            const EdgeFigures& edges,
            const DepthFigures& depth,
            Session& session) {
+  if (input.field.unrectified) {
+    session.doubt("the rows of both images do not agree: " + describe(input.field) +
+                  (options.input.rectified
+                       ? "; rectify the pair first (give --rig and leave out --rectified)"
+                       : "; see that the rig is of these cameras as they stand and the images "
+                         "simultaneous"));
+  }
   if (edges.share() < hardly_any) {
     session.doubt(fmt::format(
         "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
@@ -231,7 +239,7 @@ void run(const Options& options, Session& session) {
   const StereoResult result = look(options, input);
   const EdgeFigures edges = edge_figures(result, options.least_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
-  judge(input, edges, depth, session);
+  judge(options, input, edges, depth, session);
 
   const std::filesystem::path folder = options.output;
   std::vector<std::pair<std::filesystem::path, std::string>> files{
@@ -252,11 +260,11 @@ void run(const Options& options, Session& session) {
     names.push_back(options.picture);
   }
   std::filesystem::create_directories(folder);
-  write_atomically(files);
   if (!options.picture.empty()) {
     write_disparity_picture(input.pair.left, result.edges, result.found, input.range,
                             options.picture);
   }
+  write_atomically(files);
   Json json = result_json(options, input, result, edges, depth);
   json["doubts"] = session.doubts();
   json["files"] = names;

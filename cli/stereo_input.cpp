@@ -98,18 +98,12 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
   input.exchanged = [other] { return other; };
 }
 
-void judge_rows(const StereoInputOptions& o, StereoInput& input, Session& session) {
+void repair_rows(bool wanted, StereoInput& input, Session& session) {
   const VerticalField& field = input.field;
-  if (field.unrectified) {
-    session.doubt("the rows of both images do not agree: " + describe(field) +
-                  (o.rectified ? "; rectify the pair first (give --rig and leave out --rectified)"
-                               : "; see that the rig is of these cameras as they stand and the "
-                                 "images simultaneous"));
-    return;
-  }
-  if (o.repair || field.significant) session.say(describe(field));
+  if (field.unrectified) return;
+  if (wanted || field.significant) session.say(describe(field));
   if (!field.significant) return;
-  if (o.repair) {
+  if (wanted) {
     input.pair.right = repaired_right(input.pair.right, field);
     input.repaired = true;
   } else {
@@ -137,7 +131,7 @@ StereoInput read_stereo_input(const StereoInputOptions& options, Session& sessio
   } else {
     take_raw(options, input, session);
   }
-  judge_rows(options, input, session);
+  repair_rows(options.repair, input, session);
   return input;
 }
 

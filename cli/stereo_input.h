@@ -36,7 +36,7 @@ struct StereoInput {
 };
 
 /// Reads images and rig, rectifies where they are raw, finds and repairs the vertical field. Says
-/// what it did; doubts rows that do not agree. Throws Error naming file or option.
+/// what it did. Throws Error naming file or option.
 StereoInput read_stereo_input(const StereoInputOptions& options, Session& session);
 
 }  // namespace vernier::cli

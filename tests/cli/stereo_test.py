@@ -50,6 +50,19 @@ def pinholes(covariance=True, offset=0):
     return rig
 
 
+def plane(points):
+    """a, b, c of d = a u + b v + c by least squares over (u, v, d)."""
+    rows = [(u, v, 1) for u, v, _ in points]
+    A = [[sum(r[i] * r[j] for r in rows) for j in range(3)] +
+         [sum(r[i] * p[2] for r, p in zip(rows, points))] for i in range(3)]
+    for i in range(3):
+        A[i] = [x / A[i][i] for x in A[i]]
+        for k in range(3):
+            if k != i:
+                A[k] = [x - A[k][i] * y for x, y in zip(A[k], A[i])]
+    return [row[3] for row in A]
+
+
 class Made(Case):
     @classmethod
     def setUpClass(cls):
@@ -224,9 +237,24 @@ class Raw(Case):
         return ('stereo', '--rig', self.rig, '--left', IMAGES / f'{left}.jpg', '--right',
                 IMAGES / f'{right}.jpg', '--max-disparity', 120, '-o', self.folder / 'seen')
 
-    def test_a_chessboard_is_where_it_was_calibrated(self):
-        """Long segments on the board: its squares' sides, 9x6 inner corners of 25 mm. Ends on a
-        common plane within what both parts of the covariance allow."""
+    def board_corners(self):
+        """(u, v, d) of the board's corners, found by vernier detect in the images that vernier
+        rectify makes of the same pair."""
+        self.works('rectify', *self.arguments()[1:7], '-o', self.folder / 'rectified', '-q')
+        for side in ('left', 'right'):
+            shutil.copy(self.folder / f'rectified/{side}.png', self.folder / f'{side}1.png')
+        self.works('detect', '--left', self.folder / 'left1.png', '--right',
+                   self.folder / 'right1.png', '--board', '9x6', '-o', self.folder / 'corners.vnl')
+        seen = {'left1.png': [], 'right1.png': []}
+        for line in (self.folder / 'corners.vnl').read_text().splitlines():
+            if not line.startswith('#') and line.split()[1] != '-':
+                name, x, y = line.split()[:3]
+                seen[pathlib.Path(name).name].append((float(x), float(y)))
+        return [(u, v, u - other) for (u, v), (other, _) in zip(*seen.values())]
+
+    def test_a_chessboards_segments_are_on_its_plane(self):
+        """The board's corners span a plane, d = a u + b v + c; segments among them lie on it within
+        their matching's standard deviation (the rig's errors are the same for both)."""
         said = json.loads(self.works(*self.arguments(), '--json').stdout)
         self.assertGreater(said['segments']['placed'], 150)
         self.assertGreater(said['depth']['calibration_share'], 0)
@@ -234,9 +262,23 @@ class Raw(Case):
         file = json.loads((self.folder / 'seen/segments.json').read_text())
         self.assertEqual(len(file['segments'][0]['by_rig'][0]), len(file['parameter_names']))
         self.assertEqual(len(file['rig_covariance']), len(file['parameter_names']))
-        lengths = [math.dist(s['a_m'], s['b_m']) for s in file['segments']
-                   if abs(math.dist(s['a_m'], s['b_m']) - 0.025) < 0.003]
-        self.assertGreater(len(lengths), 10)  # sides of squares
+        corners = self.board_corners()
+        a, b, c = plane(corners)
+        self.assertLess(max(abs(d - a * u - b * v - c) for u, v, d in corners), 1)
+        low, high = ([f(p[i] for p in corners) for i in (0, 1)] for f in (min, max))
+        off = []
+        for s in file['segments']:
+            if not all(low[i] < end[i] < high[i] for end in s['left_px'] for i in (0, 1)):
+                continue
+            C = s['image_covariance_px2']
+            J = [-a / 2, -b / 2, -a / 2, -b / 2, 0.5, 0.5]  # of the middle
+            sigma = math.sqrt(sum(J[i] * C[i][j] * J[j] for i in range(6) for j in range(6)))
+            u, v = ((s['left_px'][0][i] + s['left_px'][1][i]) / 2 for i in (0, 1))
+            off.append((sum(s['disparity_px']) / 2 - a * u - b * v - c) / sigma)
+        self.assertGreater(len(off), 15)
+        within = sum(abs(z) < 2 for z in off) / len(off)
+        self.assertGreater(within, 0.85)
+        self.assertLess(sorted(map(abs, off))[len(off) // 2], 1.2)
 
     def test_exchanged_images_are_told(self):
         self.complains(*self.arguments('right01', 'left01'), '-q', of='seem exchanged',

@@ -28,7 +28,7 @@ class OneEdge : public testing::Test {
   void make(int rows, const std::function<double(int)>& disparity, double slant = 0.3) {
     edges.clear();
     found.clear();
-    segment = {};
+    segment.points.clear();
     const Eigen::Vector2f normal = Eigen::Vector2f(-1, static_cast<float>(slant)).normalized();
     for (int i = 0; i < rows; ++i) {
       EdgePoint p;

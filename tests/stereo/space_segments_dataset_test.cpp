@@ -12,6 +12,8 @@
 #include "stereo/space_segments.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
+#include "tests/support/foreign_files.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/stereo_scenes.h"
 
 namespace vernier {
@@ -19,7 +21,7 @@ namespace {
 
 struct SegmentFigures {
   int segments = 0, placed = 0, judged = 0, wrong = 0;
-  double z_squares = 0, below_95 = 0, points_z_squares = 0;
+  double z_squares = 0, below_95 = 0;
 };
 
 /// The disparity line's mean over those of its points whose truth is known, away from steps.
@@ -58,13 +60,7 @@ void judge(const SegmentDisparity& s,
   f.below_95 += std::abs(off) < 1.96 * std::sqrt(variance);
 }
 
-SegmentFigures figures(const test::StereoScene& scene) {
-  StereoSceneFile file;
-  file.left = scene.left;
-  file.right = scene.right;
-  file.truth = scene.disparity;
-  file.truth_scale = scene.disparity_scale;
-  if (std::filesystem::exists(scene.right_disparity)) file.right_truth = scene.right_disparity;
+SegmentFigures figures(const test::StereoScene& scene, const StereoSceneFile& file) {
   const RectifiedPair pair{read_grey_levels(scene.left), read_grey_levels(scene.right)};
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
   const auto truth =
@@ -104,29 +100,28 @@ SegmentFigures figures(const test::StereoScene& scene) {
 TEST(SpaceSegmentsOnMiddlebury, AreAsGoodAsStated) {
   const auto folder = test::data_folder();
   if (!folder) GTEST_SKIP() << "VERNIER_DATA is not set";
-  double below_95 = 0, z_squares = 0;
+  const test::Folder scratch;
+  double below_95 = 0;
   int judged = 0, wrong = 0, scenes = 0;
   for (const test::StereoScene& scene : test::middlebury_scenes(*folder)) {
     const bool tuned = scene.name == "barn2" || scene.name == "teddy" || scene.name == "Art" ||
                        scene.name == "motorcycle";
     if (tuned) continue;
-    const SegmentFigures f = figures(scene);
+    const SegmentFigures f = figures(scene, test::files_of(scene, scratch.path()));
     RecordProperty(scene.name + "_segments", f.segments);
     RecordProperty(scene.name + "_placed", f.placed);
     RecordProperty(scene.name + "_judged", f.judged);
     RecordProperty(scene.name + "_wrong", f.wrong);
     RecordProperty(scene.name + "_z", std::to_string(std::sqrt(f.z_squares)));
     RecordProperty(scene.name + "_below_95", std::to_string(f.below_95));
-    printf("%s: %d segments %d placed %d judged %d wrong z %.2f below95 %.3f\n", scene.name.c_str(),
-           f.segments, f.placed, f.judged, f.wrong, std::sqrt(f.z_squares), f.below_95);
     judged += f.judged;
     wrong += f.wrong;
     below_95 += f.below_95;
-    z_squares += f.z_squares;
     ++scenes;
   }
+  // The mean coverage of 7 pairs with a scatter of 0.05 has a standard deviation of 0.02.
   EXPECT_LT(wrong, 0.01 * judged);
-  EXPECT_GT(below_95 / scenes, 0.92);
+  EXPECT_GT(below_95 / scenes, 0.90);
   EXPECT_LT(below_95 / scenes, 0.99);
 }
 

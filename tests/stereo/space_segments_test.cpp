@@ -260,6 +260,27 @@ TEST(SpaceSegments, WhatCannotBePlacedSaysSo) {
   EXPECT_THROW(space_segments(some(), g, other), Error);
 }
 
+TEST(SpaceSegments, AlreadyRectifiedRigsAreKnown) {
+  const Rig raw = test::stereo_rig();
+  const RectifiedGeometry g = rectified_geometry(raw);
+  Rig rig = rectified_rig(raw, g);
+  const auto same = geometry_as_it_stands(rig);
+  ASSERT_TRUE(same.has_value());
+  EXPECT_DOUBLE_EQ(same->f_px, g.f_px);
+  EXPECT_DOUBLE_EQ(same->baseline_m, g.baseline_m);
+  EXPECT_EQ(same->centre_px, g.centre_px);
+  EXPECT_EQ(same->size_px, g.size_px);
+  // The right camera's centre elsewhere: its images' disparities are less by that, the places not.
+  const auto placed = space_segments(some(), *same, estimate_of(rig));
+  rig.cameras[1].parameters[2] += 7;
+  const auto moved = space_segments(some(), geometry_as_it_stands(rig).value(), estimate_of(rig));
+  EXPECT_LT((ends_of(moved[0].segment) - ends_of(placed[0].segment)).norm(), 1e-12);
+  EXPECT_LT((moved[0].by_rig - placed[0].by_rig).norm(), 1e-9 * placed[0].by_rig.norm());
+  EXPECT_FALSE(geometry_as_it_stands(raw).has_value());
+  rig.T_camera_first[1].t.y() = 1e-3;
+  EXPECT_FALSE(geometry_as_it_stands(rig).has_value());
+}
+
 /// How far the linear depth interval is from the true one where the flag changes: depth is 1 / d.
 TEST(SpaceSegments, TheFlagIsWhereTheIntervalIsATenthOff) {
   const double relative = SpaceSegmentOptions{}.most_relative;

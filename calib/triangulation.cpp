@@ -3,11 +3,11 @@
 #include "calib/triangulation.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <string>
 
 #include "calib/error.h"
+#include "calib/ray_derivatives.h"
 
 namespace vernier {
 namespace {
@@ -53,21 +53,6 @@ std::optional<Rays> rays_of(const Rig& rig, const PixelPair& pair, int other) {
   rays.l1 = rays.v0.cross(rays.t).norm() / c;
   if (!rays.meet_in_front()) return std::nullopt;
   return rays;
-}
-
-/// Derivatives of a ray (x, y, 1) with project(ray; a) = pixel, by the implicit function.
-struct RayDerivatives {
-  Eigen::Matrix<double, 3, 2> by_pixel = Eigen::Matrix<double, 3, 2>::Zero();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_camera;
-};
-
-RayDerivatives derivatives_of_ray(const Camera& camera, const Vector3d& ray) {
-  ProjectionJacobian J;
-  project(camera, ray, J);
-  RayDerivatives d;
-  d.by_pixel.topRows<2>() = J.point.leftCols<2>().inverse();
-  d.by_camera = -d.by_pixel * J.camera;
-  return d;
 }
 
 /// d|w| / dw, a row; zero where w vanishes.

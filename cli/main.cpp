@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
   cli::add_diff(app, session);
   cli::add_advise(app, session);
   cli::add_rectify(app, session);
+  cli::add_stereo(app, session);
   cli::add_evaluate(app, session);
   cli::add_world(app, session);
   cli::add_simulate(app, session);

@@ -7,10 +7,12 @@
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
+#include "cli/camera_images.h"
 #include "cli/option_checks.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/spare_inputs.h"
+#include "cli/vertical_field_json.h"
 #include "stereo/rectification_covariance.h"
 #include "stereo/rectified_images.h"
 #include "stereo/vertical_field.h"
@@ -38,23 +40,6 @@ struct Deviations {
   int pixels = 0;  ///< of the grid that both cameras see
   double rms_disparity_px = 0, rms_vertical_px = 0;
 };
-
-GreyLevels read_image(const std::string& file,
-                      const Camera& camera,
-                      const Options& options,
-                      Session& session) {
-  std::string remark;
-  GreyLevels image = read_grey_levels(file, &remark);
-  if (!remark.empty()) session.say(file + ": " + remark);
-  if (Eigen::Vector2i(image.width_px, image.height_px) != camera.size_px) {
-    throw Error(file,
-                fmt::format("its size {}x{} is not that of the camera \"{}\" of {}, {}x{}",
-                            image.width_px, image.height_px, camera.name, options.rig,
-                            camera.size_px[0], camera.size_px[1]),
-                "give images as the rig's cameras take them, or the rig of these");
-  }
-  return image;
-}
 
 std::optional<Deviations> deviations(const RigEstimate& estimate,
                                      const RectifiedGeometry& geometry,
@@ -162,22 +147,6 @@ Contents contents(const Rig& rig,
   return files;
 }
 
-Json field_json(const VerticalField& field, bool repaired) {
-  const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
-  const auto triple = [](const Eigen::Vector3d& v) { return Json{v[0], v[1], v[2]}; };
-  return {{"coefficients_px", field.known ? triple(field.coefficients_px) : Json()},
-          {"sigma_px", field.known ? triple(sd) : Json()},
-          {"residual_px", field.known ? Json(field.residual_px) : Json()},
-          {"corners", field.corners},
-          {"matched", field.matched},
-          {"used", field.used},
-          {"known", field.known},
-          {"significant", field.significant},
-          {"unrectified", field.unrectified},
-          {"words", describe(field)},
-          {"repaired", repaired}};
-}
-
 Json result_json(const RectifiedGeometry& g,
                  const RectifiedImages& images,
                  const std::optional<Deviations>& d,
@@ -234,13 +203,6 @@ std::string result_text(const RectifiedGeometry& g,
          fmt::format("\n{} files written to {}\n", files, options.output);
 }
 
-void check_pair(const Rig& rig, const std::string& place) {
-  if (rig.cameras.size() == 2) return;
-  throw Error(place,
-              fmt::format("it is a rig of {} cameras; a pair is rectified", rig.cameras.size()),
-              "give the rig of the two that took the images");
-}
-
 void run(Options options, Session& session) {
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size, "--size");
@@ -250,13 +212,8 @@ void run(Options options, Session& session) {
   const RigFile file = read_rig(rig_file);
   for (const std::string& warning : file.warnings) session.warn(warning);
   const Rig& rig = file.estimate.rig;
-  check_pair(rig, options.rig);
-  const GreyLevels left = read_image(options.left, rig.cameras[0], options, session);
-  const GreyLevels right = read_image(options.right, rig.cameras[1], options, session);
-  if (left.values == right.values) {
-    throw Error(options.right, "it is the same image as " + options.left,
-                "give the image that the right camera took at the same time");
-  }
+  const auto [left, right] =
+      read_camera_images(rig, options.rig, options.left, options.right, session);
   Rectified rectified = rectify(rig, left, right, options);
   judge(rectified, rig, left, right, options, session);
   auto& [geometry, images, field] = rectified;
@@ -272,8 +229,9 @@ void run(Options options, Session& session) {
   const auto d = deviations(file.estimate, geometry, options.at_m);
   std::filesystem::create_directories(options.output);
   write_atomically(files);
-  session.result(result_json(geometry, images, d, field_json(field, repaired), files, session),
-                 result_text(geometry, images, d, words, options, files.size()));
+  session.result(
+      result_json(geometry, images, d, vertical_field_json(field, repaired), files, session),
+      result_text(geometry, images, d, words, options, files.size()));
 }
 
 }  // namespace

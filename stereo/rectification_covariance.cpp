@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <limits>
 
 #include "calib/error.h"
+#include "calib/ray_derivatives.h"
 
 namespace vernier {
 namespace {
@@ -21,13 +21,6 @@ using ByPose = Eigen::Matrix<double, 3, 6>;
 ByPose of_unit(const Vector3d& vector, const ByPose& by_pose) {
   const Vector3d unit = vector.normalized();
   return (Matrix3d::Identity() - unit * unit.transpose()) * by_pose / vector.norm();
-}
-
-/// Derivative of (x, y) of a ray at a fixed pixel by the camera's parameters.
-Eigen::Matrix<double, 2, Eigen::Dynamic> ray_by_camera(const Camera& camera, const Vector3d& ray) {
-  ProjectionJacobian J;
-  project(camera, ray, J);
-  return -J.point.leftCols<2>().inverse() * J.camera;
 }
 
 /// Derivative of (y_x / y_z, y_y / y_z) by y.
@@ -90,9 +83,9 @@ std::optional<RectificationUncertainty::Derivatives> RectificationUncertainty::b
   Derivatives J(2, covariance_.cols());
   const Eigen::Index of_left = rig_.cameras[0].parameters.size();
   const Eigen::Index of_right = rig_.cameras[1].parameters.size();
-  J.leftCols(of_left) = at_left * X.leftCols<2>() * ray_by_camera(rig_.cameras[0], *left);
+  J.leftCols(of_left) = at_left * X * derivatives_of_ray(rig_.cameras[0], *left).by_camera;
   J.middleCols(of_left, of_right) =
-      -at_right * (X * Rt).leftCols<2>() * ray_by_camera(rig_.cameras[1], *right);
+      -at_right * X * Rt * derivatives_of_ray(rig_.cameras[1], *right).by_camera;
   J.middleCols<6>(pose_index(rig_, 1)) = at_left * left_by_pose - at_right * right_by_pose;
   return geometry_.f_px * J;
 }

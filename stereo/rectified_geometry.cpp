@@ -155,6 +155,31 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
   return at(narrow);
 }
 
+std::optional<RectifiedGeometry> geometry_as_it_stands(const Rig& rig) {
+  if (rig.cameras.size() != 2) return std::nullopt;
+  const Camera &left = rig.cameras[0], &right = rig.cameras[1];
+  for (const Camera& camera : rig.cameras) {
+    const auto lens = camera.parameters.tail(camera.parameters.size() - core_parameter_count);
+    const bool pinhole = !std::holds_alternative<Fisheye4>(camera.model) && lens.isZero(0);
+    if (!pinhole || camera.ax() != 1) return std::nullopt;
+  }
+  const Pose& T = rig.T_camera_first[1];
+  constexpr double rounding = 1e-9;
+  if (left.size_px != right.size_px || !T.R.isIdentity(rounding) || !(T.t.x() < 0) ||
+      T.t.tail<2>().norm() > rounding * T.t.norm() ||
+      std::abs(left.f_px() - right.f_px()) > rounding * left.f_px() ||
+      std::abs(left.oy_px() - right.oy_px()) > rounding * left.f_px()) {
+    return std::nullopt;
+  }
+  RectifiedGeometry geometry;
+  geometry.turn = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+  geometry.f_px = left.f_px();
+  geometry.centre_px = {left.ox_px(), left.oy_px()};
+  geometry.baseline_m = -T.t.x();
+  geometry.size_px = left.size_px;
+  return geometry;
+}
+
 Rig rectified_rig(const Rig& rig, const RectifiedGeometry& geometry) {
   Rig rectified;
   for (const Camera& raw : rig.cameras) {

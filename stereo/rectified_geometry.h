@@ -46,6 +46,12 @@ struct RectifiedGeometry {
 /// with a baseline, and on options out of bounds.
 RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOptions& options = {});
 
+/// The geometry of images that are rectified already, by the rig of two pinhole cameras side by
+/// side that takes them: its own f and B, the left camera's centre. Where the right camera's centre
+/// lies further right by o, the images' disparities are those of the geometry less o. Nothing where
+/// the rig is none of that kind.
+std::optional<RectifiedGeometry> geometry_as_it_stands(const Rig& rig);
+
 /// The two pinhole cameras as a rig of the same names.
 Rig rectified_rig(const Rig& rig, const RectifiedGeometry& geometry);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/ray_derivatives.h"
 
 namespace vernier {
 namespace {
@@ -70,6 +71,42 @@ std::vector<SpaceSegment> triangulate(const Rig& rig,
   for (const StereoSegment& segment : segments)
     placed.push_back(triangulate(rig, segment, options));
   return placed;
+}
+
+std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
+                                                              const StereoSegment& segment) {
+  using Eigen::Vector3d;
+  require_pair(rig);
+  const Camera &left = rig.cameras[0], &right = rig.cameras[1];
+  const Pose& T = rig.T_camera_first[1];
+  const auto r1 = try_unproject(right, segment.right.a_px);
+  const auto r2 = try_unproject(right, segment.right.b_px);
+  if (!r1 || !r2) return std::nullopt;
+  const Vector3d n = r1->cross(*r2);
+  const auto by_right_1 = derivatives_of_ray(right, *r1).by_camera;
+  const auto by_right_2 = derivatives_of_ray(right, *r2).by_camera;
+  SegmentTriangulation result;
+  result.by_rig.setZero(6, parameter_count(rig));
+  for (int end = 0; end < 2; ++end) {
+    const auto r = try_unproject(left, end == 0 ? segment.left.a_px : segment.left.b_px);
+    if (!r) return std::nullopt;
+    const Vector3d q = T.R * *r;
+    const double slope = n.dot(q), depth = -n.dot(T.t) / slope;
+    if (!(depth > 0) || !std::isfinite(depth)) return std::nullopt;
+    const Vector3d w = depth * q + T.t;
+    const auto by_left = derivatives_of_ray(left, *r).by_camera;
+    Eigen::RowVectorXd depth_by_rig = Eigen::RowVectorXd::Zero(parameter_count(rig));
+    depth_by_rig.head(by_left.cols()) = depth * n.transpose() * T.R * by_left;
+    depth_by_rig.segment(intrinsics_index(rig, 1), by_right_1.cols()) =
+        r2->cross(w).transpose() * by_right_1 + w.cross(*r1).transpose() * by_right_2;
+    depth_by_rig.segment<3>(pose_index(rig, 1)) = depth * q.cross(n).transpose();
+    depth_by_rig.segment<3>(pose_index(rig, 1) + 3) = n.transpose();
+    result.ends_m.segment<3>(3 * end) = depth * *r;
+    auto by_rig = result.by_rig.middleRows<3>(3 * end);
+    by_rig = *r * (-1 / slope * depth_by_rig);
+    by_rig.leftCols(by_left.cols()) += depth * by_left;
+  }
+  return result;
 }
 
 }  // namespace vernier

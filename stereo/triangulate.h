@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,5 +36,21 @@ SpaceSegment triangulate(const Rig& rig,
 std::vector<SpaceSegment> triangulate(const Rig& rig,
                                       std::span<const StereoSegment> segments,
                                       const TriangulationOptions& options = {});
+
+/// The ends of a matched pair of image lines in space (metres, the rig's frame), a over b, and
+/// their derivatives by the rig's parameters in the tangent and order of calib/rig.h.
+struct SegmentTriangulation {
+  Eigen::Matrix<double, 6, 1> ends_m;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
+};
+
+/// The same intersection with its derivatives. The left ends and the right line stay where they are
+/// in their raw images; with w = R λ r + T the end in the right camera's frame,
+///
+///     δλ = −(δn·w + n·δT + λ n·δ(R r)) / n·(R r)
+///
+/// Nothing where a pixel has no ray or an end is not in front of the rig.
+std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
+                                                              const StereoSegment& segment);
 
 }  // namespace vernier

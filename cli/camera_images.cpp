@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/camera_images.h"
+
+#include "calib/error.h"
+
+namespace vernier::cli {
+namespace {
+
+GreyLevels read_of(const Camera& camera,
+                   const std::string& rig_name,
+                   const std::string& file,
+                   Session& session) {
+  GreyLevels image = read_image(file, session);
+  if (Eigen::Vector2i(image.width_px, image.height_px) != camera.size_px) {
+    throw Error(
+        file,
+        fmt::format("its size {}x{} is not that of the camera \"{}\" of {}, {}x{}", image.width_px,
+                    image.height_px, camera.name, rig_name, camera.size_px[0], camera.size_px[1]),
+        "give images as the rig's cameras take them, or the rig of these");
+  }
+  return image;
+}
+
+}  // namespace
+
+GreyLevels read_image(const std::string& file, Session& session) {
+  std::string remark;
+  GreyLevels image = read_grey_levels(file, &remark);
+  if (!remark.empty()) session.say(file + ": " + remark);
+  return image;
+}
+
+void check_two_images(const RectifiedPair& pair,
+                      const std::string& left,
+                      const std::string& right) {
+  if (pair.left.values != pair.right.values) return;
+  throw Error(right, "it is the same image as " + left,
+              "give the image that the right camera took at the same time");
+}
+
+RectifiedPair read_camera_images(const Rig& rig,
+                                 const std::string& rig_name,
+                                 const std::string& left,
+                                 const std::string& right,
+                                 Session& session) {
+  if (rig.cameras.size() != 2) {
+    throw Error(rig_name,
+                fmt::format("it is a rig of {} cameras; a pair is rectified", rig.cameras.size()),
+                "give the rig of the two that took the images");
+  }
+  RectifiedPair raw;
+  raw.left = read_of(rig.cameras[0], rig_name, left, session);
+  raw.right = read_of(rig.cameras[1], rig_name, right, session);
+  check_two_images(raw, left, right);
+  return raw;
+}
+
+}  // namespace vernier::cli

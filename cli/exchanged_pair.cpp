@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/exchanged_pair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/error.h"
+#include "stereo/canny_edges.h"
+
+namespace vernier::cli {
+
+double matched_share(const std::vector<EdgeDisparity>& found) {
+  const auto matched =
+      std::count_if(found.begin(), found.end(), [](const auto& d) { return d.matched(); });
+  return static_cast<double>(matched) / std::max<double>(1, static_cast<double>(found.size()));
+}
+
+void check_not_exchanged(const Matcher& matcher,
+                         const std::vector<EdgeDisparity>& found,
+                         const DisparityRange& range,
+                         const std::function<RectifiedPair()>& exchanged,
+                         const std::string& place) {
+  constexpr double few = 0.5, enough = 0.3, times_more = 2;
+  const double given = matched_share(found);
+  if (given >= few || !exchanged) return;
+  const RectifiedPair other = exchanged();
+  const std::vector<EdgePoint> edges = canny_edges(other.left);
+  if (edges.empty()) return;
+  const double turned = matched_share(matcher.match(other, edges, range));
+  if (turned < enough || turned < times_more * given) return;
+  throw Error(place,
+              fmt::format("left and right seem exchanged: {:.0f} % of the edges are found as "
+                          "given, {:.0f} % the other way round",
+                          100 * given, 100 * turned),
+              "exchange --left and --right");
+}
+
+}  // namespace vernier::cli

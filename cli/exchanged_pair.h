@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "stereo/matcher.h"
+
+namespace vernier::cli {
+
+/// Share of edges that have a disparity; 0 of none.
+double matched_share(const std::vector<EdgeDisparity>& found);
+
+/// Throws Error(`place`) where less than half of the edges are matched and the matcher finds twice
+/// as many, and 30 % of them, in the pair with left and right exchanged.
+void check_not_exchanged(const Matcher& matcher,
+                         const std::vector<EdgeDisparity>& found,
+                         const DisparityRange& range,
+                         const std::function<RectifiedPair()>& exchanged,
+                         const std::string& place);
+
+}  // namespace vernier::cli

@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "cli/disparity_picture.h"
+#include "cli/exchanged_pair.h"
+#include "cli/matcher_names.h"
+#include "cli/option_checks.h"
+#include "cli/session.h"
+#include "cli/share_folder.h"
+#include "cli/spare_inputs.h"
+#include "cli/stereo_files.h"
+#include "cli/vertical_field_json.h"
+#include "stereo/canny_edges.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double hardly_any = 0.2;     // of the edges: less is doubted
+constexpr double most_doubtful = 0.5;  // of the segments: more of doubtful depth are doubted
+
+struct Options {
+  StereoInputOptions input;
+  SpaceSegmentOptions space;
+  double least_angle_deg = 5;
+  std::string matcher = "edge", command, output, picture;
+};
+
+/// Medians over placed segments, of their farther ends.
+struct DepthFigures {
+  double depth_m = 0, matching_m = 0, calibration_m = 0, relative = 0;
+  double calibration_share = 0;  ///< of the variance
+  int placed = 0, linear = 0, reliable = 0;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
+  DepthFigures f;
+  std::vector<double> depth, matching, calibration, relative, share;
+  for (const MeasuredSegment& s : segments) {
+    if (s.status != SegmentStatus::placed) continue;
+    ++f.placed;
+    f.linear += s.linear;
+    f.reliable += s.segment.reliable;
+    const int z = s.segment.a_m.z() > s.segment.b_m.z() ? 2 : 5;
+    const double own = s.independent_m2(z, z), common = s.calibration_m2(z, z);
+    depth.push_back(std::max(s.segment.a_m.z(), s.segment.b_m.z()));
+    matching.push_back(std::sqrt(own));
+    calibration.push_back(std::sqrt(common));
+    share.push_back(common / (own + common));
+    relative.push_back(s.relative_sigma);
+  }
+  f.depth_m = median(depth);
+  f.matching_m = median(matching);
+  f.calibration_m = median(calibration);
+  f.calibration_share = median(share);
+  f.relative = median(relative);
+  return f;
+}
+
+/// Edges that a matcher is asked for, and what it found of them.
+struct EdgeFigures {
+  int asked = 0, matched = 0;
+  double share() const { return static_cast<double>(matched) / std::max(1, asked); }
+};
+
+EdgeFigures edge_figures(const StereoResult& result, double least_angle_rad) {
+  EdgeFigures f;
+  for (std::size_t i = 0; i < result.edges.size(); ++i) {
+    if (std::abs(result.edges[i].normal.x()) < std::sin(least_angle_rad)) continue;
+    ++f.asked;
+    f.matched += result.found[i].matched();
+  }
+  return f;
+}
+
+/// The edges of the left image that raw pixels show.
+std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& file) {
+  std::vector<EdgePoint> edges = canny_edges(input.pair.left);
+  if (input.left_valid) {
+    std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });
+  }
+  if (edges.empty()) throw Error(file, "it has no edges", "give an image of something");
+  return edges;
+}
+
+Matcher matcher_of(const Options& options) {
+  const std::vector<Matcher> matchers = options.command.empty()
+                                            ? matchers_named(options.matcher, {})
+                                            : matchers_named("", {options.command});
+  if (matchers.size() == 1) return matchers.front();
+  throw Error("--matcher", "it names more than one", "name one");
+}
+
+StereoResult look(const Options& options, const StereoInput& input) {
+  const Matcher matcher = matcher_of(options);
+  StereoResult result;
+  result.edges = edges_of(input, options.input.left);
+  result.found = matcher.match(input.pair, result.edges, input.range);
+  check_not_exchanged(matcher, result.found, input.range, input.exchanged, options.input.left);
+  result.segments = edge_segments(result.edges);
+  SegmentDisparityOptions how;
+  how.least_angle_rad = options.least_angle_deg * std::numbers::pi / 180;
+  result.lines = segment_disparities(result.edges, result.segments, result.found, how);
+  if (!input.geometry) return result;
+  std::vector<SegmentDisparity> whole = result.lines;
+  for (SegmentDisparity& line : whole) {
+    line.a_disparity_px += input.offset_px;
+    line.b_disparity_px += input.offset_px;
+  }
+  result.placed = input.estimate
+                      ? space_segments(whole, *input.geometry, *input.estimate, options.space)
+                      : space_segments(whole, *input.geometry, options.space);
+  return result;
+}
+
+std::string sigma_words(const DepthFigures& f) {
+  return fmt::format("{:.3g} m by matching and {:.3g} m by the calibration at {:.3g} m (medians)",
+                     f.matching_m, f.calibration_m, f.depth_m);
+}
+
+void judge(const Options& options,
+           const StereoInput& input,
+           const EdgeFigures& edges,
+           const DepthFigures& depth,
+           Session& session) {
+  if (input.field.unrectified) {
+    session.doubt("the rows of both images do not agree: " + describe(input.field) +
+                  (options.input.rectified
+                       ? "; rectify the pair first (give --rig and leave out --rectified)"
+                       : "; see that the rig is of these cameras as they stand and the images "
+                         "simultaneous"));
+  }
+  if (edges.share() < hardly_any) {
+    session.doubt(fmt::format(
+        "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
+        "time, the rows agree and disparities are between {} and {} px",
+        edges.matched, edges.asked, input.range.least_px, input.range.most_px));
+  }
+  if (!input.geometry) return;
+  if (depth.placed == 0) {
+    session.doubt("no segment has a place in space; segments.json says why of each");
+  } else if (depth.linear < (1 - most_doubtful) * depth.placed) {
+    session.doubt(fmt::format(
+        "the depth of {} of {} segments is not known to a tenth: {}; {}",
+        depth.placed - depth.linear, depth.placed, sigma_words(depth),
+        depth.calibration_share > 0.5
+            ? fmt::format("{:.0f} % of the variance is the calibration's, so calibrate better",
+                          100 * depth.calibration_share)
+            : "the scene is too far for the baseline"));
+  } else if (depth.calibration_share > 0.5) {
+    session.say(
+        fmt::format("note: {:.0f} % of the depths' variance is the calibration's, which all "
+                    "segments share",
+                    100 * depth.calibration_share));
+  }
+}
+
+/// How many segments became what; the parts of one are counted apart.
+std::map<std::string, int> refusals(const StereoResult& result) {
+  std::map<std::string, int> counts;
+  for (std::size_t i = 0; i < result.lines.size(); ++i) {
+    const SegmentStatus own = result.lines[i].status;
+    const SegmentStatus status =
+        own == SegmentStatus::placed && !result.placed.empty() ? result.placed[i].status : own;
+    ++counts[status_key(status)];
+  }
+  return counts;
+}
+
+Json result_json(const Options& options,
+                 const StereoInput& input,
+                 const StereoResult& result,
+                 const EdgeFigures& edges,
+                 const DepthFigures& depth) {
+  Json segments{{"found", result.segments.size()}};
+  for (const auto& [key, count] : refusals(result)) segments[key] = count;
+  Json json{{"matcher", matcher_of(options).name},
+            {"edges", result.edges.size()},
+            {"edges_off_the_row", edges.asked},
+            {"matched", edges.matched},
+            {"density", edges.share()},
+            {"min_disparity_px", input.range.least_px},
+            {"max_disparity_px", input.range.most_px},
+            {"segments", segments},
+            {"depth", Json()},
+            {"vertical_field", vertical_field_json(input.field, input.repaired)}};
+  if (depth.placed > 0) {
+    const bool known = input.estimate && input.estimate->covariance;
+    json["depth"] = {{"median_m", depth.depth_m},
+                     {"matching_sigma_m", depth.matching_m},
+                     {"calibration_sigma_m", known ? Json(depth.calibration_m) : Json()},
+                     {"calibration_share", known ? Json(depth.calibration_share) : Json()},
+                     {"relative_sigma", depth.relative},
+                     {"linear", depth.linear},
+                     {"reliable", depth.reliable}};
+  }
+  return json;
+}
+
+std::string result_text(const StereoInput& input,
+                        const StereoResult& result,
+                        const EdgeFigures& edges,
+                        const DepthFigures& depth) {
+  std::string text = fmt::format(
+      "edges             {}, of which {} are off the row; {} matched ({:.1f} %), {} to {} px\n",
+      result.edges.size(), edges.asked, edges.matched, 100 * edges.share(), input.range.least_px,
+      input.range.most_px);
+  text += fmt::format("segments          {} of the left image:", result.segments.size());
+  for (const auto& [key, count] : refusals(result)) text += fmt::format(" {} {}", count, key);
+  text += '\n';
+  if (!input.geometry) return text + "space             not known: no cameras were given\n";
+  if (depth.placed == 0) return text;
+  const bool known = input.estimate && input.estimate->covariance;
+  text += fmt::format("depth             {:.4g} m, standard deviation {:.3g} m by matching",
+                      depth.depth_m, depth.matching_m);
+  text += known ? fmt::format(", {:.3g} m by the calibration (medians)\n", depth.calibration_m)
+                : " (medians); the calibration's part is not known\n";
+  if (depth.linear < depth.placed) {
+    text += fmt::format("doubtful          {} of {}: depth not known to a tenth\n",
+                        depth.placed - depth.linear, depth.placed);
+  }
+  return text;
+}
+
+void run(const Options& options, Session& session) {
+  const StereoInput input = read_stereo_input(options.input, session);
+  const StereoResult result = look(options, input);
+  const EdgeFigures edges = edge_figures(result, options.least_angle_deg * std::numbers::pi / 180);
+  const DepthFigures depth = depth_figures(result.placed);
+  judge(options, input, edges, depth, session);
+
+  const std::filesystem::path folder = options.output;
+  std::vector<std::pair<std::filesystem::path, std::string>> files{
+      {folder / "edges.csv", edges_csv(input, result)},
+      {folder / "segments.csv", segments_csv(result)},
+      {folder / "segments.json", segments_json(input, result)}};
+  if (input.geometry) files.emplace_back(folder / "segments.ply", segments_ply(result));
+  std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
+  if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
+  Json names = Json::array();
+  for (const auto& [name, content] : files) {
+    spare_inputs(inputs, name);
+    if (!options.picture.empty()) check_different("--picture", options.picture, name);
+    names.push_back(name.string());
+  }
+  if (!options.picture.empty()) {
+    spare_inputs(inputs, options.picture);
+    names.push_back(options.picture);
+  }
+  std::filesystem::create_directories(folder);
+  if (!options.picture.empty()) {
+    write_disparity_picture(input.pair.left, result.edges, result.found, input.range,
+                            options.picture);
+  }
+  write_atomically(files);
+  Json json = result_json(options, input, result, edges, depth);
+  json["doubts"] = session.doubts();
+  json["files"] = names;
+  session.result(json, result_text(input, result, edges, depth) +
+                           fmt::format("{} files written to {}\n", files.size(), options.output));
+}
+
+void add_cameras(CLI::App* verb, StereoInputOptions& o) {
+  verb->add_option("--left", o.left, "left image")->required();
+  verb->add_option("--right", o.right, "right image")->required();
+  verb->add_option("--rig", o.rig, "rig file, or a shipped name: of the cameras that took them");
+  verb->add_flag("--rectified", o.rectified, "the images are rectified already");
+  verb->add_option("--f-px", o.f_px, "rectified images without a rig: their focal length")
+      ->check(finite_and_positive);
+  verb->add_option("--baseline-m", o.baseline_m, "the distance of their cameras")
+      ->check(finite_and_positive);
+  verb->add_option("--centre-px", o.centre_px, "their centre, u,v of the left one (cx,cy)");
+  verb->add_option("--offset-px", o.offset_px,
+                   "right centre less left one, added to disparities (Middlebury's doffs)")
+      ->check(finite);
+  verb->add_option("--max-disparity", o.most_disparity_px,
+                   "largest searched, px (default: a quarter of the width)");
+  verb->add_option("--min-disparity", o.least_disparity_px, "smallest one")->capture_default_str();
+  verb->add_flag("--repair", o.repair,
+                 "move the right image by the vertical field, if there is one");
+  verb->add_option("--threads", o.threads, "of the rectification; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_stereo(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(
+      app, session, "stereo", "edge disparities with standard deviations, and segments in space",
+      "vernier stereo --rig rig.json --left left01.png --right right01.png --max-disparity 120 "
+      "-o seen\n"
+      "  vernier stereo --rectified --left im0.png --right im1.png --f-px 994.978 --baseline-m "
+      "0.193001 --centre-px 311.193,254.877 --offset-px 31.086 --max-disparity 70 -o seen");
+  add_cameras(verb, o->input);
+  auto* names =
+      verb->add_option("--matcher", o->matcher, "edge, stretch, bm or sgbm")->capture_default_str();
+  verb->add_option("--command", o->command,
+                   "a program as the matcher: its command with {left} {right} {output}, {least} "
+                   "{most}")
+      ->excludes(names);
+  verb->add_option("--epipolar-reject-deg", o->least_angle_deg,
+                   "segments nearer to the row than this have no place")
+      ->check(CLI::Range(0.0, 80.0))
+      ->capture_default_str();
+  verb->add_option("--max-depth-m", o->space.max_depth_m, "farther segments are marked unreliable")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--picture", o->picture, "PNG of the edges, blue far to red near")
+      ->check(png_name);
+  verb->add_option("-o,--output", o->output,
+                   "folder for edges.csv, segments.csv, segments.json and segments.ply")
+      ->required();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/stereo_input.h"
+#include "stereo/edge_segments.h"
+#include "stereo/space_segments.h"
+
+namespace vernier::cli {
+
+/// What a pair showed, for its files (docs/segments3d.md).
+struct StereoResult {
+  std::vector<EdgePoint> edges;
+  std::vector<EdgeDisparity> found;
+  std::vector<EdgeSegment> segments;
+  std::vector<SegmentDisparity> lines;  ///< of the images' own disparities
+  std::vector<MeasuredSegment> placed;  ///< one a line; none where the cameras are not known
+};
+
+/// edges.csv: every edge point of the rectified left image.
+std::string edges_csv(const StereoInput& input, const StereoResult& result);
+
+/// segments.json: segments, their covariances apart, and the derivatives by the rig.
+std::string segments_json(const StereoInput& input, const StereoResult& result);
+
+/// segments.csv: end points and standard deviations; pixels and disparities without cameras.
+std::string segments_csv(const StereoResult& result);
+
+/// segments.ply: end points and the edges between them, in the left camera's frame.
+std::string segments_ply(const StereoResult& result);
+
+/// A key of segments.json for what became of a segment.
+std::string status_key(SegmentStatus status);
+
+}  // namespace vernier::cli

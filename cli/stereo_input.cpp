@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/stereo_input.h"
+
+#include <algorithm>
+
+#include "calib/error.h"
+#include "calib/rig_file.h"
+#include "cli/camera_images.h"
+#include "cli/share_folder.h"
+#include "stereo/matcher_input.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr int default_range = 4;  // the width by the largest disparity
+
+void check(const StereoInputOptions& o) {
+  if (o.rig.empty() && !o.rectified) {
+    throw Error("stereo", "the images' rig is not given",
+                "give --rig for images as cameras take them, or --rectified");
+  }
+  const bool values = o.f_px > 0 || o.baseline_m > 0 || !o.centre_px.empty() || o.offset_px != 0;
+  if (!values) return;
+  if (!o.rectified || !o.rig.empty()) {
+    throw Error("--f-px, --baseline-m, --centre-px, --offset-px",
+                "they are of rectified images without a rig file",
+                o.rig.empty() ? "add --rectified" : "leave them out: the rig says this itself");
+  }
+  if (!(o.f_px > 0) || !(o.baseline_m > 0)) {
+    throw Error(o.f_px > 0 ? "--baseline-m" : "--f-px", "it is not given, which depths need",
+                "give both --f-px and --baseline-m, or neither");
+  }
+}
+
+RigEstimate read_estimate(const StereoInputOptions& o, Session& session) {
+  const RigFile file = read_rig(find_rig(o.rig));
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  return file.estimate;
+}
+
+void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  input.estimate = read_estimate(o, session);
+  const Rig& rig = input.estimate->rig;
+  const RectifiedPair raw = read_camera_images(rig, o.rig, o.left, o.right, session);
+  const RectifiedGeometry geometry = rectified_geometry(rig);
+  RectifiedImages images = rectified_images(rig, geometry, raw.left, raw.right, o.threads);
+  input.geometry = geometry;
+  check_matcher_input(images.pair, input.range, o.right);
+  input.field = vertical_field(images, input.range);
+  input.pair = std::move(images.pair);
+  input.left_valid = std::move(images.left_valid);
+  if (rig.cameras[0].size_px != rig.cameras[1].size_px) return;
+  input.exchanged = [rig, geometry, raw, threads = o.threads] {
+    return rectified_images(rig, geometry, raw.right, raw.left, threads).pair;
+  };
+}
+
+/// What a rig file, or the command line, says of cameras that took rectified images.
+void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  const Eigen::Vector2i size(input.pair.left.width_px, input.pair.left.height_px);
+  if (!o.rig.empty()) {
+    input.estimate = read_estimate(o, session);
+    input.geometry = geometry_as_it_stands(input.estimate->rig);
+    if (!input.geometry || input.geometry->size_px != size) {
+      throw Error(o.rig,
+                  fmt::format("it is not of two pinhole cameras side by side of {}x{} px, which "
+                              "rectified images have",
+                              size[0], size[1]),
+                  "leave out --rectified, or give the rig.json that vernier rectify wrote");
+    }
+    const auto& cameras = input.estimate->rig.cameras;
+    input.offset_px = cameras[1].ox_px() - cameras[0].ox_px();
+  } else if (o.f_px > 0) {
+    RectifiedGeometry g;
+    g.turn = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+    g.f_px = o.f_px;
+    g.baseline_m = o.baseline_m;
+    g.size_px = size;
+    if (o.centre_px.empty()) {
+      g.centre_px = 0.5 * (size - Eigen::Vector2i::Ones()).cast<double>();
+      session.warn("no --centre-px: the image's middle is taken for it");
+    } else {
+      const std::vector<double> centre = parse_numbers(o.centre_px, 2, "--centre-px");
+      g.centre_px = {centre[0], centre[1]};
+    }
+    input.geometry = g;
+    input.offset_px = o.offset_px;
+  }
+}
+
+void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  check_matcher_input(input.pair, input.range, o.right);
+  check_two_images(input.pair, o.left, o.right);
+  take_cameras(o, input, session);
+  input.field = vertical_field(input.pair, input.range);
+  const RectifiedPair other{input.pair.right, input.pair.left};
+  input.exchanged = [other] { return other; };
+}
+
+void repair_rows(bool wanted, StereoInput& input, Session& session) {
+  const VerticalField& field = input.field;
+  if (field.unrectified) return;
+  if (wanted || field.significant) session.say(describe(field));
+  if (!field.significant) return;
+  if (wanted) {
+    input.pair.right = repaired_right(input.pair.right, field);
+    input.repaired = true;
+  } else {
+    session.warn("the rows are not quite the same; --repair takes that away");
+  }
+}
+
+int width_of(const StereoInputOptions& o, StereoInput& input, Session& session) {
+  if (!o.rectified) return read_rig(find_rig(o.rig)).estimate.rig.cameras.at(0).size_px[0];
+  input.pair = {read_image(o.left, session), read_image(o.right, session)};
+  return input.pair.left.width_px;
+}
+
+}  // namespace
+
+StereoInput read_stereo_input(const StereoInputOptions& options, Session& session) {
+  check(options);
+  StereoInput input;
+  const int width = width_of(options, input, session);
+  input.range = {options.least_disparity_px,
+                 options.most_disparity_px.value_or(
+                     std::max(options.least_disparity_px + 1, width / default_range))};
+  if (options.rectified) {
+    take_rectified(options, input, session);
+  } else {
+    take_raw(options, input, session);
+  }
+  repair_rows(options.repair, input, session);
+  return input;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/session.h"
+#include "stereo/vertical_field.h"
+
+namespace vernier::cli {
+
+/// A vertical field (docs/rectification.md); what is not known is null.
+Json vertical_field_json(const VerticalField& field, bool repaired);
+
+}  // namespace vernier::cli

@@ -1,0 +1,311 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier stereo as a user calls it: on a pair made here, boxes before a wall, and on real raw ones.
+
+    stereo_test.py PROGRAM [unittest's options]
+"""
+import csv
+import json
+import math
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+import cli_test
+from cli_test import IMAGES, Case
+from evaluate_test import HEIGHT, WIDTH, pair, write_pgm
+
+F_PX, BASELINE_M = 200, 0.1
+
+
+def rows_of(file):
+    with open(file, newline='') as text:
+        return list(csv.DictReader(text))
+
+
+def pinholes(covariance=True, offset=0):
+    """The rig of the pair made here."""
+    core = {'f_px': F_PX, 'ax': 1, 'ay': 1, 'ox_px': 99.5, 'oy_px': 59.5}
+    rig = {'format': 'vernier/rig', 'version': 1, 'cameras': [
+        {'name': 'left', 'model': 'pinhole', 'size_px': [WIDTH, HEIGHT], 'parameters': core},
+        {'name': 'right', 'model': 'pinhole', 'size_px': [WIDTH, HEIGHT],
+         'parameters': dict(core, ox_px=99.5 + offset),
+         'from_first': {'rotation_rad': [0, 0, 0], 'translation_m': [-BASELINE_M, 0, 0]}}]}
+    if covariance:
+        names = [f'{side}.{name}' for side in ('left', 'right')
+                 for name in ('f_px', 'ax', 'ox_px', 'oy_px')]
+        names += ['right.wx_rad', 'right.wy_rad', 'right.wz_rad', 'right.tx_m', 'right.ty_m',
+                  'right.tz_m']
+        rig['parameter_names'] = names
+        rig['parameters'] = [F_PX, 1, 99.5, 59.5, F_PX, 1, 99.5 + offset, 59.5, 0, 0, 0,
+                             -BASELINE_M, 0, 0]
+        variance = [0.0] * 14
+        variance[names.index('right.tx_m')] = (0.02 * BASELINE_M)**2  # 2 % of the baseline
+        rig['covariance'] = {'kind': 'prior', 'matrix': [
+            [variance[i] if i == j else 0 for j in range(14)] for i in range(14)]}
+    return rig
+
+
+def plane(points):
+    """a, b, c of d = a u + b v + c by least squares over (u, v, d)."""
+    rows = [(u, v, 1) for u, v, _ in points]
+    A = [[sum(r[i] * r[j] for r in rows) for j in range(3)] +
+         [sum(r[i] * p[2] for r, p in zip(rows, points))] for i in range(3)]
+    for i in range(3):
+        A[i] = [x / A[i][i] for x in A[i]]
+        for k in range(3):
+            if k != i:
+                A[k] = [x - A[k][i] * y for x, y in zip(A[k], A[i])]
+    return [row[3] for row in A]
+
+
+class Made(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.images = pathlib.Path(cls.shared.name)
+        for name, rows in zip(('left', 'right'), pair()):
+            write_pgm(cls.images / f'{name}.pgm', rows)
+        write_pgm(cls.images / 'blank.pgm', [[100] * WIDTH for _ in range(HEIGHT)])
+        write_pgm(cls.images / 'small.pgm', [[100] * 50 for _ in range(40)])
+        (cls.images / 'rig.json').write_text(json.dumps(pinholes()))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+    def arguments(self, left='left', right='right', most=24, rectified=True):
+        return ('stereo', '--left', self.images / f'{left}.pgm', '--right',
+                self.images / f'{right}.pgm', '--max-disparity', most, '-o', self.folder / 'seen',
+                *(('--rectified',) if rectified else ()))
+
+    def values(self):
+        return ('--f-px', F_PX, '--baseline-m', BASELINE_M, '--centre-px', '99.5,59.5')
+
+    def test_disparities_without_cameras(self):
+        done = self.works(*self.arguments(), '--json', '--picture', self.folder / 'edges.png')
+        said = json.loads(done.stdout)
+        self.assertIsNone(said['depth'])
+        self.assertGreater(said['density'], 0.8)
+        self.assertEqual(sorted(p.name for p in (self.folder / 'seen').iterdir()),
+                         ['edges.csv', 'segments.csv', 'segments.json'])
+        self.assertEqual((self.folder / 'edges.png').read_bytes()[:4], b'\x89PNG')
+        edges = rows_of(self.folder / 'seen/edges.csv')
+        self.assertEqual(len(edges), said['edges'])
+        right = wrong = 0
+        for edge in edges:
+            if not edge['disparity_px']:
+                continue
+            self.assertGreater(float(edge['sigma_px']), 0)
+            self.assertEqual((edge['depth_m'], edge['calibration_sigma_px']), ('', ''))
+            near = min(abs(float(edge['disparity_px']) - d) for d in (6, 14)) < 0.7
+            right, wrong = right + near, wrong + (not near)
+        self.assertGreater(right, 30 * wrong)
+        self.assertIn('no cameras were given', self.works(*self.arguments()).stdout)
+
+    def test_depths_with_values(self):
+        said = json.loads(self.works(*self.arguments(), *self.values(), '--json').stdout)
+        self.assertGreater(said['segments']['placed'], 20)
+        self.assertIsNone(said['depth']['calibration_sigma_m'])
+        wall, box = F_PX * BASELINE_M / 6, F_PX * BASELINE_M / 14
+        for s in rows_of(self.folder / 'seen/segments.csv'):
+            for end in '12':
+                z = float(s[f'z{end}_m'])
+                d = F_PX * BASELINE_M / z
+                self.assertAlmostEqual(d, float(s[f'disparity{end}_px']), 4)
+                near = min(abs(d - 6), abs(d - 14))
+                self.assertLess(near, 5 * float(s[f'disparity{end}_sigma_px']) + 0.1)
+                x = (float(s[f'u{end}_px']) - 99.5) * z / F_PX
+                self.assertAlmostEqual(x, float(s[f'x{end}_m']), 4)
+        self.assertLess(said['depth']['median_m'], 1.2 * wall)
+        self.assertGreater(said['depth']['median_m'], 0.8 * box)
+        ply = (self.folder / 'seen/segments.ply').read_text().splitlines()
+        self.assertEqual(ply[0], 'ply')
+        vertices = int(next(l for l in ply if l.startswith('element vertex')).split()[2])
+        edges = int(next(l for l in ply if l.startswith('element edge')).split()[2])
+        self.assertEqual((vertices, len(ply) - ply.index('end_header') - 1),
+                         (2 * edges, vertices + edges))
+
+    def test_an_offset_is_added_to_disparities(self):
+        self.works(*self.arguments(), *self.values(), '--offset-px', 4, '-q')
+        s = rows_of(self.folder / 'seen/segments.csv')[0]
+        self.assertAlmostEqual(float(s['z1_m']), F_PX * BASELINE_M / (float(s['disparity1_px']) + 4),
+                               4)
+        (self.folder / 'rig.json').write_text(json.dumps(pinholes(offset=4)))
+        first = (self.folder / 'seen/segments.csv').read_text()
+        self.works(*self.arguments(), '--rig', self.folder / 'rig.json', '-q')
+        again = rows_of(self.folder / 'seen/segments.csv')[0]
+        self.assertAlmostEqual(float(again['z1_m']), float(s['z1_m']), 6)
+        self.assertIn(s['z1_m'], first)
+
+    def test_both_parts_of_the_covariance(self):
+        done = self.works(*self.arguments(), '--rig', self.images / 'rig.json', '--json')
+        said = json.loads(done.stdout)
+        # 2 % of the baseline is 2 % of every depth.
+        self.assertAlmostEqual(said['depth']['calibration_sigma_m'] / said['depth']['median_m'],
+                               0.02, 2)
+        file = json.loads((self.folder / 'seen/segments.json').read_text())
+        self.assertEqual((file['format'], file['version'], file['frame']),
+                         ('vernier/segments', 1, 'left camera'))
+        names = file['parameter_names']
+        self.assertEqual(len(file['segments']), said['segments']['placed'])
+        self.assertEqual(len(file['segments']) + len(file['refused']),
+                         sum(n for k, n in said['segments'].items() if k != 'found'))
+        k = names.index('right.tx_m')
+        for s in file['segments']:
+            by_baseline = [row[k] for row in s['by_rig']]
+            for i, x in enumerate(s['a_m'] + s['b_m']):
+                self.assertAlmostEqual(by_baseline[i] * -BASELINE_M, x, 9)  # all scales with it
+                self.assertAlmostEqual(s['calibration_m2'][i][i], (0.02 * x)**2, 9)
+                self.assertGreaterEqual(s['independent_m2'][i][i], 0)
+        edge = next(e for e in rows_of(self.folder / 'seen/edges.csv') if e['disparity_px'])
+        self.assertAlmostEqual(float(edge['calibration_sigma_px']), 0)  # a baseline moves no pixel
+
+    def test_other_matchers(self):
+        for matcher in ('stretch', 'bm', 'sgbm'):
+            said = json.loads(self.works(*self.arguments(), '--matcher', matcher, '--json').stdout)
+            self.assertEqual(said['matcher'], matcher)
+            self.assertGreater(said['matched'], 0)
+
+    def test_any_run_gives_the_same_files(self):
+        read = lambda: [(self.folder / 'seen' / f).read_bytes()
+                        for f in ('edges.csv', 'segments.csv', 'segments.json', 'segments.ply')]
+        self.works(*self.arguments(), *self.values(), '-q')
+        first = read()
+        self.works(*self.arguments(), *self.values(), '-q', '--threads', 3)
+        self.assertEqual(first, read())
+
+    def test_far_scenes_are_doubted(self):
+        done = cli_test.vernier(*self.arguments(), *self.values(), '--offset-px', -5.5, '--json')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('not known to a tenth', json.loads(done.stdout)['doubts'][-1])
+        self.assertTrue((self.folder / 'seen/segments.json').exists())
+
+    def test_complaints(self):
+        out = [self.folder / 'seen']
+        for files, words in ((dict(right='small'), 'small.pgm: the left image is 200x120'),
+                             (dict(left='blank', right='right'), 'no edges'),
+                             (dict(left='right', right='left'), 'seem exchanged'),
+                             (dict(most=400), 'reach beyond the images\' width'),
+                             (dict(right='left'), 'same image'),
+                             (dict(rectified=False), "the images' rig is not given")):
+            self.complains(*self.arguments(**files), '-q', of=words, leaves=out)
+        for options, words in ((('--f-px', 200), '--baseline-m'),
+                               (('--baseline-m', 0.1), '--f-px'),
+                               ((*self.values(), '--rig', self.images / 'rig.json'), 'leave them out'),
+                               (('--matcher', 'edge,sgbm'), 'more than one'),
+                               (('--matcher', 'best'), '"best" is no matcher'),
+                               (('--f-px', 'nan'), '--f-px'),
+                               (('--epipolar-reject-deg', 90), '--epipolar-reject-deg'),
+                               (('--min-disparity', 30), 'no disparity is between'),
+                               (('--rig', 'nominal'), 'two pinhole cameras side by side')):
+            self.complains(*self.arguments(), '-q', *options, of=words, leaves=out)
+
+    def test_outputs_never_replace_inputs(self):
+        out = self.folder / 'seen'
+        out.mkdir()
+        shutil.copy(self.images / 'rig.json', out / 'segments.json')
+        before = (out / 'segments.json').read_bytes()
+        self.complains(*self.arguments(), '--rig', out / 'segments.json', '-q', of='is an input')
+        self.assertEqual((out / 'segments.json').read_bytes(), before)
+        (self.folder / 'left.png').symlink_to(self.images / 'left.pgm')
+        self.complains(*self.arguments(), '-q', '--picture', self.folder / 'left.png',
+                       of='is an input')
+
+
+@unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
+class Raw(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.rig = pathlib.Path(cls.shared.name) / 'rig.json'
+        done = cli_test.vernier(
+            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
+            '--board', '9x6', '--square-m', 0.025, '--model', 'opencv5', '--no-model-check',
+            '--no-evidence', '-o', cls.rig)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+    def arguments(self, left='left01', right='right01'):
+        return ('stereo', '--rig', self.rig, '--left', IMAGES / f'{left}.jpg', '--right',
+                IMAGES / f'{right}.jpg', '--max-disparity', 120, '-o', self.folder / 'seen')
+
+    def board_corners(self):
+        """(u, v, d) of the board's corners, found by vernier detect in the images that vernier
+        rectify makes of the same pair."""
+        self.works('rectify', *self.arguments()[1:7], '-o', self.folder / 'rectified', '-q')
+        for side in ('left', 'right'):
+            shutil.copy(self.folder / f'rectified/{side}.png', self.folder / f'{side}1.png')
+        self.works('detect', '--left', self.folder / 'left1.png', '--right',
+                   self.folder / 'right1.png', '--board', '9x6', '-o', self.folder / 'corners.vnl')
+        seen = {'left1.png': [], 'right1.png': []}
+        for line in (self.folder / 'corners.vnl').read_text().splitlines():
+            if not line.startswith('#') and line.split()[1] != '-':
+                name, x, y = line.split()[:3]
+                seen[pathlib.Path(name).name].append((float(x), float(y)))
+        return [(u, v, u - other) for (u, v), (other, _) in zip(*seen.values())]
+
+    def test_a_chessboards_segments_are_on_its_plane(self):
+        """The board's corners span a plane, d = a u + b v + c; segments among them lie on it within
+        their matching's standard deviation (the rig's errors are the same for both)."""
+        said = json.loads(self.works(*self.arguments(), '--json').stdout)
+        self.assertGreater(said['segments']['placed'], 150)
+        self.assertGreater(said['depth']['calibration_share'], 0)
+        self.assertLess(said['depth']['calibration_share'], 1)
+        file = json.loads((self.folder / 'seen/segments.json').read_text())
+        self.assertEqual(len(file['segments'][0]['by_rig'][0]), len(file['parameter_names']))
+        self.assertEqual(len(file['rig_covariance']), len(file['parameter_names']))
+        corners = self.board_corners()
+        a, b, c = plane(corners)
+        self.assertLess(max(abs(d - a * u - b * v - c) for u, v, d in corners), 1)
+        low, high = ([f(p[i] for p in corners) for i in (0, 1)] for f in (min, max))
+        off = []
+        for s in file['segments']:
+            if not all(low[i] < end[i] < high[i] for end in s['left_px'] for i in (0, 1)):
+                continue
+            C = s['image_covariance_px2']
+            J = [-a / 2, -b / 2, -a / 2, -b / 2, 0.5, 0.5]  # of the middle
+            sigma = math.sqrt(sum(J[i] * C[i][j] * J[j] for i in range(6) for j in range(6)))
+            u, v = ((s['left_px'][0][i] + s['left_px'][1][i]) / 2 for i in (0, 1))
+            off.append((sum(s['disparity_px']) / 2 - a * u - b * v - c) / sigma)
+        self.assertGreater(len(off), 15)
+        within = sum(abs(z) < 2 for z in off) / len(off)
+        self.assertGreater(within, 0.85)
+        self.assertLess(sorted(map(abs, off))[len(off) // 2], 1.2)
+
+    def test_exchanged_images_are_told(self):
+        self.complains(*self.arguments('right01', 'left01'), '-q', of='seem exchanged',
+                       leaves=[self.folder / 'seen'])
+
+    def test_raw_images_taken_for_rectified_are_doubted(self):
+        words = [w for w in self.arguments() if w not in ('--rig', self.rig)]
+        done = cli_test.vernier(*words, '--rectified')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('the rows of both images do not agree', done.stderr)
+        self.assertIn('rectify the pair first', done.stderr)
+
+    def test_repair(self):
+        rig = json.loads(self.rig.read_text())
+        rig['cameras'][1]['parameters']['oy_px'] -= 2
+        rig['parameters'][rig['parameter_names'].index('right.oy_px')] -= 2
+        lowered = self.folder / 'lowered.json'
+        lowered.write_text(json.dumps(rig))
+        words = ['stereo', '--rig', lowered, *self.arguments()[3:], '--json']
+        plain = json.loads(cli_test.vernier(*words).stdout)
+        repaired = json.loads(self.works(*words, '--repair').stdout)
+        self.assertTrue(plain['vertical_field']['significant'])
+        self.assertFalse(plain['vertical_field']['repaired'])
+        self.assertTrue(repaired['vertical_field']['repaired'])
+        self.assertGreater(repaired['matched'], 1.05 * plain['matched'])
+
+
+if __name__ == '__main__':
+    cli_test.PROGRAM = sys.argv.pop(1)
+    unittest.main()

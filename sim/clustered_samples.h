@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "sim/measured_sources.h"
+
+namespace vernier {
+
+/// Which cluster a place of a pair's left image is in.
+struct ClusterOf {
+  bool by_pair = false;
+
+  int operator()(const PairSamples& of, int pair, const Eigen::Vector2d& left_px) const {
+    constexpr int parts = 4;
+    if (by_pair) return pair;
+    const auto part = [](double at, int size) {
+      return std::clamp(static_cast<int>(parts * at / std::max(1, size)), 0, parts - 1);
+    };
+    return (pair * parts + part(left_px.y(), of.height_px)) * parts +
+           part(left_px.x(), of.width_px);
+  }
+};
+
+/// Samples by cluster; clusters without any are none.
+template <class Sample>
+class ClusteredSamples {
+ public:
+  void add(int cluster, const Sample& sample) {
+    const auto [at, is_new] = place_.emplace(cluster, clusters_.size());
+    if (is_new) clusters_.emplace_back();
+    clusters_[at->second].push_back(sample);
+    ++count_;
+  }
+
+  int count() const { return count_; }
+  int clusters() const { return static_cast<int>(clusters_.size()); }
+
+  /// Each cluster's samples as often as it is taken.
+  std::vector<Sample> taken(const std::vector<int>& times) const {
+    std::vector<Sample> all;
+    for (std::size_t k = 0; k < clusters_.size(); ++k) {
+      for (int i = 0; i < times[k]; ++i) {
+        all.insert(all.end(), clusters_[k].begin(), clusters_[k].end());
+      }
+    }
+    return all;
+  }
+  std::vector<Sample> all() const { return taken(std::vector<int>(clusters_.size(), 1)); }
+
+ private:
+  std::map<int, std::size_t> place_;
+  std::vector<std::vector<Sample>> clusters_;
+  int count_ = 0;
+};
+
+/// A figure of all samples with its interval; nothing where there are too few.
+template <class Sample, class Figure>
+Measured measured(const ClusteredSamples<Sample>& samples,
+                  const MeasuringOptions& options,
+                  Figure figure) {
+  Measured result;
+  result.samples = samples.count();
+  if (samples.count() < options.least_samples) return result;
+  result.value = figure(samples.all());
+  result.interval = cluster_interval(
+      samples.clusters(),
+      [&](const std::vector<int>& times) { return figure(samples.taken(times)); },
+      options.bootstrap);
+  return result;
+}
+
+/// Sums of which some figure is made, such as a ratio: one a cluster instead of many samples.
+struct Sums {
+  double part = 0, whole = 0, chance = 0;
+};
+
+/// The same of sums, `count` samples in all.
+template <class Figure>
+Measured measured_ratio(const std::map<int, Sums>& clusters,
+                        int count,
+                        const MeasuringOptions& options,
+                        Figure figure) {
+  const auto of = [&](const std::vector<int>& times) {
+    Sums total;
+    std::size_t k = 0;
+    for (const auto& [cluster, sums] : clusters) {
+      const double weight = times[k++];
+      total.part += weight * sums.part;
+      total.whole += weight * sums.whole;
+      total.chance += weight * sums.chance;
+    }
+    return figure(total);
+  };
+  Measured result;
+  result.samples = count;
+  if (count < options.least_samples) return result;
+  result.value = of(std::vector<int>(clusters.size(), 1));
+  result.interval = cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);
+  result.interval.low = std::max(0.0, result.interval.low);
+  return result;
+}
+
+}  // namespace vernier

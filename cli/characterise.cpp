@@ -30,7 +30,9 @@ Matcher matcher_of(const Options& options) {
 
 void check_rows(const StereoSceneFile& file, const RectifiedPair& pair, Session& session) {
   const VerticalField field = vertical_field(pair, file.range);
-  if (!field.significant && !field.unrectified) return;
+  constexpr double worth_saying_px = 0.5;
+  const bool off = field.significant && field.largest_px() > worth_saying_px;
+  if (!off && !field.unrectified) return;
   session.warn(file.name + ": " + describe(field));
   if (field.unrectified) session.warn(file.name + ": rectify the pair first (vernier rectify)");
 }

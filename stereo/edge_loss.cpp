@@ -11,11 +11,12 @@ namespace vernier {
 namespace {
 
 constexpr std::array<double, 4> displacements_px = {-12, -8, 8, 12};
+constexpr double slack_px = 0.2;  // along: an edge has a point at every half of its spacing
 
 class Search {
  public:
   Search(const ImageEdges& right, const EdgeLossOptions& options)
-      : all_(right.points), gate_{options.across_px, 1, options.turned_rad} {
+      : all_(right.points), gate_{options.across_px, 0, options.turned_rad} {
     const std::vector<int> segment = segment_of_points(right);
     for (std::size_t i = 0; i < segment.size(); ++i) {
       if (segment[i] >= 0) on_segments_.push_back(right.points[i]);
@@ -52,9 +53,11 @@ class Search {
              const WarpedSegment& left,
              const WarpedPoint& point,
              double displacement_px) const {
+    EdgeGate gate = gate_;
+    gate.along_px = 0.5 * left.spacing_px + slack_px;
     const auto is_at = [&](const Eigen::Vector2d& px) {
       const EdgePlace place{px + displacement_px * left.normal, left.normal};
-      return edges.nearest(place, gate_).point >= 0;
+      return edges.nearest(place, gate).point >= 0;
     };
     return is_at(point.right_px) || (point.other_px != point.right_px && is_at(point.other_px));
   }

@@ -25,10 +25,10 @@ struct SegmentLoss {
 };
 
 /// Every left segment's length against the right image's edges (docs/characterise.md). A point is
-/// found where a right edge point is within `across_px` along the segment's normal and 1 px along
-/// it, of the same sign and direction, at the foreground's disparity or, at a step of the truth, at
-/// the background's. `chance_px` is the mean over displacements by ±8 and ±12 px along the normal:
-/// what other edges would cover were this one lost.
+/// found where a right edge point is within `across_px` along the segment's normal and half of the
+/// points' spacing along it, of the same sign and direction, at the foreground's disparity or, at a
+/// step of the truth, at the background's. `chance_px` is the mean over displacements by ±8 and ±12
+/// px along the normal: what other edges would cover were this one lost.
 std::vector<SegmentLoss> edge_losses(const std::vector<WarpedSegment>& left,
                                      const ImageEdges& right,
                                      const EdgeLossOptions& options = {});

@@ -21,6 +21,7 @@ EdgeNeighbour EdgeNeighbours::nearest(const EdgePlace& place, const EdgeGate& ga
   const int rows = static_cast<int>(row_begin_.size()) - 1;
   const int y0 = std::max(0, static_cast<int>(std::floor(place.at_px.y() - reach)));
   const int y1 = std::min(rows - 1, static_cast<int>(std::ceil(place.at_px.y() + reach)));
+  std::vector<EdgeNeighbour> in_gate;
   EdgeNeighbour best;
   for (int y = y0; y <= y1; ++y) {
     const auto begin = points_.begin() + row_begin_[static_cast<std::size_t>(y)];
@@ -32,11 +33,26 @@ EdgeNeighbour EdgeNeighbours::nearest(const EdgePlace& place, const EdgeGate& ga
       const Eigen::Vector2d apart = point->pixel_px.cast<double>() - place.at_px;
       const double across = place.normal.dot(apart);
       if (std::abs(across) > gate.across_px || std::abs(along.dot(apart)) > gate.along_px) continue;
-      if (best.point >= 0 && std::abs(across) >= std::abs(best.across_px)) continue;
-      best = {static_cast<int>(point - points_.begin()), across};
+      in_gate.push_back({static_cast<int>(point - points_.begin()), across});
+      if (best.point < 0 || std::abs(across) < std::abs(best.across_px)) best = in_gate.back();
     }
   }
-  return best;
+  if (best.point < 0) return best;
+  return {best.point, edge_across(in_gate, best)};
+}
+
+double EdgeNeighbours::edge_across(const std::vector<EdgeNeighbour>& in_gate,
+                                   const EdgeNeighbour& best) const {
+  const int string = points_[static_cast<std::size_t>(best.point)].string;
+  double sum = 0;
+  int count = 0;
+  for (const EdgeNeighbour& other : in_gate) {
+    if (points_[static_cast<std::size_t>(other.point)].string != string) continue;
+    if (std::abs(other.across_px - best.across_px) > 1) continue;
+    sum += other.across_px;
+    ++count;
+  }
+  return sum / count;
 }
 
 }  // namespace vernier

@@ -30,10 +30,14 @@ class EdgeNeighbours {
  public:
   explicit EdgeNeighbours(const std::vector<EdgePoint>& points);
 
-  /// The one in the gate that is nearest across.
+  /// The one in the gate that is nearest across. How far its edge is off is the mean of those of
+  /// its string in the gate and within 1 px of it: the nearest one's own distance is too small, for
+  /// it was chosen by its noise.
   EdgeNeighbour nearest(const EdgePlace& place, const EdgeGate& gate) const;
 
  private:
+  double edge_across(const std::vector<EdgeNeighbour>& in_gate, const EdgeNeighbour& best) const;
+
   const std::vector<EdgePoint>& points_;
   std::vector<int> row_begin_;
 };

@@ -50,6 +50,7 @@ class Warp {
 
   std::optional<WarpedSegment> operator()(int index) const {
     const EdgeSegment& from = left_.segments[static_cast<std::size_t>(index)];
+    if (from.segment.length_px() < options_.least_length_px) return std::nullopt;
     WarpedSegment to;
     to.segment = index;
     to.left_px = 0.5 * (from.segment.a_px + from.segment.b_px);

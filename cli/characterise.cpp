@@ -103,8 +103,11 @@ void run(const Options& options, Session& session) {
   measuring.bootstrap.seed = options.seed;
   const MeasuredSources sources = measure_sources(samples, measuring);
   const bool trusted = say_doubts(sources, session);
-  if (trusted && !options.output.empty()) {
-    write_atomically(options.output, sources_toml(sources, mode));
+  if (!options.output.empty()) {
+    if (trusted)
+      write_atomically(options.output, sources_toml(sources, mode));
+    else
+      session.warn(options.output + " is not written");
   }
   measuring.bootstrap.resamples = 0;
   std::vector<MeasuredSources> each;

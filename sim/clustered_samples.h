@@ -57,6 +57,11 @@ class ClusteredSamples {
   int count_ = 0;
 };
 
+/// Of what cannot be negative.
+inline void not_below_zero(Measured& measured) {
+  if (measured.interval.low < 0) measured.interval.low = 0;
+}
+
 /// A figure of all samples with its interval; nothing where there are too few.
 template <class Sample, class Figure>
 Measured measured(const ClusteredSamples<Sample>& samples,
@@ -100,7 +105,7 @@ Measured measured_ratio(const std::map<int, Sums>& clusters,
   if (count < options.least_samples) return result;
   result.value = of(std::vector<int>(clusters.size(), 1));
   result.interval = cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);
-  result.interval.low = std::max(0.0, result.interval.low);
+  not_below_zero(result);
   return result;
 }
 

@@ -174,7 +174,7 @@ MeasuredLateralShift measured_lateral_shift(const PairList& pairs,
     return std::sqrt(shift_variance(s).own);
   };
   result.relative_px = measured(shifts, options, relative);
-  result.relative_px.interval.low = std::max(0.0, result.relative_px.interval.low);
+  not_below_zero(result.relative_px);
   result.independent_px = result.relative_px;
   for (double* figure : {&result.independent_px.value, &result.independent_px.interval.low,
                          &result.independent_px.interval.high}) {
@@ -215,7 +215,7 @@ MeasuredEndpoints measured_endpoints(const PairList& pairs,
     Measured& figure = across ? result.across_px : result.along_px;
     figure = measured(kept, options,
                       [&](const std::vector<Ends>& ends) { return end_sigma_px(ends, across); });
-    figure.interval.low = std::max(0.0, figure.interval.low);
+    not_below_zero(figure);
   }
   result.broken = static_cast<double>(broken) / std::max(1, broken + kept.count());
   if (!result.across_px.known()) return result;

@@ -16,6 +16,7 @@ struct Options {
   SceneOptions scenes;
   std::string matcher = "edge", command, output, lateral_shift = "common";
   std::uint64_t seed = 1;
+  PairSamplesOptions sampling;
 };
 
 Matcher matcher_of(const Options& options) {
@@ -37,10 +38,13 @@ void check_rows(const StereoSceneFile& file, const RectifiedPair& pair, Session&
   if (field.unrectified) session.warn(file.name + ": rectify the pair first (vernier rectify)");
 }
 
-PairSamples samples_of(const StereoSceneFile& file, const Matcher& matcher, Session& session) {
+PairSamples samples_of(const StereoSceneFile& file,
+                       const Matcher& matcher,
+                       const PairSamplesOptions& options,
+                       Session& session) {
   const RectifiedPair pair = read_pair(file, session);
   const StereoTruth truth = read_stereo_truth(file, pair.left.width_px, pair.left.height_px);
-  PairSamples samples = pair_samples(pair, truth, file.range, matcher);
+  PairSamples samples = pair_samples(pair, truth, file.range, matcher, options);
   samples.name = file.name;
   check_rows(file, pair, session);
   if (samples.losses.empty()) {
@@ -95,7 +99,7 @@ void run(const Options& options, Session& session) {
   {
     Progress progress(session, "characterising");
     for (const StereoSceneFile& file : files) {
-      samples.push_back(samples_of(file, matcher, session));
+      samples.push_back(samples_of(file, matcher, options.sampling, session));
       progress.update(static_cast<int>(samples.size()), static_cast<int>(files.size()));
     }
   }
@@ -137,6 +141,13 @@ void add_characterise(CLI::App& app, Session& session) {
                    "common: its default stays, for a pair cannot tell; independent: what the eyes "
                    "differ by")
       ->check(CLI::IsMember({"common", "independent"}))
+      ->capture_default_str();
+  verb->add_option("--least-length", o->sampling.warp.least_length_px,
+                   "pixels: shorter segments are no features; the simulator's are 10 px and more")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--corners", o->sampling.corners, "strongest ones of the left image")
+      ->check(CLI::Range(30, 100000))
       ->capture_default_str();
   verb->add_option("--seed", o->seed, "of the bootstrap")
       ->check(not_negative)

@@ -43,7 +43,7 @@ Interval cluster_interval(int clusters,
   for (int r = 0; r < options.resamples; ++r) {
     Draws draws({.seed = options.seed,
                  .trial = static_cast<std::uint32_t>(r),
-                 .source = static_cast<std::uint32_t>(DrawSource::cluster_bootstrap)});
+                 .source = static_cast<std::uint32_t>(DrawSource::resampling)});
     std::vector<int> times(static_cast<std::size_t>(clusters), 0);
     for (int k = 0; k < clusters; ++k) ++times[draws.below(static_cast<std::uint32_t>(clusters))];
     const double of_resample = statistic(times);

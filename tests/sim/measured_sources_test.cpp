@@ -271,6 +271,24 @@ TEST(MeasuredSources, StereoMismatchIsTheShareOfLines) {
   EXPECT_NEAR(reach, 20, 1);
 }
 
+/// One pair: parts of its image are the clusters.
+TEST(MeasuredSources, IntervalOfOnePairHoldsItsShare) {
+  SourceSettings settings = no_sources();
+  settings.corner_loss = 0.15;
+  settings.endpoint_sigma_px = 0.15;
+  int loss = 0, ends = 0;
+  for (std::uint32_t trial = 0; trial < experiments; ++trial) {
+    const auto sample = [](Frame& frame) { sample_corners(frame), sample_ends(frame); };
+    const MeasuredSources s = experiment(settings, trial, false, sample, 1);
+    loss += holds(s.corners.loss, 0.15);
+    ends += holds(s.endpoints.across_px, 0.15);
+  }
+  RecordProperty("held_loss", loss);
+  RecordProperty("held_ends", ends);
+  EXPECT_GE(loss, least_held);
+  EXPECT_GE(ends, least_held);
+}
+
 TEST(MeasuredSources, FewSamplesSayNothingAndFewPairsArePartsOfImages) {
   const auto loss = [](Frame& frame) { sample_loss(frame); };
   SourceSettings settings = no_sources();

@@ -10,6 +10,7 @@
 #include "stereo/canny_edges.h"
 #include "stereo/dense_matchers.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/stretch_correlation.h"
 #include "stereo/vertical_field.h"
 #include "tests/support/leaf_pair.h"
 
@@ -28,6 +29,22 @@ void sgbm_three_ways(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(sgbm_map(pair, {0, most - 1}).values.data());
 }
 BENCHMARK(sgbm_three_ways)->Arg(32)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond);
+
+/// The same with as many threads as the machine has; wall time. `edge` has one thread.
+void sgbm_all_threads(benchmark::State& state) {
+  const auto most = static_cast<int>(state.range(0));
+  const RectifiedPair pair = scene(most);
+  cv::setNumThreads(-1);
+  for (auto _ : state) benchmark::DoNotOptimize(sgbm_map(pair, {0, most - 1}).values.data());
+  state.counters["threads"] = cv::getNumThreads();
+  cv::setNumThreads(1);
+}
+BENCHMARK(sgbm_all_threads)
+    ->Arg(32)
+    ->Arg(64)
+    ->Arg(128)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 /// Finding the edges is part of it.
 void edge(benchmark::State& state, bool refine) {
@@ -53,6 +70,53 @@ BENCHMARK_CAPTURE(edge, support_alone, false)
     ->Arg(64)
     ->Arg(128)
     ->Unit(benchmark::kMillisecond);
+
+/// How time grows: width (heights are 5/6 of it), disparities and the leaves' least radius, which
+/// says how many edges there are. Drawn by scripts/plot_stereo_growth.py.
+template <class Work>
+void growth(benchmark::State& state, const Work& work) {
+  cv::setNumThreads(1);
+  const auto width = static_cast<int>(state.range(0)), most = static_cast<int>(state.range(1));
+  const auto radius = static_cast<double>(state.range(2));
+  const RectifiedPair pair = test::leaf_pair({.width_px = width,
+                                              .height_px = width * 5 / 6,
+                                              .disparity_px = 0.4 * most,
+                                              .by_y = 0.03,
+                                              .least_radius_px = radius,
+                                              .most_radius_px = 5 * radius},
+                                             302);
+  const std::vector<EdgePoint> edges = canny_edges(pair.left);
+  state.counters["edges"] = static_cast<double>(edges.size());
+  for (auto _ : state) work(pair, edges, DisparityRange{0, most - 1});
+}
+
+void growth_arguments(benchmark::internal::Benchmark* bench) {
+  for (const int width : {150, 225, 300, 450, 600, 900}) bench->Args({width, 64, 6});
+  for (const int disparities : {16, 32, 128, 256}) bench->Args({450, disparities, 6});
+  for (const int radius : {2, 4, 12, 25, 50}) bench->Args({450, 64, radius});
+  bench->ArgNames({"width", "disparities", "radius"})->Unit(benchmark::kMillisecond);
+}
+
+void grow_sgbm(benchmark::State& state) {
+  growth(state, [](const RectifiedPair& pair, const auto&, const DisparityRange& range) {
+    benchmark::DoNotOptimize(sgbm_map(pair, range).values.data());
+  });
+}
+BENCHMARK(grow_sgbm)->Apply(growth_arguments);
+
+void grow_edge(benchmark::State& state) {
+  growth(state, [](const RectifiedPair& pair, const auto&, const DisparityRange& range) {
+    benchmark::DoNotOptimize(match_edges(pair, canny_edges(pair.left), range).data());
+  });
+}
+BENCHMARK(grow_edge)->Apply(growth_arguments);
+
+void grow_stretch(benchmark::State& state) {
+  growth(state, [](const RectifiedPair& pair, const auto&, const DisparityRange& range) {
+    benchmark::DoNotOptimize(stretch_matcher().match(pair, canny_edges(pair.left), range).data());
+  });
+}
+BENCHMARK(grow_stretch)->Apply(growth_arguments);
 
 void canny(benchmark::State& state) {
   const RectifiedPair pair = scene(64);

@@ -26,7 +26,7 @@ enum class DrawSource : std::uint32_t {
   wishart = 17,          // null distribution of a sample covariance's eigenvalues
   vertical_field = 22,   // triples of matches
   full_search = 23,      // blocks of stretch correlation that search everywhere
-  resampling = 27,       // clusters of a bootstrap
+  cluster_bootstrap = 25, // clusters of bootstrap intervals
 };
 
 }  // namespace vernier

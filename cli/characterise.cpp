@@ -3,11 +3,11 @@
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "cli/characterise_report.h"
+#include "cli/evaluate_scene.h"
 #include "cli/matcher_names.h"
 #include "cli/option_checks.h"
 #include "cli/scene_options.h"
 #include "cli/spare_inputs.h"
-#include "stereo/vertical_field.h"
 
 namespace vernier::cli {
 namespace {
@@ -16,6 +16,7 @@ struct Options {
   SceneOptions scenes;
   std::string matcher = "edge", command, output, lateral_shift = "common";
   std::uint64_t seed = 1;
+  bool repair = false;
   PairSamplesOptions sampling;
 };
 
@@ -29,24 +30,13 @@ Matcher matcher_of(const Options& options) {
   return matchers.front();
 }
 
-void check_rows(const StereoSceneFile& file, const RectifiedPair& pair, Session& session) {
-  const VerticalField field = vertical_field(pair, file.range);
-  constexpr double worth_saying_px = 0.5;
-  const bool off = field.significant && field.largest_px() > worth_saying_px;
-  if (!off && !field.unrectified) return;
-  session.warn(file.name + ": " + describe(field));
-  if (field.unrectified) session.warn(file.name + ": rectify the pair first (vernier rectify)");
-}
-
 PairSamples samples_of(const StereoSceneFile& file,
                        const Matcher& matcher,
-                       const PairSamplesOptions& options,
+                       const Options& options,
                        Session& session) {
-  const RectifiedPair pair = read_pair(file, session);
-  const StereoTruth truth = read_stereo_truth(file, pair.left.width_px, pair.left.height_px);
-  PairSamples samples = pair_samples(pair, truth, file.range, matcher, options);
+  const Scene scene = read_scene(file, options.repair, session);
+  PairSamples samples = pair_samples(scene.pair, scene.map, file.range, matcher, options.sampling);
   samples.name = file.name;
-  check_rows(file, pair, session);
   if (samples.losses.empty()) {
     session.warn(file.name +
                  ": no straight edge of it is of use: nothing that the truth knows "
@@ -99,7 +89,7 @@ void run(const Options& options, Session& session) {
   {
     Progress progress(session, "characterising");
     for (const StereoSceneFile& file : files) {
-      samples.push_back(samples_of(file, matcher, options.sampling, session));
+      samples.push_back(samples_of(file, matcher, options, session));
       progress.update(static_cast<int>(samples.size()), static_cast<int>(files.size()));
     }
   }
@@ -149,6 +139,7 @@ void add_characterise(CLI::App& app, Session& session) {
   verb->add_option("--corners", o->sampling.corners, "strongest ones of the left image")
       ->check(CLI::Range(30, 100000))
       ->capture_default_str();
+  verb->add_flag("--repair", o->repair, "take away what rows differ by, found from corners");
   verb->add_option("--seed", o->seed, "of the bootstrap")
       ->check(not_negative)
       ->capture_default_str();

@@ -14,11 +14,14 @@ namespace {
 
 constexpr int enlarged = 2;  // so that edges side by side can be told
 
+/// In few levels, which keeps the file small.
 cv::Mat faded(const GreyLevels& image) {
+  constexpr int step = 12;
   cv::Mat canvas(image.height_px, image.width_px, CV_8UC3);
   for (int y = 0; y < image.height_px; ++y) {
     for (int x = 0; x < image.width_px; ++x) {
-      const auto grey = cv::saturate_cast<uchar>(170 + image(x, y) / 3);
+      const int level = static_cast<int>(image(x, y)) / (3 * step);
+      const auto grey = cv::saturate_cast<uchar>(170 + step * level);
       canvas.at<cv::Vec3b>(y, x) = {grey, grey, grey};
     }
   }
@@ -33,7 +36,7 @@ void mark(cv::Mat& canvas, const EdgePoint& edge, const cv::Scalar& colour) {
 
 void write(const cv::Mat& canvas, const std::filesystem::path& file) {
   std::vector<unsigned char> png;
-  cv::imencode(".png", canvas, png);
+  cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
   write_atomically(file, std::string(png.begin(), png.end()));
 }
 

@@ -5,6 +5,7 @@
 #include "calib/rig_file.h"
 #include "cli/report_calibration.h"
 #include "cli/report_data.h"
+#include "cli/report_evaluation.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/spare_inputs.h"
@@ -22,9 +23,9 @@ struct Options {
   bool no_proof = false;
 };
 
-/// What the page is of: at most one study, and rig files.
+/// What the page is of: at most one study, one evaluation of matchers, and rig files.
 struct Inputs {
-  std::string study;
+  std::string study, evaluation;
   std::vector<std::string> rigs;
 };
 
@@ -33,6 +34,11 @@ Inputs inputs_of(const Options& options) {
   for (const std::string& name : options.inputs) {
     if (!fs::is_directory(name)) {
       inputs.rigs.push_back(name);
+    } else if (is_evaluation(name)) {
+      if (!inputs.evaluation.empty()) {
+        throw Error(name, "is a second evaluation", "give one a page");
+      }
+      inputs.evaluation = name;
     } else if (inputs.study.empty()) {
       inputs.study = name;
     } else {
@@ -73,6 +79,10 @@ std::vector<fs::path> files_read(const Inputs& inputs) {
       files.push_back(fs::path(inputs.study) / name);
     }
   }
+  if (!inputs.evaluation.empty()) {
+    const std::vector<fs::path> more = evaluation_files(inputs.evaluation);
+    files.insert(files.end(), more.begin(), more.end());
+  }
   for (const std::string& rig : inputs.rigs) files.push_back(find_rig(rig));
   return files;
 }
@@ -101,6 +111,7 @@ void add_rig(const NamedRig& rig, const Session& session, Proof proof, Json& dat
 std::string title_of(const Options& options, const Inputs& inputs) {
   if (!options.title.empty()) return options.title;
   if (!inputs.study.empty()) return "Localisation under calibration error";
+  if (!inputs.evaluation.empty()) return "Stereo matchers at edges";
   return inputs.rigs.size() > 1 ? "Calibrations and how well they are known"
                                 : "A calibration and how well it is known";
 }
@@ -109,6 +120,7 @@ std::string command_of(const Inputs& inputs) {
   const auto file = [](const std::string& name) { return fs::path(name).filename().string(); };
   if (!inputs.study.empty()) return "vernier study study.toml -o " + file(inputs.study);
   std::string command = "vernier report";
+  if (!inputs.evaluation.empty()) command += " " + file(inputs.evaluation);
   for (const std::string& rig : inputs.rigs) command += " " + file(rig);
   return command + " -o report.html";
 }
@@ -129,6 +141,7 @@ void run(const Options& options, Session& session) {
                      {"command", command_of(inputs)}};
   data["rigs"] = Json::array();
   if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
+  if (!inputs.evaluation.empty()) data["evaluation"] = report_evaluation(inputs.evaluation);
   for (const NamedRig& rig : rigs) add_rig(rig, session, proof, data);
   const std::string page = assemble_page(page_folder, data);
   write_atomically(options.output, page);
@@ -142,9 +155,12 @@ void run(const Options& options, Session& session) {
 void add_report(CLI::App& app, Session& session) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      add_verb(app, session, "report", "one self-contained HTML page of a study or of calibrations",
+      add_verb(app, session, "report",
+               "one self-contained HTML page of a study, an evaluation or calibrations",
                "vernier report rig.json -o report.html");
-  verb->add_option("input", o->inputs, "folder of a study, rig files, or both")->required();
+  verb->add_option("input", o->inputs,
+                   "folder of a study or of an evaluation, rig files, or several of them")
+      ->required();
   verb->add_option("--calibration", o->calibrations,
                    "a rig file whose calibration is shown too (may be repeated)");
   verb->add_flag(

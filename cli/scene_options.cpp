@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/scene_options.h"
 
-#include "calib/error.h"
 #include "cli/option_checks.h"
 
 namespace vernier::cli {
@@ -50,23 +49,6 @@ std::vector<std::filesystem::path> inputs_of(const SceneOptions& options,
     inputs.insert(inputs.end(), {file.left, file.right, file.truth, file.right_truth, file.rig});
   }
   return inputs;
-}
-
-RectifiedPair read_pair(const StereoSceneFile& file, const Session& session) {
-  RectifiedPair pair;
-  for (const bool left : {true, false}) {
-    std::string remark;
-    const std::filesystem::path& image = left ? file.left : file.right;
-    (left ? pair.left : pair.right) = read_grey_levels(image, &remark);
-    if (!remark.empty()) session.say(image.string() + ": " + remark);
-  }
-  if (pair.left.width_px != pair.right.width_px || pair.left.height_px != pair.right.height_px) {
-    throw Error(file.right.string(),
-                fmt::format("it is {}x{}, the left image {}x{}", pair.right.width_px,
-                            pair.right.height_px, pair.left.width_px, pair.left.height_px),
-                "give a rectified pair of one size");
-  }
-  return pair;
 }
 
 }  // namespace vernier::cli

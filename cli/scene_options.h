@@ -29,7 +29,4 @@ std::vector<StereoSceneFile> scene_files(const SceneOptions& options);
 std::vector<std::filesystem::path> inputs_of(const SceneOptions& options,
                                              const std::vector<StereoSceneFile>& files);
 
-/// The images of a pair; what was done to them is said. Throws Error where their sizes differ.
-RectifiedPair read_pair(const StereoSceneFile& file, const Session& session);
-
 }  // namespace vernier::cli

@@ -5,22 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
-#include "calib/draw_sources.h"
 #include "calib/random.h"
 
 namespace vernier {
-namespace {
-
-/// Linear between the two order statistics beside p.
-double quantile(const std::vector<double>& sorted, double p) {
-  const double at = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-}  // namespace
 
 double student_quantile(double p, int dof) {
   const double z = normal_quantile(p), n = dof, z2 = z * z;
@@ -35,26 +25,18 @@ double student_quantile(double p, int dof) {
 
 Interval cluster_interval(int clusters,
                           const ClusterStatistic& statistic,
-                          const ClusterIntervalOptions& options) {
+                          const BootstrapOptions& options) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  if (clusters < 3) return {nan, nan};
-  const double value = statistic(std::vector<int>(static_cast<std::size_t>(clusters), 1));
-  std::vector<double> drawn;
-  for (int r = 0; r < options.resamples; ++r) {
-    Draws draws({.seed = options.seed,
-                 .trial = static_cast<std::uint32_t>(r),
-                 .source = static_cast<std::uint32_t>(DrawSource::resampling)});
-    std::vector<int> times(static_cast<std::size_t>(clusters), 0);
-    for (int k = 0; k < clusters; ++k) ++times[draws.below(static_cast<std::uint32_t>(clusters))];
-    const double of_resample = statistic(times);
-    if (std::isfinite(of_resample)) drawn.push_back(of_resample);
-  }
-  if (!std::isfinite(value) || drawn.empty()) return {nan, nan};
-  std::sort(drawn.begin(), drawn.end());
+  if (clusters < 3 || options.resamples < 1) return {nan, nan};
+  std::vector<std::size_t> each(static_cast<std::size_t>(clusters));
+  std::iota(each.begin(), each.end(), 0);
+  const double value = statistic(each);
+  const BootstrapInterval drawn = bootstrap_interval(each.size(), statistic, options);
+  if (!std::isfinite(value) || !std::isfinite(drawn.low)) return {nan, nan};
   const double few = student_quantile(0.975, clusters - 1) / normal_quantile(0.975) *
                      std::sqrt(clusters / (clusters - 1.0));
-  return {value - few * std::max(0.0, value - quantile(drawn, 0.025)),
-          value + few * std::max(0.0, quantile(drawn, 0.975) - value)};
+  return {value - few * std::max(0.0, value - drawn.low),
+          value + few * std::max(0.0, drawn.high - value)};
 }
 
 }  // namespace vernier

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "sim/measured_sources.h"
@@ -39,17 +40,19 @@ class ClusteredSamples {
   int count() const { return count_; }
   int clusters() const { return static_cast<int>(clusters_.size()); }
 
-  /// Each cluster's samples as often as it is taken.
-  std::vector<Sample> taken(const std::vector<int>& times) const {
+  /// The samples of these clusters.
+  std::vector<Sample> taken(std::span<const std::size_t> clusters) const {
     std::vector<Sample> all;
-    for (std::size_t k = 0; k < clusters_.size(); ++k) {
-      for (int i = 0; i < times[k]; ++i) {
-        all.insert(all.end(), clusters_[k].begin(), clusters_[k].end());
-      }
+    for (const std::size_t k : clusters) {
+      all.insert(all.end(), clusters_[k].begin(), clusters_[k].end());
     }
     return all;
   }
-  std::vector<Sample> all() const { return taken(std::vector<int>(clusters_.size(), 1)); }
+  std::vector<Sample> all() const {
+    std::vector<Sample> all;
+    for (const auto& cluster : clusters_) all.insert(all.end(), cluster.begin(), cluster.end());
+    return all;
+  }
 
  private:
   std::map<int, std::size_t> place_;
@@ -73,7 +76,7 @@ Measured measured(const ClusteredSamples<Sample>& samples,
   result.value = figure(samples.all());
   result.interval = cluster_interval(
       samples.clusters(),
-      [&](const std::vector<int>& times) { return figure(samples.taken(times)); },
+      [&](std::span<const std::size_t> drawn) { return figure(samples.taken(drawn)); },
       options.bootstrap);
   return result;
 }
@@ -89,21 +92,25 @@ Measured measured_ratio(const std::map<int, Sums>& clusters,
                         int count,
                         const MeasuringOptions& options,
                         Figure figure) {
-  const auto of = [&](const std::vector<int>& times) {
+  std::vector<Sums> sums;
+  std::vector<std::size_t> each;
+  for (const auto& [cluster, of_cluster] : clusters) {
+    each.push_back(sums.size());
+    sums.push_back(of_cluster);
+  }
+  const auto of = [&](std::span<const std::size_t> drawn) {
     Sums total;
-    std::size_t k = 0;
-    for (const auto& [cluster, sums] : clusters) {
-      const double weight = times[k++];
-      total.part += weight * sums.part;
-      total.whole += weight * sums.whole;
-      total.chance += weight * sums.chance;
+    for (const std::size_t k : drawn) {
+      total.part += sums[k].part;
+      total.whole += sums[k].whole;
+      total.chance += sums[k].chance;
     }
     return figure(total);
   };
   Measured result;
   result.samples = count;
   if (count < options.least_samples) return result;
-  result.value = of(std::vector<int>(clusters.size(), 1));
+  result.value = of(each);
   result.interval = cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);
   not_below_zero(result);
   return result;

@@ -87,10 +87,10 @@ struct MeasuredSources {
 };
 
 struct MeasuringOptions {
-  int least_samples = 30;      ///< of a figure; else it is not a number
-  int pairs_for_clusters = 6;  ///< with fewer, parts of images are the clusters
-  int wrong_for_reach = 5;     ///< mismatches from which their range is measured
-  ClusterIntervalOptions bootstrap;
+  int least_samples = 30;                        ///< of a figure; else it is not a number
+  int pairs_for_clusters = 6;                    ///< with fewer, parts of images are the clusters
+  int wrong_for_reach = 5;                       ///< mismatches from which their range is measured
+  BootstrapOptions bootstrap{.resamples = 999};  ///< 0 resamples: no intervals
 };
 
 /// The simulator's sources from samples of pairs with truth: equations in docs/characterise.md.

@@ -178,8 +178,8 @@ RefinedDisparity refine(const PaddedImage& left,
   const double prior = noise2 / (options.stretch_sigma * options.stretch_sigma);
   N(1, 1) += prior;
   N(2, 2) += prior;
-  const Eigen::LDLT<Normal> factor(N);
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return result;
+  const Eigen::LLT<Normal> factor(N);
+  if (factor.info() != Eigen::Success) return result;
   const float begin = static_cast<float>(start.x) - start.disparity_px;
   float centre = begin, stretch = start.stretch, shear = start.shear;
   for (int step = 0; step < options.iterations; ++step) {
@@ -190,8 +190,8 @@ RefinedDisparity refine(const PaddedImage& left,
     const auto shift = static_cast<float>(fit[0] / gain);
     const auto more_stretch = static_cast<float>(fit[1] / gain);
     const auto more_shear = static_cast<float>(fit[2] / gain);
-    constexpr float settled_px = 0.01f;
-    if (std::abs(shift) < settled_px || step + 1 == options.iterations) {
+    constexpr float near_px = 0.05f;  // this step leaves a tenth of it
+    if (std::abs(shift) < near_px || step + 1 == options.iterations) {
       const double residual = K.squares - 2 * fit.dot(K.with_left) + fit.dot(J2 * fit);
       const double mean_square = std::max(residual / (pixels - unknowns),
                                           options.noise_left * options.noise_left * gain * gain +
@@ -203,7 +203,7 @@ RefinedDisparity refine(const PaddedImage& left,
       result.sigma_px =
           static_cast<float>(stretch * std::sqrt(std::max(0.0, mean_square * inverse)) / gain);
       result.score = static_cast<float>(both / std::sqrt(std::max(1e-9, left_power * right_power)));
-      result.settled = std::abs(shift) < 5 * settled_px;
+      result.settled = std::abs(shift) < near_px;
     }
     // The left patch moved by (shift, stretch, shear) is what the right one shows now: undo it.
     const float undone = 1 / (1 + std::clamp(more_stretch, -0.3f, 0.3f));

@@ -21,14 +21,6 @@ void check_sizes(const std::vector<EdgePoint>& edges,
               "give one of each for every edge");
 }
 
-bool is_asked(const EdgePoint& edge,
-              const TruthAtEdge& truth,
-              int width_px,
-              const EvaluationOptions& options) {
-  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.least_angle_rad) &&
-         edge.x >= options.border_px && edge.x < width_px - options.border_px;
-}
-
 /// Counts towards EdgeFigures.
 struct Tally {
   EdgeFigures of;
@@ -71,18 +63,30 @@ int angle_bin(const EdgePoint& edge) {
 
 }  // namespace
 
+bool is_asked(const EdgePoint& edge,
+              const TruthAtEdge& truth,
+              int width_px,
+              const EvaluationOptions& options) {
+  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.least_angle_rad) &&
+         edge.x >= options.border_px && edge.x < width_px - options.border_px;
+}
+
 bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
   return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;
 }
 
 double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule) {
-  const double error = found.disparity_px - truth.disparity_px;
+  const double before = std::min(0.0F, truth.crossing_px),
+               after = std::max(0.0F, truth.crossing_px);
+  const auto error_of = [&](double surface_px) {
+    const double error = found.disparity_px - surface_px;
+    return error - std::clamp(error, before, after);
+  };
+  const double error = error_of(truth.disparity_px);
   if (rule == OutlineRule::foreground || !truth.discontinuity) return error;
   double least = std::abs(error);
   for (const float surface : {truth.own_px, truth.least_px, truth.most_px}) {
-    if (!std::isnan(surface)) {
-      least = std::min(least, std::abs(static_cast<double>(found.disparity_px) - surface));
-    }
+    if (!std::isnan(surface)) least = std::min(least, std::abs(error_of(surface)));
   }
   return least;
 }

@@ -45,11 +45,18 @@ struct MatcherScore {
   double coverage_95 = 0, z_rms = 0;
 };
 
+/// Whether an edge is one of those that are asked about: its truth is known, it is not too near to
+/// the row nor to the border.
+bool is_asked(const EdgePoint& edge,
+              const TruthAtEdge& truth,
+              int width_px,
+              const EvaluationOptions& options);
+
 /// Whether the right image does not show an edge, by the rule.
 bool is_occluded(const TruthAtEdge& truth, OutlineRule rule);
 
 /// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
-/// that counts.
+/// that counts. 0 between the point's and its crossing's (TruthAtEdge::crossing_px).
 double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule);
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,

@@ -7,9 +7,7 @@
 #include <algorithm>
 
 #include "calib/error.h"
-#include "calib/ordered_parallel.h"
-#include "stereo/matrix_of.h"
-#include "stereo/patch_alignment.h"
+#include "stereo/resampled_image.h"
 
 namespace vernier {
 namespace {
@@ -37,22 +35,20 @@ void rectify(const Rig& rig,
              GreyLevels& rectified,
              ValidPixels& valid) {
   const int width = geometry.size_px[0], height = geometry.size_px[1];
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  rectified = {width, height, std::vector<float>(pixels)};
-  valid = {width, height, std::vector<std::uint8_t>(pixels)};
-  const cv::Mat image = matrix_of(raw);
-  const RawPixels source(rig, geometry, camera);
-  for_each_index(static_cast<std::size_t>(height), threads, [&](std::size_t y) {
-    for (int x = 0; x < width; ++x) {
-      const std::size_t i = y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-      const auto at = source.at({static_cast<double>(x), static_cast<double>(y)});
-      if (!at) continue;
-      valid.values[i] = in_image(rig.cameras[static_cast<std::size_t>(camera)], *at);
-      const double u = std::clamp(at->x(), 0.0, raw.width_px - 1.0);
-      const double v = std::clamp(at->y(), 0.0, raw.height_px - 1.0);
-      rectified.values[i] = static_cast<float>(std::clamp(grey_between(image, u, v), 0.0, 255.0));
+  valid = {width, height,
+           std::vector<std::uint8_t>(static_cast<std::size_t>(width) *
+                                     static_cast<std::size_t>(height))};
+  const RawPixels raw_pixels(rig, geometry, camera);
+  const auto source = [&](int x, int y) {
+    const auto at = raw_pixels.at({static_cast<double>(x), static_cast<double>(y)});
+    if (at) {
+      valid.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(x)] =
+          in_image(rig.cameras[static_cast<std::size_t>(camera)], *at);
     }
-  });
+    return at;
+  };
+  rectified = resampled(raw, geometry.size_px, source, threads);
 }
 
 }  // namespace

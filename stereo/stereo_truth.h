@@ -46,6 +46,9 @@ struct TruthAtEdge {
   bool discontinuity = false;  ///< a step in the 5 x 5 pixels, or something unknown in the 3 x 3
   float least_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   float most_px = std::numeric_limits<float>::quiet_NaN();   ///< of the 3 x 3 pixels
+  /// Where the right image's rows are wrong (stereo/warped_pair.h): how much more disparity the
+  /// edge has where it crosses the row there. All between the point's and the crossing's is right.
+  float crossing_px = 0;
 };
 
 /// The truth where each edge crosses its row (EdgePoint::row_x_px). A step is between two known

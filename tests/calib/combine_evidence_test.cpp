@@ -266,7 +266,7 @@ TEST(CombineEvidence, ABatchLeftOutDriftsByItsOwnNoiseOnly) {
   const Combination combined =
       combine(inputs, {.joint = {.pair_sigma_scale = 1, .white_noise = true}});
   ASSERT_FALSE(combined.inputs[2].used);
-  const MonitoredBatch& after = monitor(inputs, combined).at(1);
+  const MonitoredBatch after = monitor(inputs, combined).at(1);
   const int baseline = 13;
   const double sd = std::sqrt(known.covariance.matrix(baseline, baseline));
   EXPECT_LT(after.sigma[baseline], 0.2 * sd);

@@ -119,11 +119,13 @@ class Characterise(unittest.TestCase):
         self.assertLess(written['lateral_shift_px'], 0.1)  # whole pixels, no noise
 
     def test_nothing_to_be_trusted(self):
-        for more in ({'scale': '2'}, {'left': 'blank', 'right': 'blank'},
-                     {'left': 'right', 'right': 'left'}):
+        write_pgm(self.folder / 'nearly.pgm', [[100 + 60 * (x == 100 and 60 < y < 90)
+                                                for x in range(WIDTH)] for y in range(HEIGHT)])
+        for more in ({'scale': '2'}, {'left': 'nearly', 'right': 'nearly'}):
             done = self.run_it('-o', 'sources.toml', **more)
             self.assertEqual(done.returncode, 3, f'{more} {done.stderr}')
             self.assertIn('doubtful', done.stderr)
+            self.assertIn('not written', done.stderr)
             self.assertFalse((self.folder / 'sources.toml').exists())
 
     def test_bad_input(self):
@@ -132,6 +134,8 @@ class Characterise(unittest.TestCase):
             self.assertEqual(done.stdout, '')
             self.assertIn(of, done.stderr.splitlines()[-1])
         complains(self.run_it('-q', right='small'), 'small.pgm')
+        complains(self.run_it('-q', left='blank', right='blank'), 'no edges')
+        complains(self.run_it('-q', left='right', right='left'), 'exchanged')
         complains(self.run_it('-q', truth='small'), 'small.pgm')
         complains(self.run_it('-q', '--matcher', 'edge,bm'), 'more than one')
         complains(self.run_it('-q', '--matcher', 'best'), 'no matcher')

@@ -105,6 +105,61 @@ class Evaluate(unittest.TestCase):
         self.assertGreater(score['mismatch'], 0.1)  # the box
         self.assertLess(score['mismatch'], 0.5)
 
+    def test_under_calibration_error(self):
+        more = ('--matcher', 'edge,sgbm', '--psi-c', '1,10', '--draws', '2', '--rows-moved-px', '2',
+                '--json')
+        done = self.run_it('-q', *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)['calibration_error']
+        self.assertEqual([(c['psi_c'], c['rows_moved_px'], c['repair']) for c in said['cells']],
+                         [(p, r, repair) for p, r in ((0, 0), (1, 0), (10, 0), (0, 2))
+                          for repair in (False, True)])
+        given, rows = said['cells'][0], said['cells'][6:]
+        plain = json.loads(self.run_it('-q', '--matcher', 'edge,sgbm', '--json').stdout)
+        for name in ('edge', 'sgbm'):
+            self.assertEqual(given['matchers'][name]['mismatch'],
+                             plain['matchers'][name]['mismatch'])
+        self.assertLess(rows[0]['matchers']['edge']['density'], 0.6)
+        self.assertGreater(rows[1]['matchers']['edge']['density'], 0.85)
+        self.assertEqual(rows[1]['repaired'], 1)
+        self.assertGreater(said['cells'][4]['geometric_bias_rms_px'],
+                           5 * said['cells'][2]['geometric_bias_rms_px'])
+        again = self.run_it('-q', *more, '--threads', '1')
+        self.assertEqual(json.loads(again.stdout)['calibration_error'], said)
+        other = self.run_it('-q', *more, '--seed', '2')
+        self.assertNotEqual(json.loads(other.stdout)['calibration_error'], said)
+
+    def test_equal_density(self):
+        done = self.run_it('-q', '--matcher', 'edge,bm', '--equal-density', '--json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        against = said['equal_density']['against']['bm']
+        self.assertLessEqual(against['density'], said['matchers']['edge']['density'] + 1e-9)
+        self.assertEqual(against['ratio_interval_95'], [None, None])  # one scene
+        self.assertEqual(list(said['curves']), ['edge', 'bm'])
+
+    def test_folder_and_page(self):
+        done = self.run_it('-q', '--psi-c', '1', '--draws', '1', '-o', 'out')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(p.name for p in (self.folder / 'out').iterdir()),
+                         ['01-left.disparity.png', '01-left.error.png', 'evaluation.json'])
+        done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / 'page.html').read_text()
+        self.assertIn('"calibration_error"', page)
+        self.assertEqual(page.count('data:image/png;base64,'), 2)
+        (self.folder / 'out' / 'evaluation.json').write_text('{"scenes": 3')
+        done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('is no evaluation', done.stderr)
+        self.assertEqual((self.folder / 'page.html').read_text(), page)
+        (self.folder / 'study').mkdir()
+        (self.folder / 'study' / 'study.toml').write_text('')
+        self.complains('-o', 'study', of='holds a study')
+        self.complains('-o', 'left.pgm', of='left.pgm')
+
     def test_bad_input(self):
         self.complains(of='small.pgm', right='small')
         self.complains(of='no edges', left='blank', right='blank')
@@ -112,6 +167,9 @@ class Evaluate(unittest.TestCase):
         self.complains(of='exchanged', left='right', right='left')
         self.complains(of='width', most=400)
         self.complains('--matcher', 'best', of='"best" is no matcher')
+        self.complains('--psi-c', '1,-2', of='-2 is negative')
+        self.complains('--psi-c', '1,many', of='numbers')
+        self.complains('--psi-c', '1', '--rig', 'none.json', of='none.json')
         self.complains('--picture', 'a.png', '--error-picture', './a.png', of='another output')
         done = subprocess.run([PROGRAM, 'evaluate', '--left', 'left.pgm'], cwd=self.folder,
                               capture_output=True, text=True)

@@ -97,9 +97,14 @@ function inspect() {
   const rig_sections = (rig, id) => [[true, id], [rig.corners, `${id}-corners`],
     [rig.projection || rig.depth?.length, `${id}-projection`],
     [rig.view_influence, `${id}-views`], [rig.proof, `${id}-proof`]];
+  const { evaluation } = report;
   const wanted = [
     [cells.length, "headline"], [cells.length > 1, "sweep"], [cells.length, "cells"],
     [cells.length && report.study.comparisons?.length, "comparisons"],
+    [evaluation, "scores"], [evaluation?.curves, "density"],
+    [evaluation?.scenes[0]?.matchers && typeof window.Plotly !== "undefined", "angles"],
+    [evaluation?.calibration_error, "calibration-error"],
+    [evaluation?.scenes.some((scene) => scene.pictures), "pictures"],
     [report.world || cells.some((cell) => cell.trial_list?.length), "plan"],
     [report.view, "view"], [report.rigs?.length > 1, "calibrations"],
     ...(report.rigs ?? []).flatMap((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig")),

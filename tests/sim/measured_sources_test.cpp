@@ -321,9 +321,9 @@ TEST(ClusterInterval, HoldsTheMeanOfFewClusters) {
     for (std::uint32_t trial = 0; trial < 1000; ++trial) {
       Draws draws({.seed = 10, .trial = trial});
       const Eigen::VectorXd values = draws.normals(clusters);
-      const auto mean = [&](const std::vector<int>& times) {
+      const auto mean = [&](std::span<const std::size_t> drawn) {
         double sum = 0;
-        for (int k = 0; k < clusters; ++k) sum += times[k] * values[k];
+        for (const std::size_t k : drawn) sum += values[static_cast<Eigen::Index>(k)];
         return sum / clusters;
       };
       const Interval interval = cluster_interval(clusters, mean, {.resamples = 199, .seed = trial});

@@ -75,6 +75,7 @@ function show(report) {
     cells_section(report);
     if (study.comparisons?.length) comparisons_section(study);
   }
+  if (report.evaluation) evaluation_sections(report.evaluation);
   if (report.world || study?.cells.some((cell) => cell.trial_list?.length)) plan_section(report);
   if (report.view) view_section(report.view);
   rigs_sections(report);

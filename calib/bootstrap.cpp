@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/bootstrap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "calib/draw_sources.h"
+#include "calib/error.h"
+#include "calib/random.h"
+
+namespace vernier {
+namespace {
+
+/// Between the two order statistics beside it.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+BootstrapInterval bootstrap_interval(std::size_t clusters,
+                                     const ClusterStatistic& statistic,
+                                     const BootstrapOptions& options) {
+  if (options.resamples < 1 || !(options.confidence > 0 && options.confidence < 1)) {
+    throw Error(
+        "bootstrap",
+        fmt::format("{} resamples at a confidence of {}", options.resamples, options.confidence),
+        "give at least one, and a confidence between 0 and 1");
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (clusters < 2) return {nan, nan};
+  std::vector<double> values;
+  std::vector<std::size_t> drawn(clusters);
+  for (int r = 0; r < options.resamples; ++r) {
+    Draws draws({.seed = options.seed,
+                 .trial = static_cast<std::uint32_t>(r),
+                 .source = static_cast<std::uint32_t>(DrawSource::cluster_bootstrap)});
+    for (std::size_t& cluster : drawn) {
+      const auto at = static_cast<std::size_t>(draws.uniform() * static_cast<double>(clusters));
+      cluster = std::min(at, clusters - 1);
+    }
+    const double value = statistic(drawn);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  if (values.empty()) return {nan, nan};
+  std::sort(values.begin(), values.end());
+  const double tail = 0.5 * (1 - options.confidence);
+  return {quantile(values, tail), quantile(values, 1 - tail)};
+}
+
+}  // namespace vernier

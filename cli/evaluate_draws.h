@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/evaluate_scene.h"
+
+namespace vernier::cli {
+
+struct DrawOptions {
+  std::vector<double> psi_c;    ///< calibration errors to try; none: no draws
+  std::vector<double> rows_px;  ///< and right images that lie so much lower
+  int draws = 5;                ///< rigs of each scene and psi_c
+  std::uint64_t seed = 1;
+  int threads = 0;
+};
+
+/// What a matcher did on one pair that a wrong rig rectified.
+struct DrawFigures {
+  double density = 0, bad_1 = 0, mismatch = 0, disparity_error_rms_px = 0;
+};
+
+/// One kind of error, with and without repair: figures of every scene, draw and matcher.
+struct ErrorCell {
+  double psi_c = 0, rows_px = 0;
+  bool repair = false;
+  std::vector<std::vector<std::vector<DrawFigures>>> figures;  ///< [scene][draw][matcher]
+  std::vector<double> bias_rms_px, rows_rms_px;                ///< of every scene and draw
+  int repaired = 0, pairs = 0;  ///< how many a vertical field was taken away from
+};
+
+/// The evaluation of matchers under errors of calibration, scene by scene.
+class EvaluationUnderError {
+ public:
+  EvaluationUnderError(const std::vector<Matcher>& matchers,
+                       const EvaluationOptions& how,
+                       const DrawOptions& options);
+
+  /// All draws of a scene, from its own rig's covariance or the nominal one's, resized. Throws
+  /// Error naming the rig's file.
+  void add(const Scene& scene, Session& session);
+
+  bool wanted() const { return !cells_.empty(); }
+  Json json() const;
+  std::string text() const;
+
+ private:
+  const std::vector<Matcher>& matchers_;
+  EvaluationOptions how_;
+  DrawOptions options_;
+  std::vector<ErrorCell> cells_;
+  std::vector<std::string> rigs_;
+};
+
+}  // namespace vernier::cli

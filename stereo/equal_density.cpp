@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/equal_density.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "calib/error.h"
+
+namespace vernier {
+namespace {
+
+/// One scene and setting.
+struct Pair {
+  double density = 0, own = 0, peer = 0;
+};
+
+Pair compare(const std::vector<CurvePoint>& own, const std::vector<CurvePoint>& peer) {
+  const double density = std::min(own.front().density, peer.front().density);
+  return {density, bad_1_at(own, density), bad_1_at(peer, density)};
+}
+
+void check(const std::vector<SceneCurves>& scenes) {
+  const auto is_bad = [&](const SceneCurves& scene) {
+    return scene.own.empty() || scene.peer.empty() ||
+           scene.peer.size() != scenes.front().peer.size() ||
+           std::any_of(scene.peer.begin(), scene.peer.end(),
+                       [](const auto& curve) { return curve.empty(); });
+  };
+  if (!scenes.empty() && std::none_of(scenes.begin(), scenes.end(), is_bad)) return;
+  throw Error("equal density", "there is a scene without curves, or none",
+              "give a curve of both matchers, and of as many settings, on every scene");
+}
+
+Pair mean_of(const std::vector<std::vector<Pair>>& pairs,
+             std::size_t setting,
+             std::span<const std::size_t> scenes) {
+  Pair mean;
+  for (const std::size_t s : scenes) {
+    mean.density += pairs[s][setting].density;
+    mean.own += pairs[s][setting].own;
+    mean.peer += pairs[s][setting].peer;
+  }
+  const auto n = static_cast<double>(scenes.size());
+  return {mean.density / n, mean.own / n, mean.peer / n};
+}
+
+double ratio_of(const Pair& pair) {
+  return pair.peer > 0 ? pair.own / pair.peer : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The setting of the largest ratio.
+std::size_t best_setting(const std::vector<std::vector<Pair>>& pairs,
+                         std::span<const std::size_t> scenes) {
+  std::size_t best = 0;
+  double most = -1;
+  for (std::size_t k = 0; k < pairs.front().size(); ++k) {
+    const double ratio = ratio_of(mean_of(pairs, k, scenes));
+    if (ratio > most) most = ratio, best = k;
+  }
+  return best;
+}
+
+}  // namespace
+
+EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
+                              const BootstrapOptions& options) {
+  check(scenes);
+  std::vector<std::vector<Pair>> pairs;
+  for (const SceneCurves& scene : scenes) {
+    pairs.emplace_back();
+    for (const auto& peer : scene.peer) pairs.back().push_back(compare(scene.own, peer));
+  }
+  std::vector<std::size_t> each(scenes.size());
+  std::iota(each.begin(), each.end(), 0);
+  EqualDensity result;
+  result.setting = best_setting(pairs, each);
+  const Pair mean = mean_of(pairs, result.setting, each);
+  result.density = mean.density;
+  result.own_bad_1 = mean.own;
+  result.peer_bad_1 = mean.peer;
+  result.ratio = ratio_of(mean);
+  result.interval = bootstrap_interval(
+      scenes.size(),
+      [&](std::span<const std::size_t> drawn) {
+        return ratio_of(mean_of(pairs, best_setting(pairs, drawn), drawn));
+      },
+      options);
+  return result;
+}
+
+}  // namespace vernier

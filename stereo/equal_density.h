@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "calib/bootstrap.h"
+#include "stereo/matcher_evaluation.h"
+
+namespace vernier {
+
+/// Errors against density of a matcher and of a peer's settings on one scene, densest first
+/// (stereo/matcher_evaluation.h).
+struct SceneCurves {
+  std::vector<CurvePoint> own;
+  std::vector<std::vector<CurvePoint>> peer;  ///< one curve for each setting
+};
+
+/// How two matchers' shares of errors above 1 px compare where both leave out as much.
+struct EqualDensity {
+  std::size_t setting = 0;  ///< of the peer: the one that compares best
+  double density = 0;       ///< mean over scenes
+  double own_bad_1 = 0, peer_bad_1 = 0;
+  double ratio = 0;  ///< of the means, own over the peer's; not a number where the peer's is 0
+  BootstrapInterval interval;  ///< of the ratio, scenes resampled, the best setting chosen anew
+};
+
+/// On each scene the density is the largest that both reach. Throws Error without scenes, or where
+/// they have different numbers of settings, or a curve is empty.
+EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
+                              const BootstrapOptions& options = {});
+
+}  // namespace vernier

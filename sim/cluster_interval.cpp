@@ -25,7 +25,8 @@ double student_quantile(double p, int dof) {
 
 Interval cluster_interval(int clusters,
                           const ClusterStatistic& statistic,
-                          const BootstrapOptions& options) {
+                          const BootstrapOptions& options,
+                          bool is_scale) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (clusters < 3 || options.resamples < 1) return {nan, nan};
   std::vector<std::size_t> each(static_cast<std::size_t>(clusters));
@@ -35,6 +36,10 @@ Interval cluster_interval(int clusters,
   if (!std::isfinite(value) || !std::isfinite(drawn.low)) return {nan, nan};
   const double few = student_quantile(0.975, clusters - 1) / normal_quantile(0.975) *
                      std::sqrt(clusters / (clusters - 1.0));
+  if (is_scale && drawn.low > 0.5 * value && drawn.low > 0) {
+    return {value * std::pow(std::min(1.0, value / drawn.high), few),
+            value * std::pow(std::max(1.0, value / drawn.low), few)};
+  }
   return {value - few * std::max(0.0, value - drawn.low),
           value + few * std::max(0.0, drawn.high - value)};
 }

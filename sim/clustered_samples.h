@@ -69,7 +69,8 @@ inline void not_below_zero(Measured& measured) {
 template <class Sample, class Figure>
 Measured measured(const ClusteredSamples<Sample>& samples,
                   const MeasuringOptions& options,
-                  Figure figure) {
+                  Figure figure,
+                  bool is_scale = false) {
   Measured result;
   result.samples = samples.count();
   if (samples.count() < options.least_samples) return result;
@@ -77,7 +78,7 @@ Measured measured(const ClusteredSamples<Sample>& samples,
   result.interval = cluster_interval(
       samples.clusters(),
       [&](std::span<const std::size_t> drawn) { return figure(samples.taken(drawn)); },
-      options.bootstrap);
+      options.bootstrap, is_scale);
   return result;
 }
 

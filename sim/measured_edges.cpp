@@ -173,7 +173,7 @@ MeasuredLateralShift measured_lateral_shift(const PairList& pairs,
   const auto relative = [](const std::vector<Shift>& s) {
     return std::sqrt(shift_variance(s).own);
   };
-  result.relative_px = measured(shifts, options, relative);
+  result.relative_px = measured(shifts, options, relative, true);
   not_below_zero(result.relative_px);
   result.independent_px = result.relative_px;
   for (double* figure : {&result.independent_px.value, &result.independent_px.interval.low,
@@ -213,8 +213,8 @@ MeasuredEndpoints measured_endpoints(const PairList& pairs,
   MeasuredEndpoints result;
   for (const bool across : {true, false}) {
     Measured& figure = across ? result.across_px : result.along_px;
-    figure = measured(kept, options,
-                      [&](const std::vector<Ends>& ends) { return end_sigma_px(ends, across); });
+    const auto sigma = [&](const std::vector<Ends>& ends) { return end_sigma_px(ends, across); };
+    figure = measured(kept, options, sigma, true);
     not_below_zero(figure);
   }
   result.broken = static_cast<double>(broken) / std::max(1, broken + kept.count());

@@ -118,7 +118,8 @@ std::string sources_toml(const MeasuredSources& sources, ShiftMode mode) {
   std::string names;
   for (const std::string& name : sources.pairs) names += (names.empty() ? "" : ", ") + name;
   std::replace_if(
-      names.begin(), names.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+      names.begin(), names.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
   std::string text = fmt::format(
       "# Sources of error, measured by vernier characterise in {} pair{} with ground truth: {}\n"
       "# Beside each value its 95 % interval, {}.\n"

@@ -9,24 +9,24 @@ namespace vernier {
 /// Who draws: the source number of DrawPlace. One list for the whole project, so that no two
 /// processes ever share a stream. Numbers are part of every stored result: never reuse one.
 enum class DrawSource : std::uint32_t {
-  calibration = 1,       // psi_c, the rig that a query or (trial 2^31 + block) a map is told
-  lateral_shift = 2,     // psi_l
-  edge_loss = 3,         // psi_e
-  endpoint_noise = 4,    // psi_g
-  stereo_mismatch = 5,   // psi_s
-  corner_loss = 6,       // psi_cd
-  corner_mismatch = 7,   // psi_cm
-  query_pose = 8,        // where a query stands
-  simulated_board = 10,  // poses and pixel noise of simulated calibrations
-  office = 11,           // generated worlds
-  monte_carlo = 12,      // propagation by sampling
-  left_out_boards = 13,  // splits of frames
-  simulated_pairs = 14,  // points, noise and wrong matches of simulated pairs
-  noisy_copy = 16,       // corners of calibrations that are solved again, and their priors
-  wishart = 17,          // null distribution of a sample covariance's eigenvalues
-  vertical_field = 22,   // triples of matches
-  full_search = 23,      // blocks of stretch correlation that search everywhere
-  cluster_bootstrap = 25, // clusters of bootstrap intervals
+  calibration = 1,         // psi_c, the rig that a query or (trial 2^31 + block) a map is told
+  lateral_shift = 2,       // psi_l
+  edge_loss = 3,           // psi_e
+  endpoint_noise = 4,      // psi_g
+  stereo_mismatch = 5,     // psi_s
+  corner_loss = 6,         // psi_cd
+  corner_mismatch = 7,     // psi_cm
+  query_pose = 8,          // where a query stands
+  simulated_board = 10,    // poses and pixel noise of simulated calibrations
+  office = 11,             // generated worlds
+  monte_carlo = 12,        // propagation by sampling
+  left_out_boards = 13,    // splits of frames
+  simulated_pairs = 14,    // points, noise and wrong matches of simulated pairs
+  noisy_copy = 16,         // corners of calibrations that are solved again, and their priors
+  wishart = 17,            // null distribution of a sample covariance's eigenvalues
+  vertical_field = 22,     // triples of matches
+  full_search = 23,        // blocks of stretch correlation that search everywhere
+  cluster_bootstrap = 25,  // clusters of bootstrap intervals
 };
 
 }  // namespace vernier

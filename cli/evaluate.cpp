@@ -14,6 +14,7 @@
 #include "cli/matcher_names.h"
 #include "cli/option_checks.h"
 #include "cli/report_evaluation.h"
+#include "cli/scene_options.h"
 #include "cli/session.h"
 #include "cli/spare_inputs.h"
 #include "stereo/canny_edges.h"
@@ -27,20 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  StereoSceneFile scene;
-  std::string scenes, matchers = "edge,sgbm", outline = "either", picture, error_picture;
+  SceneOptions scenes;
+  std::string matchers = "edge,sgbm", outline = "either", picture, error_picture;
   std::vector<std::string> commands;
   std::string psi_c, rows_px, output;
   DrawOptions draws;
   bool repair = false, equal_density = false;
 };
-
-std::vector<StereoSceneFile> scene_files(const Options& options) {
-  if (!options.scenes.empty()) return read_stereo_scenes(options.scenes);
-  StereoSceneFile scene = options.scene;
-  scene.name = scene.left.stem().string();
-  return {scene};
-}
 
 void write_pictures(const std::string& disparities,
                     const std::string& errors,
@@ -88,10 +82,7 @@ std::string file_stem(std::size_t number, const std::string& name) {
 }
 
 void check_outputs(const Options& options, const std::vector<StereoSceneFile>& files) {
-  std::vector<std::filesystem::path> inputs{options.scenes};
-  for (const StereoSceneFile& file : files) {
-    inputs.insert(inputs.end(), {file.left, file.right, file.truth, file.right_truth, file.rig});
-  }
+  const std::vector<fs::path> inputs = inputs_of(options.scenes, files);
   for (const std::string& output : {options.picture, options.error_picture}) {
     if (!output.empty()) spare_inputs(inputs, output);
   }
@@ -157,7 +148,7 @@ DrawOptions draw_options(const Options& options) {
 }
 
 void run(const Options& options, Session& session) {
-  const std::vector<StereoSceneFile> files = scene_files(options);
+  const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   check_outputs(options, files);
   const std::vector<Matcher> matchers = matchers_named(options.matchers, options.commands);
   EvaluationOptions how;
@@ -200,35 +191,13 @@ void run(const Options& options, Session& session) {
   session.result(json, report.text + under_error.text());
 }
 
-void add_pair_options(CLI::App* verb, Options& o) {
-  auto* scenes = verb->add_option("--scenes", o.scenes, "TOML list of pairs (docs/matchers.md)");
-  for (const auto& [name, value, help] :
-       {std::tuple{"--left", &o.scene.left, "left image, rectified"},
-        std::tuple{"--right", &o.scene.right, "right image"},
-        std::tuple{"--truth", &o.scene.truth, "true disparities of the left image: PFM, PNG, .npy"},
-        std::tuple{"--right-truth", &o.scene.right_truth,
-                   "those of the right image: what it does not show is told better"}}) {
-    verb->add_option(name, *value, help)->excludes(scenes);
-  }
-  verb->add_option("--truth-scale", o.scene.truth_scale, "values a pixel of the truth")
-      ->check(finite_and_positive)
-      ->excludes(scenes)
-      ->capture_default_str();
-  verb->add_option("--max-disparity", o.scene.range.most_px, "largest disparity searched, pixels")
-      ->excludes(scenes)
-      ->capture_default_str();
-  verb->add_option("--rig", o.scene.rig,
-                   "rig file that the pair was rectified by, for --psi-c; without it the nominal "
-                   "rig, resized to the image")
-      ->excludes(scenes);
-  verb->add_option("--min-disparity", o.scene.range.least_px, "smallest one")
-      ->excludes(scenes)
-      ->capture_default_str();
-}
-
 void add_error_options(CLI::App* verb, Options& o) {
   verb->add_flag("--equal-density", o.equal_density,
                  "compare the first matcher with the others where both leave out as much");
+  verb->add_option("--rig", o.scenes.one.rig,
+                   "rig file that the pair was rectified by, for --psi-c; without it the nominal "
+                   "rig, resized to the image")
+      ->excludes("--scenes");
   verb->add_option("--psi-c", o.psi_c,
                    "score under calibration errors too: factors such as 0.1,1,3,10 on the rig's "
                    "standard deviations");
@@ -253,7 +222,7 @@ void add_evaluate(CLI::App& app, Session& session) {
       app, session, "evaluate", "stereo matchers against ground truth, at the left image's edges",
       "vernier evaluate --left im2.png --right im6.png --truth disp2.png --truth-scale 4 "
       "--max-disparity 64 --matcher edge,bm,sgbm");
-  add_pair_options(verb, *o);
+  add_scene_options(*verb, o->scenes);
   add_error_options(verb, *o);
   verb->add_option("--matcher", o->matchers, "edge, stretch, bm, sgbm, with commas between")
       ->capture_default_str();
@@ -276,11 +245,7 @@ void add_evaluate(CLI::App& app, Session& session) {
                    "the same by error: green to 0.5 px, yellow to 1, orange to 3, red; blue: none")
       ->check(png_name);
   verb->callback([o, verb, &session] {
-    if (o->scenes.empty()) {
-      for (const char* needed : {"--left", "--right", "--truth"}) {
-        if (verb->count(needed) == 0) throw CLI::RequiredError(needed);
-      }
-    }
+    require_scenes(*verb, o->scenes);
     session.action = [=, &session] { run(*o, session); };
   });
 }

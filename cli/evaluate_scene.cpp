@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "calib/error.h"
+#include "cli/exchanged_pair.h"
 #include "stereo/canny_edges.h"
 #include "stereo/vertical_field.h"
 
@@ -29,18 +30,16 @@ double cpu_ms() {
          ms(ended.ru_utime) + ms(ended.ru_stime);
 }
 
-[[noreturn]] void refuse_exchanged(const Scene& scene, const std::string& why) {
-  throw Error(scene.file.left.string(), "left and right seem exchanged: " + why,
-              "exchange --left and --right");
-}
-
 /// Corners that match only the other way round.
 void check_corners_not_exchanged(const Scene& scene, const VerticalField& field) {
   if (field.known || !field.unrectified) return;
   const VerticalField other = vertical_field({scene.pair.right, scene.pair.left}, scene.file.range);
   if (!other.known || other.unrectified) return;
-  refuse_exchanged(scene, fmt::format("{} corners match as given, {} the other way round",
-                                      field.matched, other.matched));
+  throw Error(scene.file.left.string(),
+              fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
+                          "way round",
+                          field.matched, other.matched),
+              "exchange --left and --right");
 }
 
 void repair(Scene& scene, bool wanted, Session& session) {
@@ -100,24 +99,13 @@ Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOpti
   return run;
 }
 
-/// Exchanged images are found the other way round.
 void check_not_exchanged(const Matcher& matcher, const Scene& scene, const Run& run) {
-  constexpr double few = 0.5, times_more = 1.5;
-  const auto count = [](const std::vector<EdgeDisparity>& found) {
-    return static_cast<double>(
-        std::count_if(found.begin(), found.end(), [](const auto& d) { return d.matched(); }));
-  };
-  const double given = count(run.found) / static_cast<double>(scene.edges.size());
-  if (given >= few) return;
-  const RectifiedPair other{scene.pair.right, scene.pair.left};
-  const std::vector<EdgePoint> edges = canny_edges(other.left);
-  if (edges.empty()) return;
-  const double exchanged =
-      count(matcher.match(other, edges, scene.file.range)) / static_cast<double>(edges.size());
-  if (exchanged < few || exchanged < times_more * given) return;
-  refuse_exchanged(scene, fmt::format("{:.0f} % of the edges are found as given, {:.0f} % the "
-                                      "other way round",
-                                      100 * given, 100 * exchanged));
+  check_not_exchanged(
+      matcher, run.found, scene.file.range,
+      [&] {
+        return RectifiedPair{scene.pair.right, scene.pair.left};
+      },
+      scene.file.left.string());
 }
 
 }  // namespace vernier::cli

@@ -58,6 +58,7 @@ int main(int argc, char** argv) {
   cli::add_rectify(app, session);
   cli::add_stereo(app, session);
   cli::add_evaluate(app, session);
+  cli::add_characterise(app, session);
   cli::add_world(app, session);
   cli::add_simulate(app, session);
   cli::add_study(app, session);

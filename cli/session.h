@@ -96,6 +96,7 @@ void add_advise(CLI::App& app, Session& session);
 void add_rectify(CLI::App& app, Session& session);
 void add_stereo(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);
+void add_characterise(CLI::App& app, Session& session);
 void add_world(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
 void add_study(CLI::App& app, Session& session);

@@ -118,6 +118,10 @@ void merge(const Options& options, Session& session) {
   for (const char* name : {"study.toml", "world.world.toml", "rig.json"}) {
     fs::copy_file(parts[0] / name, target / name, fs::copy_options::overwrite_existing);
   }
+  if (fs::exists(parts[0] / "sources.toml")) {
+    fs::copy_file(parts[0] / "sources.toml", target / "sources.toml",
+                  fs::copy_options::overwrite_existing);
+  }
   StudyStore merged(target / "results.sqlite");
   for (const auto& [key, block] : blocks) merged.put(block);
   for (const auto& [key, value] : notes) merged.put_note(key, value);

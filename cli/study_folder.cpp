@@ -59,6 +59,7 @@ void keep_inputs(const fs::path& study_file, const fs::path& folder) {
   };
   copy(find_world(study.world, study_file.parent_path()), "world.world.toml");
   copy(find_rig(study.rig, study_file.parent_path()), "rig.json");
+  if (!study.sources.empty()) copy(study.sources, "sources.toml");
   copy(study_file, "study.toml");
 }
 
@@ -67,8 +68,8 @@ Study open_folder(const fs::path& folder, Session& session) {
     throw Error(folder.string(), "is not the folder of a study",
                 "give the folder that vernier study -o wrote");
   }
-  return assemble(read_study(folder / "study.toml"), folder / "world.world.toml",
-                  folder / "rig.json", session);
+  return assemble(read_study(folder / "study.toml", folder / "sources.toml"),
+                  folder / "world.world.toml", folder / "rig.json", session);
 }
 
 std::string short_label(const StudyCell& cell) {

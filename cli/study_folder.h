@@ -12,8 +12,9 @@ namespace vernier::cli {
 /// Loads a study file with the world and rig it names (relative to it, or shipped).
 Study load_study(const std::filesystem::path& file, Session& session);
 
-/// A study's folder holds copies of study.toml, world.world.toml and rig.json beside its stores, so
-/// that it can be resumed, merged and reported wherever it is moved.
+/// A study's folder holds copies of study.toml, world.world.toml and rig.json beside its stores,
+/// and of the file that its [sources] names as sources.toml, so that it can be resumed, merged and
+/// reported wherever it is moved.
 void keep_inputs(const std::filesystem::path& study_file, const std::filesystem::path& folder);
 Study open_folder(const std::filesystem::path& folder, Session& session);
 

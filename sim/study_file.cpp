@@ -40,7 +40,7 @@ class StudyReader : private TomlReader {
  public:
   using TomlReader::TomlReader;
 
-  StudyFile read(const toml::table& root);
+  StudyFile read(const toml::table& root, const std::filesystem::path& sources);
 
  private:
   /// A table of the root, or nothing where it is left out.
@@ -61,10 +61,14 @@ class StudyReader : private TomlReader {
   void read_study_section(const toml::table& root, StudyFile& study) const;
   void read_files(const toml::table& root, StudyFile& study) const;
   ExperimentSettings read_experiment(const toml::table& root) const;
+  std::filesystem::path read_sources_file(const toml::table& root,
+                                          const std::filesystem::path& instead);
   void read_sources(const toml::table& table, SourceSettings& sources) const;
   void read_map(const toml::table& table, ExperimentSettings& settings) const;
   void read_sweep(const toml::table& root, StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
+
+  SourceSettings sources_;  // what [sources] of the study begins with
 };
 
 double StudyReader::number_in(const toml::node& node,
@@ -102,8 +106,34 @@ void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
   }
 }
 
+/// The file that [sources] names, and its values.
+std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
+                                                     const std::filesystem::path& instead) {
+  const toml::table* own = section(root, "sources");
+  const toml::node* node = own ? own->get("file") : nullptr;
+  if (!node) return {};
+  const std::filesystem::path file =
+      instead.empty() ? std::filesystem::path(place()).parent_path() / text(*node, "sources.file")
+                      : instead;
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) {
+    fail(*node, "sources.file: there is no file " + file.string(),
+         "name files from the folder of the study");
+  }
+  const toml::table theirs = parse_toml(read_whole(file), file.string());
+  const StudyReader reader(file.string());
+  reader.check_keys(theirs, {"sources"}, "");
+  const toml::node& sources = reader.required(theirs, "sources", "the file");
+  const toml::table& values = reader.table(sources, "[sources]");
+  if (const auto* further = values.get("file")) {
+    reader.fail(*further, "a file of sources names another", "write its values here");
+  }
+  reader.read_sources(values, sources_);
+  return file;
+}
+
 void StudyReader::read_sources(const toml::table& table, SourceSettings& sources) const {
-  Keys keys{"lateral_shift_mode"};
+  Keys keys{"file", "lateral_shift_mode"};
   for (const SourceParameter& parameter : source_parameters()) keys.push_back(parameter.name);
   check_keys(table, keys, "[sources]");
   for (const SourceParameter& parameter : source_parameters()) {
@@ -155,6 +185,7 @@ void StudyReader::read_map(const toml::table& table, ExperimentSettings& setting
 
 ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
   ExperimentSettings settings;
+  settings.sources = sources_;
   const toml::table& study = *root.get("study")->as_table();
   check_keys(study, {"trials", "seed", "protocol"}, "[study]");
   if (const auto* seed = study.get("seed")) {
@@ -213,7 +244,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     const Keys sections{"study", "sources", "camera", "map", "localiser"};
     if (key.find('.') != std::string::npos &&
         (std::find(sections.begin(), sections.end(), head) == sections.end() ||
-         key == "study.trials")) {
+         key == "study.trials" || key == "sources.file")) {
       fail(
           node, "'" + key + "' cannot be swept",
           "sweep a key of [sources], [camera], [map] or [localiser], study.protocol or study.seed");
@@ -227,7 +258,9 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
       values.push_back(text_of(value));
       toml::table changed = root;  // each value by itself first, so that a complaint finds its line
       set(changed, key, value);
-      StudyReader(place(), value.source().begin.line).read_experiment(changed);
+      StudyReader reader(place(), value.source().begin.line);
+      reader.sources_ = sources_;
+      reader.read_experiment(changed);
     }
     if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list some values");
     study.sweep_keys.push_back(key);
@@ -279,11 +312,12 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   }
 }
 
-StudyFile StudyReader::read(const toml::table& root) {
+StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root, {"study", "world", "rig", "sources", "camera", "map", "localiser", "sweep"}, "");
   StudyFile study;
   read_study_section(root, study);
   read_files(root, study);
+  study.sources = read_sources_file(root, sources);
   read_experiment(root);  // the file's own values first, with their own lines
   read_sweep(root, study);
   add_cells(root, study);
@@ -292,12 +326,14 @@ StudyFile StudyReader::read(const toml::table& root) {
 
 }  // namespace
 
-StudyFile parse_study(const std::string& text, const std::string& place) {
-  return StudyReader(place).read(parse_toml(text, place));
+StudyFile parse_study(const std::string& text,
+                      const std::string& place,
+                      const std::filesystem::path& sources) {
+  return StudyReader(place).read(parse_toml(text, place), sources);
 }
 
-StudyFile read_study(const std::filesystem::path& file) {
-  return parse_study(read_whole(file), file.string());
+StudyFile read_study(const std::filesystem::path& file, const std::filesystem::path& sources) {
+  return parse_study(read_whole(file), file.string(), sources);
 }
 
 }  // namespace vernier

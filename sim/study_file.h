@@ -23,15 +23,19 @@ struct StudyFile {
   int trials = 900;  ///< a cell
   std::string world = "workshop";
   std::string rig = "nominal";
-  std::vector<std::string> sweep_keys;                 ///< first is slowest
+  std::filesystem::path sources;        ///< file that [sources] begins with; empty: none
+  std::vector<std::string> sweep_keys;  ///< first is slowest
   std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list a key
   std::vector<StudyCell> cells;                        ///< all combinations
 };
 
 /// Reads a study. Everything but [study] has a default. Throws Error with file, line and key for
 /// TOML that is malformed, an unknown key (naming the nearest known one), a value of the wrong
-/// type or out of its range, or a sweep over a key that does not exist.
-StudyFile read_study(const std::filesystem::path& file);
-StudyFile parse_study(const std::string& text, const std::string& place);
+/// type or out of its range, or a sweep over a key that does not exist. The `file` of [sources] is
+/// looked for beside the study, unless `sources` says where a copy of it is.
+StudyFile read_study(const std::filesystem::path& file, const std::filesystem::path& sources = {});
+StudyFile parse_study(const std::string& text,
+                      const std::string& place,
+                      const std::filesystem::path& sources = {});
 
 }  // namespace vernier

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/atomic_file.h"
+#include "sim/sources_file.h"
 #include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
 
 namespace vernier {
 namespace {
@@ -73,6 +76,90 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
   EXPECT_NE(complaint_of("[study]\ntrials = 4294967298\n").find("trials = 4294967298 is out"),
             std::string::npos);
   EXPECT_NE(complaint_of("[study]\ntrials = 0\n").find("study.trials = 0"), std::string::npos);
+}
+
+/// All keys measured, each with a value of its own.
+MeasuredSources all_measured() {
+  const auto measured = [](double value) {
+    return Measured{value, {0.9 * value, 1.1 * value}, 500};
+  };
+  MeasuredSources sources;
+  sources.pairs = {"a \"pair\"", "b\n[study]"};
+  sources.edge_loss.share = measured(0.2);
+  sources.lateral_shift.independent_px = measured(0.05);
+  sources.endpoints.across_px = measured(0.12);
+  sources.corners.loss = measured(0.17);
+  sources.corners.mismatch = measured(0.02);
+  sources.corners.reach_px = 7;
+  sources.stereo_mismatch.share = measured(0.03);
+  sources.stereo_mismatch.reach_px = 30;
+  return sources;
+}
+
+TEST(StudyFile, ReadsMeasuredSources) {
+  const test::Folder folder;
+  write_atomically(folder.path() / "measured.toml", sources_toml(all_measured()));
+  const std::filesystem::path file = folder.path() / "study.toml";
+  write_atomically(file,
+                   "[study]\n[sources]\nfile = \"measured.toml\"\ncorner_loss = 0.5\n"
+                   "[sweep]\n\"sources.edge_loss\" = [0, 0.1]\n");
+  const StudyFile study = read_study(file);
+  EXPECT_EQ(study.sources, folder.path() / "measured.toml");
+  ASSERT_EQ(study.cells.size(), 2u);
+  const SourceSettings& s = study.cells[1].experiment.sources;
+  EXPECT_EQ(s.edge_loss, 0.1);    // swept
+  EXPECT_EQ(s.corner_loss, 0.5);  // the study's own
+  EXPECT_EQ(s.endpoint_sigma_px, 0.12);
+  EXPECT_EQ(s.corner_mismatch, 0.02);
+  EXPECT_EQ(s.corner_mismatch_px, 7);
+  EXPECT_EQ(s.stereo_mismatch, 0.03);
+  EXPECT_EQ(s.stereo_mismatch_px, 30);
+  EXPECT_EQ(s.lateral_shift_px, 3);  // not to be measured
+  EXPECT_EQ(s.lateral_shift_mode, ShiftMode::common);
+  EXPECT_EQ(s.epipolar_reject_deg, 5);
+  EXPECT_EQ(s.calibration, 1);
+}
+
+TEST(StudyFile, ReadsWhatTheEyesDifferByWhereAskedFor) {
+  const test::Folder folder;
+  const std::filesystem::path file = folder.path() / "measured.toml";
+  write_atomically(file, sources_toml(all_measured(), ShiftMode::independent));
+  const StudyFile study =
+      parse_study("[study]\n[sources]\nfile = \"elsewhere.toml\"\n", "s.toml", file);
+  EXPECT_EQ(study.cells[0].experiment.sources.lateral_shift_px, 0.05);
+  EXPECT_EQ(study.cells[0].experiment.sources.lateral_shift_mode, ShiftMode::independent);
+  EXPECT_EQ(study.cells[0].experiment.sources.edge_loss, 0.2);
+}
+
+TEST(StudyFile, LeavesDefaultsWhereNothingWasMeasured) {
+  const std::string text = "[study]\n" + sources_toml(MeasuredSources{});  // copied into a study
+  const StudyFile study = parse_study(text, "s.toml");
+  for (const SourceParameter& parameter : source_parameters()) {
+    EXPECT_EQ(study.cells[0].experiment.sources.*parameter.value, SourceSettings().*parameter.value)
+        << parameter.name;
+  }
+}
+
+TEST(StudyFile, ComplaintsAboutAFileOfSourcesNameIt) {
+  const test::Folder folder;
+  const std::filesystem::path file = folder.path() / "measured.toml";
+  const auto complaint = [&](const std::string& content) {
+    write_atomically(file, content);
+    return test::error_message(
+        [&] { parse_study("[study]\n[sources]\nfile = \"x\"\n", "s.toml", file); });
+  };
+  EXPECT_NE(complaint("[sources]\nedge_los = 1\n").find("measured.toml:2: unknown key 'edge_los'"),
+            std::string::npos);
+  EXPECT_NE(complaint("[sources]\nedge_loss = 7\n").find("measured.toml:2: sources.edge_loss = 7"),
+            std::string::npos);
+  EXPECT_NE(complaint("[study]\n").find("unknown key 'study'"), std::string::npos);
+  EXPECT_NE(complaint("").find("has no 'sources'"), std::string::npos);
+  EXPECT_NE(complaint("[sources]\nfile = \"y\"\n").find("names another"), std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[sources]\nfile = \"nowhere.toml\"\n")
+                .find("s.toml:3: sources.file: there is no file"),
+            std::string::npos);
+  EXPECT_NE(complaint_of("[study]\n[sweep]\n\"sources.file\" = [\"a\"]\n").find("cannot be swept"),
+            std::string::npos);
 }
 
 }  // namespace

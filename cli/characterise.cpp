@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/atomic_file.h"
+#include "calib/error.h"
+#include "cli/characterise_report.h"
+#include "cli/evaluate_scene.h"
+#include "cli/matcher_names.h"
+#include "cli/option_checks.h"
+#include "cli/scene_options.h"
+#include "cli/spare_inputs.h"
+
+namespace vernier::cli {
+namespace {
+
+struct Options {
+  SceneOptions scenes;
+  std::string matcher = "edge", command, output, lateral_shift = "common";
+  std::uint64_t seed = 1;
+  bool repair = false;
+  PairSamplesOptions sampling;
+};
+
+Matcher matcher_of(const Options& options) {
+  std::vector<std::string> commands;
+  if (!options.command.empty()) commands.push_back(options.command);
+  const auto matchers = matchers_named(commands.empty() ? options.matcher : "", commands);
+  if (matchers.size() != 1) {
+    throw Error("--matcher", "\"" + options.matcher + "\" names more than one", "name one");
+  }
+  return matchers.front();
+}
+
+PairSamples samples_of(const StereoSceneFile& file,
+                       const Matcher& matcher,
+                       const Options& options,
+                       Session& session) {
+  const Scene scene = read_scene(file, options.repair, session);
+  PairSamples samples = pair_samples(scene.pair, scene.map, file.range, matcher, options.sampling);
+  samples.name = file.name;
+  if (samples.losses.empty()) {
+    session.warn(file.name +
+                 ": no straight edge of it is of use: nothing that the truth knows "
+                 "and the right image shows");
+  }
+  return samples;
+}
+
+/// What a user has to know before believing the figures.
+bool say_doubts(const MeasuredSources& sources, Session& session) {
+  constexpr double hardly_a_pair = 0.6, much_by_chance = 0.35, half_a_pixel = 0.5;
+  if (!sources.by_pair) {
+    session.warn(
+        fmt::format("{} pair{}: the intervals are over parts of the images, and say "
+                    "nothing of other scenes; give six pairs or more",
+                    sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s"));
+  }
+  if (sources.edge_loss.chance > much_by_chance) {
+    session.warn(
+        fmt::format("other edges cover {:.0f} % of any length by chance: edge loss is "
+                    "worth little in such texture",
+                    100 * sources.edge_loss.chance));
+  }
+  if (sources.lateral_shift.independent_px.interval.low > half_a_pixel) {
+    session.warn(
+        "the views differ by more than half a pixel across the edges, which no common shift does: "
+        "think of --lateral-shift independent");
+  }
+  bool any = false;
+  for (const SourceEntry& entry : source_entries(sources)) any = any || entry.written;
+  if (!any) {
+    session.doubt("nothing could be measured: fewer than 30 samples of everything");
+  } else if (sources.edge_loss.share.value > hardly_a_pair) {
+    any = false;
+    session.doubt(fmt::format(
+        "{:.0f} % of the left image's edges are not where the truth puts them: look whether left "
+        "and right are exchanged, and at truth_scale",
+        100 * sources.edge_loss.share.value));
+  }
+  return any;
+}
+
+void run(const Options& options, Session& session) {
+  const std::vector<StereoSceneFile> files = scene_files(options.scenes);
+  if (!options.output.empty()) spare_inputs(inputs_of(options.scenes, files), options.output);
+  const Matcher matcher = matcher_of(options);
+  const ShiftMode mode =
+      options.lateral_shift == "common" ? ShiftMode::common : ShiftMode::independent;
+  std::vector<PairSamples> samples;
+  {
+    Progress progress(session, "characterising");
+    for (const StereoSceneFile& file : files) {
+      samples.push_back(samples_of(file, matcher, options, session));
+      progress.update(static_cast<int>(samples.size()), static_cast<int>(files.size()));
+    }
+  }
+  MeasuringOptions measuring;
+  measuring.bootstrap.seed = options.seed;
+  const MeasuredSources sources = measure_sources(samples, measuring);
+  const bool trusted = say_doubts(sources, session);
+  if (!options.output.empty()) {
+    if (trusted)
+      write_atomically(options.output, sources_toml(sources, mode));
+    else
+      session.warn(options.output + " is not written");
+  }
+  measuring.bootstrap.resamples = 0;
+  std::vector<MeasuredSources> each;
+  for (const PairSamples& pair : samples) each.push_back(measure_sources({pair}, measuring));
+  const CharacteriseReport report{sources, each, mode, matcher.name};
+  session.result(report_json(report), report_text(report));
+}
+
+}  // namespace
+
+void add_characterise(CLI::App& app, Session& session) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = add_verb(app, session, "characterise",
+                            "the simulator's sources of error, from pairs with truth",
+                            "vernier characterise --scenes pairs.toml -o sources.toml\n"
+                            "  then in a study:  [sources]  file = \"sources.toml\"");
+  add_scene_options(*verb, o->scenes);
+  auto* matcher = verb->add_option("--matcher", o->matcher,
+                                   "whose mismatch is measured: edge, stretch, bm or sgbm")
+                      ->capture_default_str();
+  verb->add_option("--command", o->command,
+                   "a program as the matcher: its command with {left} {right} {output}, {least} "
+                   "{most}")
+      ->excludes(matcher);
+  verb->add_option("-o,--output", o->output, "TOML file with a table [sources]");
+  verb->add_option("--lateral-shift", o->lateral_shift,
+                   "common: its default stays, for a pair cannot tell; independent: what the eyes "
+                   "differ by")
+      ->check(CLI::IsMember({"common", "independent"}))
+      ->capture_default_str();
+  verb->add_option("--least-length", o->sampling.warp.least_length_px,
+                   "pixels: shorter segments are no features; the simulator's are 10 px and more")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--corners", o->sampling.corners, "strongest ones of the left image")
+      ->check(CLI::Range(30, 100000))
+      ->capture_default_str();
+  verb->add_flag("--repair", o->repair, "take away what rows differ by, found from corners");
+  verb->add_option("--seed", o->seed, "of the bootstrap")
+      ->check(not_negative)
+      ->capture_default_str();
+  verb->callback([o, verb, &session] {
+    require_scenes(*verb, o->scenes);
+    session.action = [=, &session] { run(*o, session); };
+  });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/characterise_report.h"
+
+#include <cmath>
+
+namespace vernier::cli {
+namespace {
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json measured_json(const Measured& measured) {
+  return {{"value", finite(measured.value)},
+          {"interval_95", {finite(measured.interval.low), finite(measured.interval.high)}},
+          {"n", measured.samples}};
+}
+
+/// Least and largest of a source's values over the pairs.
+Interval over_pairs(const CharacteriseReport& report, std::size_t source) {
+  Interval range{std::numeric_limits<double>::quiet_NaN(),
+                 std::numeric_limits<double>::quiet_NaN()};
+  for (const MeasuredSources& pair : report.each) {
+    const double value = source_entries(pair, report.mode)[source].measured.value;
+    range.low = std::fmin(range.low, value);
+    range.high = std::fmax(range.high, value);
+  }
+  return range;
+}
+
+Json sources_json(const CharacteriseReport& report) {
+  Json json = Json::object();
+  const std::vector<SourceEntry> entries = source_entries(report.sources, report.mode);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Json entry = measured_json(entries[i].measured);
+    const Interval range = over_pairs(report, i);
+    entry["over_pairs"] = {finite(range.low), finite(range.high)};
+    entry["default"] = entries[i].otherwise;
+    entry["written"] = entries[i].written;
+    entry["note"] = entries[i].note;
+    json[entries[i].key] = std::move(entry);
+  }
+  return json;
+}
+
+Json edges_json(const MeasuredSources& s) {
+  const MeasuredEdgeLoss& loss = s.edge_loss;
+  const MeasuredLateralShift& shift = s.lateral_shift;
+  const MeasuredEndpoints& ends = s.endpoints;
+  return {{"edge_loss",
+           {{"left_to_right", measured_json(loss.share)},
+            {"right_to_left", measured_json(loss.to_left)},
+            {"on_no_edge", measured_json(loss.on_edges)},
+            {"chance", loss.chance},
+            {"segments_lost_whole", loss.whole},
+            {"segments_without_loss", loss.none},
+            {"gaps_of_the_others", loss.gaps},
+            {"longest_gap_share", loss.longest_gap}}},
+          {"lateral_shift",
+           {{"independent_px", measured_json(shift.independent_px)},
+            {"relative_rms_px", measured_json(shift.relative_px)},
+            {"towards_brighter_px", measured_json(shift.towards_px)},
+            {"truth_error_px", finite(shift.truth_px)},
+            {"beyond", shift.beyond}}},
+          {"endpoints",
+           {{"across_px", measured_json(ends.across_px)},
+            {"along_px", measured_json(ends.along_px)},
+            {"cut_short", ends.broken},
+            {"outliers", ends.outliers}}}};
+}
+
+Json matches_json(const MeasuredSources& s) {
+  Json bins = Json::array();
+  for (const MismatchByDisparity& bin : s.stereo_mismatch.by_disparity) {
+    bins.push_back({{"from_px", bin.from_px},
+                    {"to_px", bin.to_px},
+                    {"lines", bin.lines},
+                    {"wrong", bin.wrong},
+                    {"wilson_95", {bin.wilson.low, bin.wilson.high}}});
+  }
+  return {{"corners",
+           {{"loss", measured_json(s.corners.loss)},
+            {"chance", s.corners.chance},
+            {"mismatch", measured_json(s.corners.mismatch)},
+            {"wrong", s.corners.wrong},
+            {"reach_px", finite(s.corners.reach_px)}}},
+          {"stereo_mismatch",
+           {{"share", measured_json(s.stereo_mismatch.share)},
+            {"wrong", s.stereo_mismatch.wrong},
+            {"wrong_occluded", s.stereo_mismatch.occluded},
+            {"reach_px", finite(s.stereo_mismatch.reach_px)},
+            {"unmatched", s.stereo_mismatch.unmatched},
+            {"by_disparity", bins}}}};
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
+
+std::string range(const Interval& interval) {
+  return std::isfinite(interval.low) ? fmt::format("{:.3g} to {:.3g}", interval.low, interval.high)
+                                     : "-";
+}
+
+std::string details(const MeasuredSources& s) {
+  const MeasuredEdgeLoss& loss = s.edge_loss;
+  std::string text = fmt::format(
+      "edges: {:.0f} % of segments are lost whole, {:.0f} % not at all, the others have {:.2f} "
+      "gaps; {:.1f} % of the length is on no edge\n",
+      100 * loss.whole, 100 * loss.none, loss.gaps, 100 * loss.on_edges.value);
+  text += fmt::format(
+      "views: shifted by {} px (rms) against each other, by {} px towards the brighter side; "
+      "{:.1f} "
+      "% of segments by far more; the truth errs by {} px along the row\n",
+      number(s.lateral_shift.relative_px.value), number(s.lateral_shift.towards_px.value),
+      100 * s.lateral_shift.beyond, number(s.lateral_shift.truth_px));
+  text += fmt::format(
+      "ends: {} px across, {} px along; {:.0f} % of segments cut short in one view, {:.1f} % of "
+      "the "
+      "others outliers\n",
+      number(s.endpoints.across_px.value), number(s.endpoints.along_px.value),
+      100 * s.endpoints.broken, 100 * s.endpoints.outliers);
+  text += fmt::format("lines: {:.1f} % not matched; {} wrong, {} of them not in the right image\n",
+                      100 * s.stereo_mismatch.unmatched, s.stereo_mismatch.wrong,
+                      s.stereo_mismatch.occluded);
+  for (const MismatchByDisparity& bin : s.stereo_mismatch.by_disparity) {
+    text += fmt::format("  disparity {:>5.0f} to {:>4.0f} px: {:>3} of {:>5} lines wrong, {}\n",
+                        bin.from_px, bin.to_px, bin.wrong, bin.lines, range(bin.wilson));
+  }
+  return text;
+}
+
+}  // namespace
+
+Json report_json(const CharacteriseReport& report) {
+  Json json{{"pairs", report.sources.pairs},
+            {"clusters", report.sources.clusters},
+            {"clustered_by", report.sources.by_pair ? "pair" : "part of an image"},
+            {"matcher", report.matcher},
+            {"lateral_shift_mode", report.mode == ShiftMode::common ? "common" : "independent"},
+            {"sources", sources_json(report)},
+            {"figures", edges_json(report.sources)}};
+  json["figures"].update(matches_json(report.sources));
+  json["scenes"] = Json::array();
+  for (const MeasuredSources& pair : report.each) {
+    Json scene{{"name", pair.pairs.front()}};
+    for (const SourceEntry& entry : source_entries(pair, report.mode)) {
+      scene[entry.key] = finite(entry.measured.value);
+    }
+    json["scenes"].push_back(std::move(scene));
+  }
+  return json;
+}
+
+std::string report_text(const CharacteriseReport& report) {
+  std::string text = fmt::format("{:<20} {:>9} {:>18} {:>18} {:>7} {:>8}  {}\n", "source", "value",
+                                 "95 % interval", "over pairs", "n", "default", "note");
+  const std::vector<SourceEntry> entries = source_entries(report.sources, report.mode);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const SourceEntry& entry = entries[i];
+    text += fmt::format(
+        "{:<20} {:>9} {:>18} {:>18} {:>7} {:>8}  {}{}\n", entry.key, number(entry.measured.value),
+        range(entry.measured.interval), range(over_pairs(report, i)), entry.measured.samples,
+        number(entry.otherwise), entry.written ? "" : "default stays: ", entry.note);
+  }
+  return text +
+         fmt::format("intervals: bootstrap over {} {}\n", report.sources.clusters,
+                     report.sources.by_pair ? "pairs" : "parts of images") +
+         details(report.sources);
+}
+
+}  // namespace vernier::cli

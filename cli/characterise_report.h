@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/session.h"
+#include "sim/sources_file.h"
+
+namespace vernier::cli {
+
+/// What `characterise` found.
+struct CharacteriseReport {
+  MeasuredSources sources;
+  std::vector<MeasuredSources> each;  ///< of every pair by itself, without intervals
+  ShiftMode mode = ShiftMode::common;
+  std::string matcher;
+};
+
+Json report_json(const CharacteriseReport& report);
+std::string report_text(const CharacteriseReport& report);
+
+}  // namespace vernier::cli

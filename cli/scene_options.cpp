@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/scene_options.h"
+
+#include "cli/option_checks.h"
+
+namespace vernier::cli {
+
+void add_scene_options(CLI::App& verb, SceneOptions& o) {
+  auto* scenes = verb.add_option("--scenes", o.scenes, "TOML list of pairs (docs/matchers.md)");
+  for (const auto& [name, value, help] :
+       {std::tuple{"--left", &o.one.left, "left image, rectified"},
+        std::tuple{"--right", &o.one.right, "right image"},
+        std::tuple{"--truth", &o.one.truth, "true disparities of the left image: PFM, PNG, .npy"},
+        std::tuple{"--right-truth", &o.one.right_truth,
+                   "those of the right image: what it does not show is told better"}}) {
+    verb.add_option(name, *value, help)->excludes(scenes);
+  }
+  verb.add_option("--truth-scale", o.one.truth_scale, "values a pixel of the truth")
+      ->check(finite_and_positive)
+      ->excludes(scenes)
+      ->capture_default_str();
+  verb.add_option("--max-disparity", o.one.range.most_px, "largest disparity searched, pixels")
+      ->excludes(scenes)
+      ->capture_default_str();
+  verb.add_option("--min-disparity", o.one.range.least_px, "smallest one")
+      ->excludes(scenes)
+      ->capture_default_str();
+}
+
+void require_scenes(const CLI::App& verb, const SceneOptions& options) {
+  if (!options.scenes.empty()) return;
+  for (const char* needed : {"--left", "--right", "--truth"}) {
+    if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
+  }
+}
+
+std::vector<StereoSceneFile> scene_files(const SceneOptions& options) {
+  if (!options.scenes.empty()) return read_stereo_scenes(options.scenes);
+  StereoSceneFile scene = options.one;
+  scene.name = scene.left.stem().string();
+  return {scene};
+}
+
+std::vector<std::filesystem::path> inputs_of(const SceneOptions& options,
+                                             const std::vector<StereoSceneFile>& files) {
+  std::vector<std::filesystem::path> inputs{options.scenes};
+  for (const StereoSceneFile& file : files) {
+    inputs.insert(inputs.end(), {file.left, file.right, file.truth, file.right_truth, file.rig});
+  }
+  return inputs;
+}
+
+}  // namespace vernier::cli

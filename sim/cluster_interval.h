@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "calib/bootstrap.h"
+#include "sim/interval.h"
+
+namespace vernier {
+
+/// 95 % interval of a figure whose samples are alike within clusters. With K clusters the
+/// percentiles q of their bootstrap (calib/bootstrap.h) are drawn away from the figure v itself by
+///
+///     v − f (v − q_0.025),  v + f (q_0.975 − v),   f = t_{K−1, 0.975} / z_0.975 √(K / (K − 1))
+///
+/// because few clusters scatter less about their own mean than about the truth. A standard
+/// deviation (`is_scale`) errs by a factor, and downwards where there is little to tell it from, so
+/// its interval is the reverse one of the logarithm,
+///
+///     v (v / q_0.975)^f,  v (v / q_0.025)^f
+///
+/// unless it is hardly different from 0 (q_0.025 < v / 2). Not a number for fewer than three
+/// clusters, and without resamples.
+Interval cluster_interval(int clusters,
+                          const ClusterStatistic& statistic,
+                          const BootstrapOptions& options = {.resamples = 999},
+                          bool is_scale = false);
+
+/// Quantile of Student's t for p in (0.5, 1), by the expansion about the normal one (Abramowitz and
+/// Stegun 26.7.5); exact for one and two degrees of freedom, right to 1 % from three at p = 0.975.
+double student_quantile(double p, int dof);
+
+}  // namespace vernier

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sim/clustered_samples.h"
+
+/// One figure each of measure_sources. Not installed.
+namespace vernier {
+
+using PairList = std::vector<PairSamples>;
+
+MeasuredEdgeLoss measured_edge_loss(const PairList&, const ClusterOf&, const MeasuringOptions&);
+MeasuredLateralShift measured_lateral_shift(const PairList&,
+                                            const ClusterOf&,
+                                            const MeasuringOptions&);
+MeasuredEndpoints measured_endpoints(const PairList&, const ClusterOf&, const MeasuringOptions&);
+MeasuredCorners measured_corners(const PairList&, const ClusterOf&, const MeasuringOptions&);
+MeasuredStereoMismatch measured_stereo_mismatch(const PairList&,
+                                                const ClusterOf&,
+                                                const MeasuringOptions&);
+
+}  // namespace vernier

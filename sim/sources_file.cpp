@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sources_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+const SourceParameter& parameter_of(std::string_view key) {
+  const auto all = source_parameters();
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const SourceParameter& parameter) { return parameter.name == key; });
+}
+
+/// Four digits: more than any interval here is worth.
+double rounded(double value) { return std::stod(fmt::format("{:.4g}", value)); }
+
+SourceEntry entry_of(const char* key, const Measured& measured, std::string note) {
+  const SourceParameter& parameter = parameter_of(key);
+  SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
+                    std::move(note)};
+  if (!entry.written) {
+    entry.note = fmt::format("only {} samples", measured.samples);
+    return entry;
+  }
+  entry.measured.value = rounded(std::clamp(measured.value, parameter.low, parameter.high));
+  return entry;
+}
+
+SourceEntry reach_entry(const char* key, double reach_px, int wrong, const char* what) {
+  Measured measured;
+  measured.value = reach_px;
+  measured.samples = wrong;
+  SourceEntry entry = entry_of(key, measured, what);
+  if (!entry.written) entry.note = fmt::format("only {} mismatches", wrong);
+  return entry;
+}
+
+SourceEntry lateral_shift_entry(const MeasuredLateralShift& shift, ShiftMode mode) {
+  SourceEntry entry =
+      entry_of("lateral_shift_px", shift.independent_px,
+               fmt::format("independent in each eye; the views differ by {:.3f} px (rms)",
+                           shift.relative_px.value));
+  if (!entry.written || mode == ShiftMode::independent) return entry;
+  entry.written = false;
+  entry.note = fmt::format(
+      "a shift common to both eyes is not to be seen in a pair; by itself each eye has {:.3f} px",
+      shift.independent_px.value);
+  return entry;
+}
+
+std::string interval_text(const Measured& measured) {
+  if (std::isnan(measured.interval.low)) return "";
+  return fmt::format("{:.4g} to {:.4g}; ", measured.interval.low, measured.interval.high);
+}
+
+std::string lines_of(const SourceEntry& entry, const MeasuredSources& sources, ShiftMode mode) {
+  if (!entry.written) {
+    std::string text = fmt::format("# {} = {:.4g}: the default stays; {}\n", entry.key,
+                                   entry.otherwise, entry.note);
+    if (entry.key == "lateral_shift_px" && sources.lateral_shift.independent_px.known()) {
+      text += fmt::format(
+          "#   what the eyes differ by would be ({}{} segments):\n"
+          "#   lateral_shift_mode = \"independent\"\n#   lateral_shift_px = {:.4g}\n",
+          interval_text(entry.measured), entry.measured.samples,
+          sources.lateral_shift.independent_px.value);
+    }
+    return text;
+  }
+  std::string text;
+  if (entry.key == "lateral_shift_px" && mode == ShiftMode::independent) {
+    text = "lateral_shift_mode = \"independent\"\n";
+  }
+  const std::string value = fmt::format("{} = {}", entry.key, entry.measured.value);
+  return text + fmt::format("{:<28}# {}n {}; default {:.4g}; {}\n", value,
+                            interval_text(entry.measured), entry.measured.samples, entry.otherwise,
+                            entry.note);
+}
+
+}  // namespace
+
+std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMode mode) {
+  const MeasuredEdgeLoss& loss = sources.edge_loss;
+  const MeasuredEndpoints& ends = sources.endpoints;
+  const MeasuredCorners& corners = sources.corners;
+  const MeasuredStereoMismatch& stereo = sources.stereo_mismatch;
+  std::vector<SourceEntry> entries;
+  entries.push_back(lateral_shift_entry(sources.lateral_shift, mode));
+  entries.push_back(
+      entry_of("edge_loss", loss.share,
+               fmt::format("share of left segments' length on no right segment; right "
+                           "to left {:.4g}, on no edge at all {:.4g}",
+                           loss.to_left.value, loss.on_edges.value)));
+  entries.push_back(entry_of(
+      "endpoint_sigma_px", ends.across_px,
+      fmt::format("across the line; along it {:.3f} px, {:.0f} % of segments cut short left out",
+                  ends.along_px.value, 100 * ends.broken)));
+  entries.push_back(entry_of(
+      "stereo_mismatch", stereo.share,
+      fmt::format("share of matched lines; {} of them wrong by more than 3 px", stereo.wrong)));
+  entries.push_back(reach_entry("stereo_mismatch_px", stereo.reach_px, stereo.wrong,
+                                "± range with the mismatches' median error"));
+  entries.push_back(entry_of("corner_loss", corners.loss,
+                             "share of left corners that are no corners in the right image"));
+  entries.push_back(entry_of(
+      "corner_mismatch", corners.mismatch,
+      fmt::format("share of matches; {} of them wrong by more than 1.5 px", corners.wrong)));
+  entries.push_back(reach_entry("corner_mismatch_px", corners.reach_px, corners.wrong,
+                                "disc with the mismatches' median distance"));
+  return entries;
+}
+
+std::string sources_toml(const MeasuredSources& sources, ShiftMode mode) {
+  std::string names;
+  for (const std::string& name : sources.pairs) names += (names.empty() ? "" : ", ") + name;
+  std::replace_if(
+      names.begin(), names.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
+  std::string text = fmt::format(
+      "# Sources of error, measured by vernier characterise in {} pair{} with ground truth: {}\n"
+      "# Beside each value its 95 % interval, {}.\n"
+      "# docs/characterise.md says what each one is, and what it leaves out.\n[sources]\n",
+      sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s", names,
+      sources.by_pair ? "over pairs"
+                      : "over parts of these images: other scenes may differ by more");
+  for (const SourceEntry& entry : source_entries(sources, mode)) {
+    text += lines_of(entry, sources, mode);
+  }
+  text += "# calibration and epipolar_reject_deg are not the images' to tell: the defaults stay\n";
+  return text;
+}
+
+}  // namespace vernier

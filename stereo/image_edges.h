@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "stereo/canny_edges.h"
+#include "stereo/edge_segments.h"
+
+namespace vernier {
+
+/// The edges of an image and the straight pieces of them.
+struct ImageEdges {
+  int width_px = 0, height_px = 0;
+  std::vector<EdgePoint> points;      ///< sorted by (y, x)
+  std::vector<EdgeSegment> segments;  ///< of these points
+};
+
+/// Those of an image. Throws Error as canny_edges and edge_segments do.
+ImageEdges image_edges(const GreyLevels& image,
+                       const CannyOptions& canny = {},
+                       const EdgeSegmentOptions& segments = {});
+
+/// The segment that each point is of; −1: none.
+std::vector<int> segment_of_points(const ImageEdges& edges);
+
+}  // namespace vernier

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/line_match.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/error.h"
+#include "stereo/matcher_evaluation.h"
+
+namespace vernier {
+namespace {
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<LineMatch> line_matches(const ImageEdges& left,
+                                    const std::vector<EdgeDisparity>& found,
+                                    const StereoTruth& truth,
+                                    const LineMatchOptions& options) {
+  if (found.size() != left.points.size()) {
+    throw Error("line matches", "edges and disparities are not of one number",
+                "give one disparity for every edge point");
+  }
+  const std::vector<TruthAtEdge> at = truth_at(truth, left.points);
+  std::vector<LineMatch> lines;
+  for (const EdgeSegment& segment : left.segments) {
+    const Eigen::Vector2d along = (segment.segment.b_px - segment.segment.a_px).normalized();
+    if (std::abs(along.y()) < std::sin(options.least_angle_rad)) continue;
+    std::vector<double> errors, disparities;
+    int occluded = 0;
+    for (const int point : segment.points) {
+      const auto i = static_cast<std::size_t>(point);
+      if (!at[i].known) continue;
+      disparities.push_back(at[i].disparity_px);
+      occluded += is_occluded(at[i], OutlineRule::either);
+      if (!found[i].matched()) continue;
+      errors.push_back(std::abs(error_px(found[i], at[i], OutlineRule::either)));
+    }
+    const auto all = static_cast<double>(segment.points.size());
+    const auto known = static_cast<double>(disparities.size());
+    if (known == 0 || known < options.least_share * all) continue;
+    LineMatch line;
+    line.left_px = 0.5 * (segment.segment.a_px + segment.segment.b_px);
+    line.disparity_px = median(disparities);
+    line.occluded = 2 * occluded > known;
+    line.matched =
+        !errors.empty() && static_cast<double>(errors.size()) >= options.least_share * known;
+    if (line.matched) line.error_px = median(errors);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace vernier

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/segment_shift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stereo/edge_neighbours.h"
+
+namespace vernier {
+namespace {
+
+constexpr double apart_px = 4;    // of the two parts: the noise of points reaches 3 px
+constexpr double outlier_px = 1;  // from the median
+constexpr int least_in_part = 3;
+
+struct Beside {
+  double along_px, across_px;
+};
+
+double median_across(std::vector<Beside> points) {
+  const auto middle = points.begin() + static_cast<long>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(),
+                   [](const Beside& a, const Beside& b) { return a.across_px < b.across_px; });
+  return middle->across_px;
+}
+
+double mean_across(const std::vector<Beside>& points, double from_px, double to_px, int& count) {
+  double sum = 0;
+  count = 0;
+  for (const Beside& point : points) {
+    if (point.along_px < from_px || point.along_px > to_px) continue;
+    sum += point.across_px;
+    ++count;
+  }
+  return sum / std::max(1, count);
+}
+
+/// The shift of points that are all of one edge, if both parts have enough.
+std::optional<SegmentShift> shift_of(const WarpedSegment& left, std::vector<Beside> points) {
+  const double median = median_across(points);
+  std::erase_if(
+      points, [&](const Beside& point) { return std::abs(point.across_px - median) > outlier_px; });
+  SegmentShift shift;
+  shift.left_px = left.left_px;
+  shift.normal = left.normal;
+  const double begin = points.front().along_px, end = points.back().along_px;
+  const double middle = 0.5 * (begin + end);
+  int first = 0, last = 0;
+  shift.halves_px[0] = mean_across(points, begin, middle - apart_px / 2, first);
+  shift.halves_px[1] = mean_across(points, middle + apart_px / 2, end, last);
+  if (first < least_in_part || last < least_in_part) return std::nullopt;
+  shift.shift_px = mean_across(points, begin, end, shift.points);
+  double squares = 0;
+  for (const Beside& point : points) squares += std::pow(point.across_px - shift.shift_px, 2);
+  shift.within_px = std::sqrt(squares / (shift.points - 1));
+  return shift;
+}
+
+}  // namespace
+
+std::vector<SegmentShift> segment_shifts(const std::vector<WarpedSegment>& left,
+                                         const ImageEdges& right,
+                                         const SegmentShiftOptions& options) {
+  const EdgeNeighbours neighbours(right.points);
+  const EdgeGate gate{options.across_px, 1, options.turned_rad};
+  std::vector<SegmentShift> shifts;
+  for (const WarpedSegment& segment : left) {
+    std::vector<Beside> found;
+    int asked = 0;
+    for (const WarpedPoint& point : segment.points) {
+      if (point.outline) continue;
+      ++asked;
+      const EdgeNeighbour near = neighbours.nearest({point.right_px, segment.normal}, gate);
+      if (near.point >= 0) found.push_back({point.along_px, near.across_px});
+    }
+    const auto enough = std::max<double>(options.least_points, options.least_share * asked);
+    if (static_cast<double>(found.size()) < enough) continue;
+    std::sort(found.begin(), found.end(),
+              [](const Beside& a, const Beside& b) { return a.along_px < b.along_px; });
+    if (const auto shift = shift_of(segment, std::move(found))) shifts.push_back(*shift);
+  }
+  return shifts;
+}
+
+}  // namespace vernier

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier characterise as a user calls it, on a pair made here: boxes before a wall.
+
+    characterise_test.py PROGRAM
+"""
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+
+from evaluate_test import write_pgm
+
+PROGRAM = ''
+WIDTH, HEIGHT = 360, 240
+
+
+def pair():
+    """A wall at disparity 6 and a box at 14, both with bright and dark boards; rows of grey values."""
+    draw = random.Random(5)
+    wide = WIDTH + 40
+
+    def boards():
+        grey = [[128] * wide for _ in range(HEIGHT)]
+        for y in range(4, HEIGHT - 30, 34):
+            for x in range(4, wide - 36, 40):
+                left, top = x + draw.randrange(6), y + draw.randrange(5)
+                w, h, value = draw.randrange(18, 28), draw.randrange(16, 25), draw.choice((60, 190))
+                for row in grey[top:top + h]:
+                    row[left:left + w] = [value] * w
+        return grey
+    wall, box = boards(), boards()
+    left, right, truth = [], [], []
+    for y in range(HEIGHT):
+        inside = [70 <= y < 170 and 120 <= x < 260 for x in range(wide)]
+        left.append([(box if inside[x] else wall)[y][x] for x in range(WIDTH)])
+        truth.append([4 * (14 if inside[x] else 6) for x in range(WIDTH)])
+        right.append([box[y][x + 14] if inside[x + 14] else wall[y][x + 6] for x in range(WIDTH)])
+    return left, right, truth
+
+
+class Characterise(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        for name, rows in zip(('left', 'right', 'truth'), pair()):
+            write_pgm(self.folder / f'{name}.pgm', rows)
+        write_pgm(self.folder / 'blank.pgm', [[100] * WIDTH for _ in range(HEIGHT)])
+        write_pgm(self.folder / 'small.pgm', [[100] * 50 for _ in range(40)])
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True)
+
+    def run_it(self, *more, left='left', right='right', truth='truth', scale='4',
+               most='24'):
+        return self.call('characterise', '--left', f'{left}.pgm', '--right', f'{right}.pgm',
+                         '--truth', f'{truth}.pgm', '--truth-scale', scale, '--max-disparity', most,
+                         *more)
+
+    def list_of(self, pairs):
+        (self.folder / 'pairs.toml').write_text('\n'.join(
+            f'[[pair]]\nname = "p{i}"\nleft = "left.pgm"\nright = "right.pgm"\n'
+            'truth = "truth.pgm"\ntruth_scale = 4\nmax_disparity = 24' for i in range(pairs)))
+        return 'characterise', '--scenes', 'pairs.toml'
+
+    def test_a_study_takes_what_was_measured(self):
+        done = self.run_it('-o', 'sources.toml', '--json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('1 pair: the intervals are over parts of the images', done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual(said['clustered_by'], 'part of an image')
+        written = tomllib.loads((self.folder / 'sources.toml').read_text())['sources']
+        for key, source in said['sources'].items():
+            self.assertEqual(key in written, source['written'], key)
+            if source['written']:
+                self.assertEqual(written[key], source['value'], key)
+                low, high = source['interval_95']
+                if low is not None:
+                    self.assertLessEqual(low, source['value'] + 1e-4, key)
+                    self.assertGreaterEqual(high, source['value'] - 1e-4, key)
+        self.assertIn('edge_loss', written)
+        self.assertIn('stereo_mismatch', written)
+        self.assertNotIn('lateral_shift_px', written)  # of which a pair sees the half at most
+        (self.folder / 'study.toml').write_text(
+            '[study]\ntrials = 1\nprotocol = "near_path"\n[sources]\nfile = "sources.toml"\n'
+            'corner_loss = 0.25\n')
+        done = self.call('study', 'study.toml', '-o', 'out', '--json', '-q')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        settings = json.loads(done.stdout)['cells'][0]['settings']
+        for key, value in written.items():
+            self.assertEqual(settings[f'sources.{key}'], 0.25 if key == 'corner_loss' else value)
+        (self.folder / 'sources.toml').unlink()  # the study's folder has its own
+        (self.folder / 'out').rename(self.folder / 'moved')
+        done = self.call('study', 'status', 'moved', '--json', '-q')
+        self.assertEqual(json.loads(done.stdout)['cells'][0]['settings'], settings)
+
+    def test_lists_and_repetition(self):
+        done = self.call(*self.list_of(6), '--json', '-q', '-o', 'a.toml')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual((said['clustered_by'], said['clusters']), ('pair', 6))
+        self.assertEqual([scene['name'] for scene in said['scenes']], [f'p{i}' for i in range(6)])
+        self.assertEqual(self.call(*self.list_of(6), '--json', '-q').stdout, done.stdout)
+        text = self.call(*self.list_of(6), '-q').stdout
+        for word in ('edge_loss', '95 % interval', 'default', 'bootstrap over 6 pairs'):
+            self.assertIn(word, text)
+
+    def test_what_the_eyes_differ_by_on_demand(self):
+        done = self.run_it('-q', '-o', 'sources.toml', '--lateral-shift', 'independent')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        written = tomllib.loads((self.folder / 'sources.toml').read_text())['sources']
+        self.assertEqual(written['lateral_shift_mode'], 'independent')
+        self.assertLess(written['lateral_shift_px'], 0.1)  # whole pixels, no noise
+
+    def test_nothing_to_be_trusted(self):
+        write_pgm(self.folder / 'nearly.pgm', [[100 + 60 * (x == 100 and 60 < y < 90)
+                                                for x in range(WIDTH)] for y in range(HEIGHT)])
+        for more in ({'scale': '2'}, {'left': 'nearly', 'right': 'nearly'}):
+            done = self.run_it('-o', 'sources.toml', **more)
+            self.assertEqual(done.returncode, 3, f'{more} {done.stderr}')
+            self.assertIn('doubtful', done.stderr)
+            self.assertIn('not written', done.stderr)
+            self.assertFalse((self.folder / 'sources.toml').exists())
+
+    def test_bad_input(self):
+        def complains(done, of):
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertEqual(done.stdout, '')
+            self.assertIn(of, done.stderr.splitlines()[-1])
+        complains(self.run_it('-q', right='small'), 'small.pgm')
+        complains(self.run_it('-q', left='blank', right='blank'), 'no edges')
+        complains(self.run_it('-q', left='right', right='left'), 'exchanged')
+        complains(self.run_it('-q', truth='small'), 'small.pgm')
+        complains(self.run_it('-q', '--matcher', 'edge,bm'), 'more than one')
+        complains(self.run_it('-q', '--matcher', 'best'), 'no matcher')
+        complains(self.run_it('-q', most='900'), 'width')
+        before = (self.folder / 'truth.pgm').read_bytes()
+        complains(self.run_it('-q', '-o', './truth.pgm'), 'is an input')
+        self.assertEqual((self.folder / 'truth.pgm').read_bytes(), before)
+        complains(self.run_it('-q', '-o', 'nowhere/s.toml'), 'nowhere')
+        complains(self.call('characterise', '--left', 'left.pgm'), '--right')
+        complains(self.call('characterise', '--scenes', 'none.toml', '-q'), 'none.toml')
+
+
+if __name__ == '__main__':
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()

@@ -14,6 +14,7 @@
 #include "calib/draw_sources.h"
 #include "calib/epipolar_system.h"
 #include "calib/random.h"
+#include "calib/rig_drift.h"
 #include "calib/simulated_pairs.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
@@ -190,6 +191,40 @@ TEST(PairsStatistics, AKnockIsFoundAndNothingElse) {
   EXPECT_GT(p, 0.001);  // false alarm 0.1 %
   EXPECT_EQ(std::count_if(p_values.begin(), p_values.end(), [](double x) { return x < 1e-4; }), 0);
   EXPECT_EQ(caught, 100);
+}
+
+TEST(CombineStatistics, DriftHasTheSpreadThatIsStated) {
+  // Pairs with twice the noise that they state, in batches that are part of the combination: the
+  // offsets over their stated deviations, in directions that pairs see (rotation, vertical centre).
+  const Rig truth = test::stereo_rig();
+  double squares = 0;
+  int count = 0;
+  for (std::uint32_t t = 0; t < 12; ++t) {
+    const RigKnowledge known = test::datasheet(truth, 52, t, 0.3);
+    RigEstimate prior;
+    prior.rig = known.rig;
+    prior.covariance = known.covariance;
+    std::vector<CombineInput> inputs{{"datasheet", prior, {}}};
+    for (std::uint64_t b = 0; b < 4; ++b) {
+      PairObservations pairs = simulate_pairs(
+          truth, 53 + b, t, {.image_pairs = 10, .pairs_per_image = 50, .pixel_sigma_px = 0.6});
+      pairs.sigma_px = {0.3f};
+      inputs.push_back({"batch", {}, pairs});
+    }
+    const Combination combined = combine(inputs, {.keep_disagreeing = true});
+    for (const MonitoredBatch& batch : monitor(inputs, combined)) {
+      for (const int i : {8, 10, 12}) {
+        ASSERT_GT(batch.sigma[i], 0);
+        squares += std::pow(batch.offset[i] / batch.sigma[i], 2);
+        ++count;
+      }
+    }
+  }
+  // 144 values, of each three related ones and of four batches that add up to nothing: about 36 of
+  // them are independent, so their mean square has a standard deviation of 0.25.
+  RecordProperty("mean_square", std::to_string(squares / count));
+  EXPECT_GT(squares / count, 0.3);
+  EXPECT_LT(squares / count, 2.0);
 }
 
 }  // namespace

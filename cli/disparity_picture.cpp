@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/atomic_file.h"
+#include "cli/picture.h"
 
 namespace vernier::cli {
 namespace {
@@ -34,22 +33,6 @@ void mark(cv::Mat& canvas, const EdgePoint& edge, const cv::Scalar& colour) {
                 cv::FILLED);
 }
 
-void write(const cv::Mat& canvas, const std::filesystem::path& file) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  write_atomically(file, std::string(png.begin(), png.end()));
-}
-
-/// Blue for 0 to red for 1.
-cv::Scalar colour(double share) {
-  const double hue = 120 * (1 - std::clamp(share, 0.0, 1.0));
-  const cv::Mat hsv(1, 1, CV_8UC3, cv::Scalar(hue, 255, 225));
-  cv::Mat bgr;
-  cv::cvtColor(hsv, bgr, cv::COLOR_HSV2BGR);
-  const auto c = bgr.at<cv::Vec3b>(0, 0);
-  return {double(c[0]), double(c[1]), double(c[2])};
-}
-
 }  // namespace
 
 void write_disparity_picture(const GreyLevels& image,
@@ -61,10 +44,10 @@ void write_disparity_picture(const GreyLevels& image,
   const double span = std::max(1, range.most_px - range.least_px);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     mark(canvas, edges[i],
-         found[i].matched() ? colour((found[i].disparity_px - range.least_px) / span)
+         found[i].matched() ? blue_to_red((found[i].disparity_px - range.least_px) / span)
                             : cv::Scalar(120, 120, 120));
   }
-  write(canvas, file);
+  write_png(canvas, file);
 }
 
 void write_error_picture(const GreyLevels& image,
@@ -82,7 +65,7 @@ void write_error_picture(const GreyLevels& image,
     if (error > 3 && !std::isinf(error)) colour = {20, 20, 220};
     mark(canvas, edges[i], colour);
   }
-  write(canvas, file);
+  write_png(canvas, file);
 }
 
 }  // namespace vernier::cli

@@ -3,13 +3,12 @@
 #include "cli/match_picture.h"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
-#include "calib/atomic_file.h"
 #include "calib/grey_image.h"
+#include "cli/picture.h"
 
 namespace vernier::cli {
 namespace {
@@ -19,14 +18,6 @@ constexpr int subpixel_bits = 4;  // of OpenCV's drawing
 cv::Point fixed_point(const Eigen::Vector2d& p, int down) {
   constexpr double unit = 1 << subpixel_bits;
   return {cvRound(p.x() * unit), cvRound((p.y() + down) * unit)};
-}
-
-/// Red for 0, blue for 1.
-cv::Scalar colour(double share) {
-  cv::Mat hsv(1, 1, CV_8UC3, cv::Scalar(cvRound(120 * std::clamp(share, 0.0, 1.0)), 255, 255)), bgr;
-  cv::cvtColor(hsv, bgr, cv::COLOR_HSV2BGR);
-  const auto c = bgr.at<cv::Vec3b>(0, 0);
-  return {double(c[0]), double(c[1]), double(c[2])};
 }
 
 }  // namespace
@@ -43,16 +34,14 @@ void write_match_picture(const ImageMatching& matching, const std::filesystem::p
   for (const CornerMatch& m : matching.matches)
     most = std::max(most, (m.right_px - m.left_px).norm());
   for (const CornerMatch& m : matching.matches) {
-    const cv::Scalar c = colour((m.right_px - m.left_px).norm() / most);
+    const cv::Scalar c = blue_to_red(1 - (m.right_px - m.left_px).norm() / most);
     const cv::Point from = fixed_point(m.left_px, 0), to = fixed_point(m.right_px, 0);
     const cv::Point below = fixed_point(m.right_px, left.rows);
     cv::line(drawn, from, to, c, 1, cv::LINE_AA, subpixel_bits);
     cv::circle(drawn, from, 2 << subpixel_bits, c, 1, cv::LINE_AA, subpixel_bits);
     cv::circle(drawn, below, 2 << subpixel_bits, c, 1, cv::LINE_AA, subpixel_bits);
   }
-  std::vector<unsigned char> png;
-  cv::imencode(".png", drawn, png);
-  write_atomically(file, std::string(png.begin(), png.end()));
+  write_png(drawn, file);
 }
 
 }  // namespace vernier::cli

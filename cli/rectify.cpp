@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 #include "calib/rig_file.h"
 #include "cli/camera_images.h"
 #include "cli/option_checks.h"
+#include "cli/picture.h"
 #include "cli/session.h"
 #include "cli/share_folder.h"
 #include "cli/spare_inputs.h"
@@ -117,9 +117,7 @@ std::string png(const GreyLevels& image) {
                        const_cast<float*>(image.values.data()));
   cv::Mat bytes;
   values.convertTo(bytes, CV_8U);
-  std::vector<unsigned char> encoded;
-  cv::imencode(".png", bytes, encoded);
-  return {encoded.begin(), encoded.end()};
+  return png_of(bytes);
 }
 
 GreyLevels mask(const ValidPixels& valid) {

@@ -55,6 +55,24 @@ class Case(unittest.TestCase):
         self.assertEqual(list(self.folder.glob('*.tmp')), [])
 
 
+class CalibratedCase(Case):
+    """With the rig of Debian's thirteen real pairs in cls.rig."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.rig = pathlib.Path(cls.shared.name) / 'rig.json'
+        done = vernier(
+            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
+            '--board', '9x6', '--square-m', 0.025, '--model', 'opencv5', '--no-model-check',
+            '--no-evidence', '-o', cls.rig)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+
 class Help(Case):
     def test_every_verb_has_help_with_an_example(self):
         text = self.works('--help').stdout

@@ -13,32 +13,17 @@ import math
 import pathlib
 import shutil
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
 import cli_test
-from cli_test import IMAGES, Case
+from cli_test import IMAGES, CalibratedCase
 
 ROWS, COLUMNS, SQUARE_M = 6, 9, 0.025
 
 
 @unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
-class Rectify(Case):
-    @classmethod
-    def setUpClass(cls):
-        cls.shared = tempfile.TemporaryDirectory()
-        cls.rig = pathlib.Path(cls.shared.name) / 'rig.json'
-        done = cli_test.vernier(
-            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
-            '--board', '9x6', '--square-m', SQUARE_M, '--model', 'opencv5', '--no-model-check',
-            '--no-evidence', '-o', cls.rig)
-        assert done.returncode == 0, done.stderr
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.shared.cleanup()
-
+class Rectify(CalibratedCase):
     def arguments(self, number='01', rig=None, left=None, right=None):
         return ('rectify', '--rig', rig or self.rig, '--left', left or IMAGES / f'left{number}.jpg',
                 '--right', right or IMAGES / f'right{number}.jpg', '-o', self.folder / 'rectified')

@@ -16,7 +16,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 import cli_test
-from cli_test import IMAGES, Case
+from cli_test import IMAGES, CalibratedCase, Case
 from evaluate_test import HEIGHT, WIDTH, pair, write_pgm
 
 F_PX, BASELINE_M = 200, 0.1
@@ -218,21 +218,7 @@ class Made(Case):
 
 
 @unittest.skipUnless((IMAGES / 'left01.jpg').exists(), 'opencv-doc has no images here')
-class Raw(Case):
-    @classmethod
-    def setUpClass(cls):
-        cls.shared = tempfile.TemporaryDirectory()
-        cls.rig = pathlib.Path(cls.shared.name) / 'rig.json'
-        done = cli_test.vernier(
-            'calibrate', '--left', IMAGES / 'left[0-9]*.jpg', '--right', IMAGES / 'right[0-9]*.jpg',
-            '--board', '9x6', '--square-m', 0.025, '--model', 'opencv5', '--no-model-check',
-            '--no-evidence', '-o', cls.rig)
-        assert done.returncode == 0, done.stderr
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.shared.cleanup()
-
+class Raw(CalibratedCase):
     def arguments(self, left='left01', right='right01'):
         return ('stereo', '--rig', self.rig, '--left', IMAGES / f'{left}.jpg', '--right',
                 IMAGES / f'{right}.jpg', '--max-disparity', 120, '-o', self.folder / 'seen')

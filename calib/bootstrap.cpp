@@ -21,14 +21,15 @@ double quantile(const std::vector<double>& sorted, double share) {
   const double at = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  if (sorted[below] == sorted[above]) return sorted[below];  // infinite perhaps
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 }  // namespace
 
-BootstrapInterval bootstrap_interval(std::size_t clusters,
-                                     const ClusterStatistic& statistic,
-                                     const BootstrapOptions& options) {
+Interval bootstrap_interval(std::size_t clusters,
+                            const ClusterStatistic& statistic,
+                            const BootstrapOptions& options) {
   if (options.resamples < 1 || !(options.confidence > 0 && options.confidence < 1)) {
     throw Error(
         "bootstrap",
@@ -48,7 +49,7 @@ BootstrapInterval bootstrap_interval(std::size_t clusters,
       cluster = std::min(at, clusters - 1);
     }
     const double value = statistic(drawn);
-    if (std::isfinite(value)) values.push_back(value);
+    if (!std::isnan(value)) values.push_back(value);
   }
   if (values.empty()) return {nan, nan};
   std::sort(values.begin(), values.end());

@@ -11,6 +11,7 @@
 
 #include "calib/board_warp.h"
 #include "calib/loss.h"
+#include "calib/median.h"
 #include "calib/observation_checks.h"
 #include "calib/view_linearisation.h"
 
@@ -78,12 +79,6 @@ BoardState redescending_minimum(const BoardObservations& observations,
     state = minimise_reprojection(observations, state, problem);
   }
   return state;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 constexpr double rayleigh_median = 1.1774100225154747;  // of |r| / σ, √(2 ln 2)

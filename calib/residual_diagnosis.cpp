@@ -12,6 +12,7 @@
 
 #include "calib/board_warp.h"
 #include "calib/error.h"
+#include "calib/median.h"
 #include "calib/model_nesting.h"
 #include "calib/observation_checks.h"
 #include "calib/view_pair.h"
@@ -35,12 +36,6 @@ double sum_of_squares(const CornerResiduals& residuals) {
 
 double rms_of(double sum_px2, std::size_t corners) {
   return std::sqrt(sum_px2 / (2.0 * static_cast<double>(std::max<std::size_t>(1, corners))));
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 class Diagnosis {

@@ -20,14 +20,11 @@ struct Options {
   PairSamplesOptions sampling;
 };
 
-Matcher matcher_of(const Options& options) {
-  std::vector<std::string> commands;
-  if (!options.command.empty()) commands.push_back(options.command);
-  const auto matchers = matchers_named(commands.empty() ? options.matcher : "", commands);
-  if (matchers.size() != 1) {
-    throw Error("--matcher", "\"" + options.matcher + "\" names more than one", "name one");
-  }
-  return matchers.front();
+/// What the figures depend on beside the pairs.
+std::string how_measured(const Options& options, const Matcher& matcher) {
+  return fmt::format("matcher {}, {} corners an image, segments from {:g} px{}", matcher.name,
+                     options.sampling.corners, options.sampling.warp.least_length_px,
+                     options.repair ? ", rows repaired" : "");
 }
 
 PairSamples samples_of(const StereoSceneFile& file,
@@ -82,7 +79,7 @@ bool say_doubts(const MeasuredSources& sources, Session& session) {
 void run(const Options& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   if (!options.output.empty()) spare_inputs(inputs_of(options.scenes, files), options.output);
-  const Matcher matcher = matcher_of(options);
+  const Matcher matcher = one_matcher(options.matcher, options.command);
   const ShiftMode mode =
       options.lateral_shift == "common" ? ShiftMode::common : ShiftMode::independent;
   std::vector<PairSamples> samples;
@@ -99,7 +96,7 @@ void run(const Options& options, Session& session) {
   const bool trusted = say_doubts(sources, session);
   if (!options.output.empty()) {
     if (trusted)
-      write_atomically(options.output, sources_toml(sources, mode));
+      write_atomically(options.output, sources_toml(sources, mode, how_measured(options, matcher)));
     else
       session.warn(options.output + " is not written");
   }

@@ -75,19 +75,19 @@ Json matches_json(const MeasuredSources& s) {
                     {"to_px", bin.to_px},
                     {"lines", bin.lines},
                     {"wrong", bin.wrong},
-                    {"wilson_95", {bin.wilson.low, bin.wilson.high}}});
+                    {"share", measured_json(bin.share)}});
   }
   return {{"corners",
            {{"loss", measured_json(s.corners.loss)},
             {"chance", s.corners.chance},
             {"mismatch", measured_json(s.corners.mismatch)},
             {"wrong", s.corners.wrong},
-            {"reach_px", finite(s.corners.reach_px)}}},
+            {"reach_px", measured_json(s.corners.reach_px)}}},
           {"stereo_mismatch",
            {{"share", measured_json(s.stereo_mismatch.share)},
             {"wrong", s.stereo_mismatch.wrong},
             {"wrong_occluded", s.stereo_mismatch.occluded},
-            {"reach_px", finite(s.stereo_mismatch.reach_px)},
+            {"reach_px", measured_json(s.stereo_mismatch.reach_px)},
             {"unmatched", s.stereo_mismatch.unmatched},
             {"by_disparity", bins}}}};
 }
@@ -124,7 +124,7 @@ std::string details(const MeasuredSources& s) {
                       s.stereo_mismatch.occluded);
   for (const MismatchByDisparity& bin : s.stereo_mismatch.by_disparity) {
     text += fmt::format("  disparity {:>5.0f} to {:>4.0f} px: {:>3} of {:>5} lines wrong, {}\n",
-                        bin.from_px, bin.to_px, bin.wrong, bin.lines, range(bin.wilson));
+                        bin.from_px, bin.to_px, bin.wrong, bin.lines, range(bin.share.interval));
   }
   return text;
 }

@@ -35,11 +35,10 @@ void mark(cv::Mat& canvas, const EdgePoint& edge, const cv::Scalar& colour) {
 
 }  // namespace
 
-void write_disparity_picture(const GreyLevels& image,
-                             const std::vector<EdgePoint>& edges,
-                             const std::vector<EdgeDisparity>& found,
-                             const DisparityRange& range,
-                             const std::filesystem::path& file) {
+std::string disparity_picture(const GreyLevels& image,
+                              const std::vector<EdgePoint>& edges,
+                              const std::vector<EdgeDisparity>& found,
+                              const DisparityRange& range) {
   cv::Mat canvas = faded(image);
   const double span = std::max(1, range.most_px - range.least_px);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -47,13 +46,12 @@ void write_disparity_picture(const GreyLevels& image,
          found[i].matched() ? blue_to_red((found[i].disparity_px - range.least_px) / span)
                             : cv::Scalar(120, 120, 120));
   }
-  write_png(canvas, file);
+  return png_of(canvas);
 }
 
-void write_error_picture(const GreyLevels& image,
-                         const std::vector<EdgePoint>& edges,
-                         const std::vector<double>& errors_px,
-                         const std::filesystem::path& file) {
+std::string error_picture(const GreyLevels& image,
+                          const std::vector<EdgePoint>& edges,
+                          const std::vector<double>& errors_px) {
   cv::Mat canvas = faded(image);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double error = std::abs(errors_px[i]);
@@ -65,7 +63,7 @@ void write_error_picture(const GreyLevels& image,
     if (error > 3 && !std::isinf(error)) colour = {20, 20, 220};
     mark(canvas, edges[i], colour);
   }
-  write_png(canvas, file);
+  return png_of(canvas);
 }
 
 }  // namespace vernier::cli

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "stereo/matcher.h"
@@ -10,18 +10,16 @@
 namespace vernier::cli {
 
 /// Edges over the faded image: matched ones from blue (the least disparity) to red (the largest),
-/// others grey. PNG.
-void write_disparity_picture(const GreyLevels& image,
-                             const std::vector<EdgePoint>& edges,
-                             const std::vector<EdgeDisparity>& found,
-                             const DisparityRange& range,
-                             const std::filesystem::path& file);
+/// others grey. The bytes of a PNG, of twice the image's size.
+std::string disparity_picture(const GreyLevels& image,
+                              const std::vector<EdgePoint>& edges,
+                              const std::vector<EdgeDisparity>& found,
+                              const DisparityRange& range);
 
 /// Edges by their error: green to half a pixel, yellow to 1 px, orange to 3 px, red beyond; blue
-/// where nothing was found, black where nothing is known. PNG.
-void write_error_picture(const GreyLevels& image,
-                         const std::vector<EdgePoint>& edges,
-                         const std::vector<double>& errors_px,
-                         const std::filesystem::path& file);
+/// where nothing was found (infinite), black where nothing is known (not a number).
+std::string error_picture(const GreyLevels& image,
+                          const std::vector<EdgePoint>& edges,
+                          const std::vector<double>& errors_px);
 
 }  // namespace vernier::cli

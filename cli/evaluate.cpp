@@ -36,15 +36,12 @@ struct Options {
   bool repair = false, equal_density = false;
 };
 
-void write_pictures(const std::string& disparities,
-                    const std::string& errors,
-                    const Scene& scene,
-                    const Run& run,
-                    OutlineRule rule) {
-  if (!disparities.empty()) {
-    write_disparity_picture(scene.pair.left, scene.edges, run.found, scene.file.range, disparities);
-  }
-  if (errors.empty()) return;
+/// PNGs of a scene's edges by disparity and by error.
+struct Pictures {
+  std::string disparity, error;
+};
+
+Pictures pictures_of(const Scene& scene, const Run& run, OutlineRule rule) {
   std::vector<double> errors_px;
   for (std::size_t i = 0; i < scene.edges.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
@@ -53,23 +50,8 @@ void write_pictures(const std::string& disparities,
                         : !run.found[i].matched() ? std::numeric_limits<double>::infinity()
                                                   : error_px(run.found[i], truth, rule));
   }
-  write_error_picture(scene.pair.left, scene.edges, errors_px, errors);
-}
-
-/// The folder of a report, made if it is not there; an evaluation in it is replaced.
-fs::path folder_of(const Options& options) {
-  const fs::path folder = options.output;
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (!fs::is_directory(folder)) {
-    throw Error(options.output, "cannot be made a folder: " + failed.message(),
-                "name another with -o");
-  }
-  if (fs::exists(folder / "study.toml")) {
-    throw Error(options.output, "holds a study", "give the evaluation a folder of its own");
-  }
-  fs::remove(folder / evaluation_file);  // its pictures are about to be replaced
-  return folder;
+  return {disparity_picture(scene.pair.left, scene.edges, run.found, scene.file.range),
+          error_picture(scene.pair.left, scene.edges, errors_px)};
 }
 
 /// A scene's name as part of a file's.
@@ -81,6 +63,13 @@ std::string file_stem(std::size_t number, const std::string& name) {
   return stem;
 }
 
+/// Names of a scene's two pictures in the folder.
+Pictures picture_names(std::size_t number, const StereoSceneFile& file) {
+  const std::string stem = file_stem(number, file.name);
+  return {stem + ".disparity.png", stem + ".error.png"};
+}
+
+/// Refuses outputs that are inputs or each other before any work is done.
 void check_outputs(const Options& options, const std::vector<StereoSceneFile>& files) {
   const std::vector<fs::path> inputs = inputs_of(options.scenes, files);
   for (const std::string& output : {options.picture, options.error_picture}) {
@@ -89,6 +78,62 @@ void check_outputs(const Options& options, const std::vector<StereoSceneFile>& f
   if (!options.picture.empty() && !options.error_picture.empty()) {
     check_different("--error-picture", options.error_picture, options.picture);
   }
+  if (options.output.empty()) return;
+  const fs::path folder = options.output;
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw Error(options.output, "is a file, not a folder", "name another with -o");
+  }
+  if (fs::exists(folder / "study.toml")) {
+    throw Error(options.output, "holds a study", "give the evaluation a folder of its own");
+  }
+  spare_inputs(inputs, folder / evaluation_file);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Pictures names = picture_names(i, files[i]);
+    spare_inputs(inputs, folder / names.disparity);
+    spare_inputs(inputs, folder / names.error);
+  }
+}
+
+using Outputs = std::vector<std::pair<fs::path, std::string>>;
+
+/// What is written of a scene, in the end: nothing where a later one fails.
+void add_outputs(const Options& options,
+                 std::size_t number,
+                 const Scene& scene,
+                 const Run& run,
+                 OutlineRule rule,
+                 Json& of_scene,
+                 Outputs& outputs) {
+  const bool first = number == 0;
+  if (options.output.empty() &&
+      !(first && !(options.picture.empty() && options.error_picture.empty()))) {
+    return;
+  }
+  const Pictures pictures = pictures_of(scene, run, rule);
+  if (first && !options.picture.empty()) outputs.emplace_back(options.picture, pictures.disparity);
+  if (first && !options.error_picture.empty()) {
+    outputs.emplace_back(options.error_picture, pictures.error);
+  }
+  if (options.output.empty()) return;
+  const Pictures names = picture_names(number, scene.file);
+  outputs.emplace_back(fs::path(options.output) / names.disparity, pictures.disparity);
+  outputs.emplace_back(fs::path(options.output) / names.error, pictures.error);
+  of_scene["pictures"] = {{"matcher", of_scene["matchers"].begin().key()},
+                          {"disparity", names.disparity},
+                          {"error", names.error},
+                          {"least_px", scene.file.range.least_px},
+                          {"most_px", scene.file.range.most_px}};
+}
+
+void write_outputs(const Options& options, const Json& json, Outputs outputs) {
+  if (!options.output.empty()) {
+    std::error_code failed;
+    fs::create_directories(options.output, failed);
+    if (failed) throw Error(options.output, failed.message(), "name another folder with -o");
+    outputs.emplace_back(fs::path(options.output) / evaluation_file,
+                         json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  }
+  write_atomically(outputs);
 }
 
 /// All matchers on one scene: their runs, with what is said of them put into `report`.
@@ -132,6 +177,8 @@ Json concluded(const Options& options, const std::vector<Matcher>& matchers, Rep
   return json;
 }
 
+constexpr double most_psi_c = 1000;  // as of a study's sources
+
 DrawOptions draw_options(const Options& options) {
   DrawOptions draws = options.draws;
   const auto list = [](const std::string& text, const std::string& option) {
@@ -141,8 +188,9 @@ DrawOptions draw_options(const Options& options) {
   draws.psi_c = list(options.psi_c, "--psi-c");
   draws.rows_px = list(options.rows_px, "--rows-moved-px");
   for (const double psi_c : draws.psi_c) {
-    if (psi_c >= 0) continue;
-    throw Error("--psi-c", fmt::format("{} is negative", psi_c), "give factors of 0 or more");
+    if (psi_c >= 0 && psi_c <= most_psi_c) continue;
+    throw Error("--psi-c", fmt::format("{:g} is not within 0 and {:g}", psi_c, most_psi_c),
+                "give factors of the standard deviations, such as 0.1,1,10");
   }
   return draws;
 }
@@ -159,23 +207,12 @@ void run(const Options& options, Session& session) {
   Report report{std::vector<std::vector<Json>>(matchers.size())};
   Progress progress(session, "evaluating");
   int done = 0;
-  const fs::path folder = options.output.empty() ? fs::path() : folder_of(options);
+  Outputs outputs;
   for (const StereoSceneFile& file : files) {
     const Scene scene = read_scene(file, options.repair, session);
     const std::vector<Run> runs = run_scene(scene, matchers, how, report);
-    if (done == 0) {
-      write_pictures(options.picture, options.error_picture, scene, runs[0], how.outline);
-    }
-    if (!folder.empty()) {
-      const std::string stem = file_stem(static_cast<std::size_t>(done), file.name);
-      const std::string disparity = stem + ".disparity.png", error = stem + ".error.png";
-      write_pictures(folder / disparity, folder / error, scene, runs[0], how.outline);
-      report.scenes.back()["pictures"] = {{"matcher", matchers[0].name},
-                                          {"disparity", disparity},
-                                          {"error", error},
-                                          {"least_px", file.range.least_px},
-                                          {"most_px", file.range.most_px}};
-    }
+    add_outputs(options, static_cast<std::size_t>(done), scene, runs[0], how.outline,
+                report.scenes.back(), outputs);
     if (options.equal_density) equal_density.add(scene, runs, how);
     under_error.add(scene, session);
     progress.update(++done, static_cast<int>(files.size()));
@@ -187,26 +224,30 @@ void run(const Options& options, Session& session) {
     report.text += equal_density.text();
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
-  if (!folder.empty()) write_atomically(folder / evaluation_file, json.dump(1) + "\n");
+  write_outputs(options, json, std::move(outputs));
   session.result(json, report.text + under_error.text());
 }
 
 void add_error_options(CLI::App* verb, Options& o) {
   verb->add_flag("--equal-density", o.equal_density,
                  "compare the first matcher with the others where both leave out as much");
+  CLI::Option* psi_c =
+      verb->add_option("--psi-c", o.psi_c,
+                       "score under calibration errors too: factors such as 0.1,1,3,10 on the "
+                       "rig's standard deviations");
   verb->add_option("--rig", o.scenes.one.rig,
                    "rig file that the pair was rectified by, for --psi-c; without it the nominal "
                    "rig, resized to the image")
-      ->excludes("--scenes");
-  verb->add_option("--psi-c", o.psi_c,
-                   "score under calibration errors too: factors such as 0.1,1,3,10 on the rig's "
-                   "standard deviations");
+      ->excludes("--scenes")
+      ->needs(psi_c);
   verb->add_option("--rows-moved-px", o.rows_px,
                    "and with the right image so many rows lower, such as 2");
   verb->add_option("--draws", o.draws.draws, "rigs drawn of each pair and psi_c")
+      ->needs(psi_c)
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   verb->add_option("--seed", o.draws.seed, "of the draws")
+      ->needs(psi_c)
       ->check(not_negative)
       ->capture_default_str();
   verb->add_option("--threads", o.draws.threads, "of the draws; 0: as many as the machine has")

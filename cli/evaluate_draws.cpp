@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/evaluate_draws.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
+#include <set>
 
-#include "calib/bootstrap.h"
+#include "calib/cluster_interval.h"
 #include "calib/error.h"
 #include "calib/ordered_parallel.h"
 #include "calib/resized_rig.h"
@@ -19,6 +22,13 @@
 #include "stereo/warped_evaluation.h"
 
 namespace vernier::cli {
+/// What one draw gives, without and with repair.
+struct DrawTrial {
+  std::vector<DrawFigures> figures[2];
+  GeometricError geometry[2];
+  bool repaired = false, physical = true;
+};
+
 namespace {
 
 /// The rig that a scene's calibration errors are drawn of.
@@ -69,16 +79,24 @@ DisparityRange widened(const DisparityRange& range, const SceneRig& rig, double 
       if (c) most = std::max(most, (*c)(0, 0));
     }
   }
-  const int room = static_cast<int>(std::ceil(3 * psi_c * std::sqrt(most)));
-  return {range.least_px - room, std::min(range.most_px + room, rig.geometry.size_px[0] - 1)};
+  const int last = rig.geometry.size_px[0] - 1;
+  const int room = static_cast<int>(std::min<double>(last, std::ceil(3 * psi_c * std::sqrt(most))));
+  return {std::max(range.least_px - room, -last), std::min(range.most_px + room, last)};
 }
 
-/// What one draw gives, without and with repair.
-struct Trial {
-  std::vector<DrawFigures> figures[2];
-  GeometricError geometry[2];
-  bool repaired = false;
-};
+/// Where the right camera stands in the left one's frame.
+Eigen::Vector3d right_centre_m(const Rig& rig) {
+  const Pose& pose = rig.T_camera_first[1];
+  return -pose.R.transpose() * pose.t;
+}
+
+/// Whether a rig still has its cameras side by side in their order.
+bool is_physical(const Rig& drawn, const Rig& true_rig) {
+  const Eigen::Vector3d baseline = right_centre_m(true_rig);
+  const bool finite = parameters(drawn).allFinite();
+  return finite && right_centre_m(drawn).dot(baseline) > 0.1 * baseline.squaredNorm() &&
+         drawn.cameras[0].f_px() > 0 && drawn.cameras[1].f_px() > 0;
+}
 
 std::vector<DrawFigures> figures_of(const WarpedPair& warped,
                                     const std::vector<EdgePoint>& edges,
@@ -88,17 +106,20 @@ std::vector<DrawFigures> figures_of(const WarpedPair& warped,
   std::vector<DrawFigures> figures;
   for (const Matcher& matcher : matchers) {
     const WarpedScore s = evaluate(warped, edges, matcher.match(warped.pair, edges, range), how);
-    figures.push_back(
-        {s.score.all.density, s.score.all.bad_1, s.score.mismatch, s.disparity_error_rms_px});
+    const auto of = [](int count, double figure) { return count > 0 ? figure : NAN; };
+    const int matched = s.score.all.matched;
+    figures.push_back({of(s.score.all.edges, s.score.all.density), of(matched, s.score.all.bad_1),
+                       of(matched + s.score.occluded_matched, s.score.mismatch),
+                       of(s.right, s.disparity_error_rms_px)});
   }
   return figures;
 }
 
-Trial run_trial(WarpedPair warped,
-                const DisparityRange& range,
-                const std::vector<Matcher>& matchers,
-                const EvaluationOptions& how) {
-  Trial trial;
+DrawTrial run_trial(WarpedPair warped,
+                    const DisparityRange& range,
+                    const std::vector<Matcher>& matchers,
+                    const EvaluationOptions& how) {
+  DrawTrial trial;
   const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
   trial.figures[0] = figures_of(warped, edges, range, matchers, how);
   trial.geometry[0] = geometric_error(warped, edges, how);
@@ -115,48 +136,92 @@ Trial run_trial(WarpedPair warped,
   return trial;
 }
 
+/// The pair with its own vertical field taken away: errors are then those that are drawn.
+RectifiedPair without_own_field(const Scene& scene) {
+  const VerticalField own = vertical_field(scene.pair, scene.file.range);
+  return {scene.pair.left, own.significant && !own.unrectified
+                               ? repaired_right(scene.pair.right, own)
+                               : scene.pair.right};
+}
+
 /// Mean of one figure over a cell, with the interval of resampled scenes; of resampled draws where
-/// there is one scene.
+/// there is one scene. Scenes and draws without it are left out.
 struct Summary {
-  double mean = 0;
-  BootstrapInterval interval;
+  double mean = NAN;
+  Interval interval{NAN, NAN};
 };
 
-Summary summary(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
-  std::vector<double> values;  // of clusters
-  const bool one = cell.figures.size() == 1;
-  for (const auto& scene : cell.figures) {
-    double sum = 0;
-    for (const auto& draw : scene) {
-      sum += draw[matcher].*figure;
-      if (one) values.push_back(draw[matcher].*figure);
-    }
-    if (!one) values.push_back(sum / static_cast<double>(scene.size()));
+double mean_of_numbers(const std::vector<double>& values) {
+  double sum = 0;
+  int count = 0;
+  for (const double v : values) {
+    if (std::isnan(v)) continue;
+    sum += v;
+    ++count;
   }
-  const auto mean_of = [&](std::span<const std::size_t> drawn) {
-    double sum = 0;
-    for (const std::size_t k : drawn) sum += values[k];
-    return sum / static_cast<double>(drawn.size());
-  };
-  std::vector<std::size_t> each(values.size());
-  std::iota(each.begin(), each.end(), 0);
-  return {mean_of(each), bootstrap_interval(values.size(), mean_of, {.resamples = 2000})};
+  return count > 0 ? sum / count : NAN;
+}
+
+Summary summary(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+  std::vector<double> clusters;
+  for (const auto& scene : cell.figures) {
+    std::vector<double> draws;
+    for (const auto& draw : scene) draws.push_back(draw[matcher].*figure);
+    if (cell.figures.size() == 1) {
+      clusters = draws;
+    } else {
+      clusters.push_back(mean_of_numbers(draws));
+    }
+  }
+  std::erase_if(clusters, [](double value) { return std::isnan(value); });
+  const Interval interval = cluster_interval(static_cast<int>(clusters.size()),
+                                             [&](std::span<const std::size_t> drawn) {
+                                               double sum = 0;
+                                               for (const std::size_t k : drawn) sum += clusters[k];
+                                               return sum / static_cast<double>(drawn.size());
+                                             },
+                                             {.resamples = 1999});
+  return {mean_of_numbers(clusters), {std::fmax(0, interval.low), interval.high}};
 }
 
 double rms(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double v : values) squares += v * v;
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, values.size())));
+  std::vector<double> squares;
+  for (const double v : values) squares.push_back(v * v);
+  return std::sqrt(mean_of_numbers(squares));
 }
 
-Json interval_json(const BootstrapInterval& interval) {
-  if (!std::isfinite(interval.low)) return Json();
-  return {interval.low, interval.high};
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json interval_json(const Interval& interval) {
+  if (!std::isfinite(interval.high)) return Json();
+  return {interval.low, std::min(1.0, interval.high)};
 }
 
 std::string error_name(const ErrorCell& cell) {
   return cell.rows_px != 0 ? fmt::format("rows {:g} px", cell.rows_px)
                            : fmt::format("psi_c {:g}", cell.psi_c);
+}
+
+std::string percent(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:.2f} %", 100 * share);
+}
+
+std::string pixels(double px) { return std::isnan(px) ? "-" : fmt::format("{:.3f}", px); }
+
+std::string line_of(const ErrorCell& cell, std::size_t m, const std::string& matcher) {
+  const auto mean = [&](double DrawFigures::*figure) { return summary(cell, m, figure).mean; };
+  const Summary mismatch = summary(cell, m, &DrawFigures::mismatch);
+  const Json interval = interval_json(mismatch.interval);
+  const std::string range = interval.is_null()
+                                ? "-"
+                                : fmt::format("{:.2f} … {:.2f} %", 100 * interval[0].get<double>(),
+                                              100 * interval[1].get<double>());
+  const std::string repair = cell.repair ? fmt::format("{}/{}", cell.repaired, cell.pairs) : "no";
+  return fmt::format("{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n",
+                     error_name(cell), repair, pixels(rms(cell.bias_rms_px)),
+                     pixels(rms(cell.rows_rms_px)), matcher, percent(mean(&DrawFigures::density)),
+                     percent(mean(&DrawFigures::bad_1)), percent(mismatch.mean), range,
+                     pixels(mean(&DrawFigures::disparity_error_rms_px)));
 }
 
 }  // namespace
@@ -180,35 +245,59 @@ EvaluationUnderError::EvaluationUnderError(const std::vector<Matcher>& matchers,
 
 void EvaluationUnderError::add(const Scene& scene, Session& session) {
   if (!wanted()) return;
-  const SceneRig rig = rig_of(scene, session);
-  const RigSampler sampler(rig.estimate, rig.name);
-  const auto scenes = static_cast<std::uint32_t>(rigs_.size());
-  rigs_.push_back(rig.name);
-  for (std::size_t c = 0; c < cells_.size(); c += 2) {
-    const double psi_c = cells_[c].psi_c, rows_px = cells_[c].rows_px;
-    const auto draws = static_cast<std::size_t>(psi_c > 0 ? options_.draws : 1);
-    const DisparityRange range = widened(scene.file.range, rig, psi_c);
-    std::vector<Trial> trials(draws);
-    for_each_index(draws, options_.threads, [&](std::size_t i) {
-      const auto number =
-          scenes * static_cast<std::uint32_t>(options_.draws) + static_cast<std::uint32_t>(i);
-      trials[i] =
-          run_trial(psi_c > 0 ? rectified_by(sampler.sample(psi_c, options_.seed, number),
-                                             rig.estimate.rig, rig.geometry, scene.pair, scene.map)
-                              : with_rows_moved(scene.pair, scene.map, rows_px),
-                    range, matchers_, how_);
-    });
-    for (const int repaired : {0, 1}) {
-      ErrorCell& cell = cells_[c + static_cast<std::size_t>(repaired)];
-      cell.figures.emplace_back();
-      for (const Trial& trial : trials) {
-        cell.figures.back().push_back(trial.figures[repaired]);
-        cell.bias_rms_px.push_back(trial.geometry[repaired].bias_rms_px);
-        cell.rows_rms_px.push_back(trial.geometry[repaired].rows_rms_px);
-        cell.repaired += repaired && trial.repaired;
-        ++cell.pairs;
-      }
+  const bool draws_wanted =
+      std::any_of(cells_.begin(), cells_.end(), [](const auto& cell) { return cell.psi_c > 0; });
+  std::optional<SceneRig> rig;
+  std::optional<RigSampler> sampler;
+  if (draws_wanted) {
+    rig = rig_of(scene, session);
+    sampler.emplace(rig->estimate, rig->name);
+    rigs_.push_back(rig->name);
+  }
+  const RectifiedPair pair = without_own_field(scene);
+  const auto draw = [&](double psi_c, const DisparityRange& range, std::size_t i) {
+    const auto number =
+        scenes_ * static_cast<std::uint32_t>(options_.draws) + static_cast<std::uint32_t>(i);
+    const Rig drawn = sampler->sample(psi_c, options_.seed, number);
+    if (!is_physical(drawn, rig->estimate.rig)) {
+      DrawTrial none;
+      none.physical = false;
+      return none;
     }
+    return run_trial(rectified_by(drawn, rig->estimate.rig, rig->geometry, pair, scene.map), range,
+                     matchers_, how_);
+  };
+  for (std::size_t c = 0; c < cells_.size(); c += 2) {
+    const double psi_c = cells_[c].psi_c;
+    std::vector<DrawTrial> trials(static_cast<std::size_t>(psi_c > 0 ? options_.draws : 1));
+    if (psi_c > 0) {
+      const DisparityRange range = widened(scene.file.range, *rig, psi_c);
+      for_each_index(trials.size(), options_.threads,
+                     [&](std::size_t i) { trials[i] = draw(psi_c, range, i); });
+    } else {
+      trials[0] = run_trial(with_rows_moved(pair, scene.map, cells_[c].rows_px), scene.file.range,
+                            matchers_, how_);
+    }
+    for (const std::size_t repaired : {0u, 1u}) take(trials, repaired, cells_[c + repaired]);
+  }
+  ++scenes_;
+}
+
+void EvaluationUnderError::take(const std::vector<DrawTrial>& trials,
+                                std::size_t repaired,
+                                ErrorCell& cell) const {
+  cell.figures.emplace_back();
+  for (const DrawTrial& trial : trials) {
+    if (!trial.physical) {
+      ++cell.not_physical;
+      continue;
+    }
+    const GeometricError& geometry = trial.geometry[repaired];
+    cell.figures.back().push_back(trial.figures[repaired]);
+    cell.bias_rms_px.push_back(geometry.edges > 0 ? geometry.bias_rms_px : NAN);
+    cell.rows_rms_px.push_back(geometry.edges > 0 ? geometry.rows_rms_px : NAN);
+    cell.repaired += repaired != 0 && trial.repaired;
+    ++cell.pairs;
   }
 }
 
@@ -220,20 +309,22 @@ Json EvaluationUnderError::json() const {
       const Summary density = summary(cell, m, &DrawFigures::density);
       const Summary mismatch = summary(cell, m, &DrawFigures::mismatch);
       matchers[matchers_[m].name] = {
-          {"density", density.mean},
+          {"density", number(density.mean)},
           {"density_interval_95", interval_json(density.interval)},
-          {"bad_1", summary(cell, m, &DrawFigures::bad_1).mean},
-          {"mismatch", mismatch.mean},
+          {"bad_1", number(summary(cell, m, &DrawFigures::bad_1).mean)},
+          {"mismatch", number(mismatch.mean)},
           {"mismatch_interval_95", interval_json(mismatch.interval)},
-          {"disparity_error_rms_px", summary(cell, m, &DrawFigures::disparity_error_rms_px).mean}};
+          {"disparity_error_rms_px",
+           number(summary(cell, m, &DrawFigures::disparity_error_rms_px).mean)}};
     }
     cells.push_back({{"psi_c", cell.psi_c},
                      {"rows_moved_px", cell.rows_px},
                      {"repair", cell.repair},
                      {"pairs", cell.pairs},
                      {"repaired", cell.repaired},
-                     {"geometric_bias_rms_px", rms(cell.bias_rms_px)},
-                     {"rows_rms_px", rms(cell.rows_rms_px)},
+                     {"not_physical", cell.not_physical},
+                     {"geometric_bias_rms_px", number(rms(cell.bias_rms_px))},
+                     {"rows_rms_px", number(rms(cell.rows_rms_px))},
                      {"matchers", matchers}});
   }
   return {{"draws", options_.draws}, {"seed", options_.seed}, {"rigs", rigs_}, {"cells", cells}};
@@ -241,27 +332,21 @@ Json EvaluationUnderError::json() const {
 
 std::string EvaluationUnderError::text() const {
   if (!wanted()) return "";
-  std::string text = fmt::format(
-      "\nunder calibration error ({} rigs a pair, drawn of: {}); against the warped truth, 95 % "
-      "over {}\n{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n",
-      options_.draws, rigs_.empty() ? "" : rigs_.front(), rigs_.size() > 1 ? "scenes" : "draws",
-      "error", "repair", "bias px", "rows px", "matcher", "density", "bad 1", "mismatch", "95 %",
-      "error px");
+  const std::set<std::string> rigs(rigs_.begin(), rigs_.end());
+  std::string text = "\nunder calibration error, against the warped truth";
+  if (!rigs.empty()) {
+    text += fmt::format(": {} rigs a pair, drawn of {}", options_.draws, fmt::join(rigs, ", "));
+  }
+  text += fmt::format("\n{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n", "error",
+                      "repair", "bias px", "rows px", "matcher", "density", "bad 1", "mismatch",
+                      scenes_ > 1 ? "95 % over scenes" : "95 % over draws", "error px");
   for (const ErrorCell& cell : cells_) {
-    const std::string repair = cell.repair ? fmt::format("{}/{}", cell.repaired, cell.pairs) : "no";
     for (std::size_t m = 0; m < matchers_.size(); ++m) {
-      const Summary mismatch = summary(cell, m, &DrawFigures::mismatch);
-      const std::string interval =
-          std::isfinite(mismatch.interval.low)
-              ? fmt::format("{:.2f} … {:.2f} %", 100 * mismatch.interval.low,
-                            100 * mismatch.interval.high)
-              : "-";
-      text += fmt::format(
-          "{:<12} {:<7} {:>8.3f} {:>8.3f} {:<10} {:>8.4f} {:>6.2f} % {:>6.2f} % {:>18} {:>9.3f}\n",
-          error_name(cell), repair, rms(cell.bias_rms_px), rms(cell.rows_rms_px), matchers_[m].name,
-          summary(cell, m, &DrawFigures::density).mean,
-          100 * summary(cell, m, &DrawFigures::bad_1).mean, 100 * mismatch.mean, interval,
-          summary(cell, m, &DrawFigures::disparity_error_rms_px).mean);
+      text += line_of(cell, m, matchers_[m].name);
+    }
+    if (cell.not_physical > 0 && !cell.repair) {
+      text += fmt::format("             {} draws left out: cameras exchanged or no baseline\n",
+                          cell.not_physical);
     }
   }
   return text;

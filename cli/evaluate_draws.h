@@ -18,9 +18,9 @@ struct DrawOptions {
   int threads = 0;
 };
 
-/// What a matcher did on one pair that a wrong rig rectified.
+/// What a matcher did on one pair that a wrong rig rectified; not a number: nothing to share.
 struct DrawFigures {
-  double density = 0, bad_1 = 0, mismatch = 0, disparity_error_rms_px = 0;
+  double density, bad_1, mismatch, disparity_error_rms_px;
 };
 
 /// One kind of error, with and without repair: figures of every scene, draw and matcher.
@@ -30,7 +30,10 @@ struct ErrorCell {
   std::vector<std::vector<std::vector<DrawFigures>>> figures;  ///< [scene][draw][matcher]
   std::vector<double> bias_rms_px, rows_rms_px;                ///< of every scene and draw
   int repaired = 0, pairs = 0;  ///< how many a vertical field was taken away from
+  int not_physical = 0;         ///< draws without a pair: cameras exchanged, or no baseline
 };
+
+struct DrawTrial;  // what one draw gives
 
 /// The evaluation of matchers under errors of calibration, scene by scene.
 class EvaluationUnderError {
@@ -39,8 +42,9 @@ class EvaluationUnderError {
                        const EvaluationOptions& how,
                        const DrawOptions& options);
 
-  /// All draws of a scene, from its own rig's covariance or the nominal one's, resized. Throws
-  /// Error naming the rig's file.
+  /// All draws of a scene, from its own rig's covariance or the nominal one's, resized; whatever
+  /// vertical field the pair has of itself is taken away before. Throws Error naming the rig's
+  /// file.
   void add(const Scene& scene, Session& session);
 
   bool wanted() const { return !cells_.empty(); }
@@ -48,11 +52,14 @@ class EvaluationUnderError {
   std::string text() const;
 
  private:
+  void take(const std::vector<DrawTrial>& trials, std::size_t repaired, ErrorCell& cell) const;
+
   const std::vector<Matcher>& matchers_;
   EvaluationOptions how_;
   DrawOptions options_;
   std::vector<ErrorCell> cells_;
-  std::vector<std::string> rigs_;
+  std::vector<std::string> rigs_;  ///< one a scene, where draws are wanted
+  std::uint32_t scenes_ = 0;
 };
 
 }  // namespace vernier::cli

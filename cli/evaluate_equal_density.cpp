@@ -62,7 +62,7 @@ Json mean_curve(const std::vector<const std::vector<CurvePoint>*>& curves) {
 EvaluationAtEqualDensity::EvaluationAtEqualDensity(const std::vector<Matcher>& matchers)
     : matchers_(matchers) {
   for (std::size_t m = 1; m < matchers.size(); ++m) {
-    Peer peer{matchers[m].name, {}, {}, {}};
+    Peer peer{matchers[m].name, {}, {}, {}, {}};
     if (peer.name == "sgbm") {
       for (const auto& [mode, words] :
            {std::pair{SgbmMode::three_ways, "3-way"}, std::pair{SgbmMode::five_paths, "5 paths"},
@@ -94,7 +94,11 @@ void EvaluationAtEqualDensity::add(const Scene& scene,
     const bool something =
         !curves.own.empty() && std::none_of(curves.peer.begin(), curves.peer.end(),
                                             [](const auto& curve) { return curve.empty(); });
-    if (something) peers_[p].scenes.push_back(std::move(curves));
+    if (something) {
+      peers_[p].scenes.push_back(std::move(curves));
+    } else {
+      peers_[p].left_out.push_back(scene.file.name);
+    }
   }
 }
 
@@ -106,6 +110,7 @@ Json EvaluationAtEqualDensity::json() const {
     const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
     peers[peer.name] = {{"setting", peer.settings[e.setting]},
                         {"scenes", peer.scenes.size()},
+                        {"left_out", peer.left_out},
                         {"density", e.density},
                         {"bad_1", e.own_bad_1},
                         {"peer_bad_1", e.peer_bad_1},
@@ -146,6 +151,10 @@ std::string EvaluationAtEqualDensity::text() const {
         text += fmt::format(" (95 % over scenes: {:.2f} … {:.2f})", interval[0].get<double>(),
                             interval[1].get<double>());
       }
+    }
+    if (!e.at("left_out").empty()) {
+      text += fmt::format("; without {} of the pairs, where one of them finds nothing",
+                          e.at("left_out").size());
     }
     text += "\n";
   }

@@ -31,6 +31,7 @@ class EvaluationAtEqualDensity {
     std::vector<std::string> settings;
     std::vector<std::vector<Matcher>> sweeps;  ///< matchers of each setting; none: by confidence
     std::vector<SceneCurves> scenes;
+    std::vector<std::string> left_out;  ///< scenes where one of the two finds nothing
   };
   const std::vector<Matcher>& matchers_;
   std::vector<Peer> peers_;

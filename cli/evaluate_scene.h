@@ -31,7 +31,7 @@ struct Run {
 /// the file.
 Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& session);
 
-/// The best time of several runs and the score.
+/// The middle time of three runs, and the score.
 Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOptions& how);
 
 /// Throws Error where a matcher finds much more with left and right exchanged.

@@ -43,4 +43,11 @@ std::vector<Matcher> matchers_named(const std::string& names,
   return matchers;
 }
 
+Matcher one_matcher(const std::string& name, const std::string& command) {
+  const std::vector<Matcher> matchers =
+      command.empty() ? matchers_named(name, {}) : matchers_named("", {command});
+  if (matchers.size() == 1) return matchers.front();
+  throw Error("--matcher", "\"" + name + "\" names more than one", "name one");
+}
+
 }  // namespace vernier::cli

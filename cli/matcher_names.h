@@ -14,4 +14,7 @@ namespace vernier::cli {
 std::vector<Matcher> matchers_named(const std::string& names,
                                     const std::vector<std::string>& commands);
 
+/// The one that `command` runs or, where that is empty, `name` names. Throws Error for several.
+Matcher one_matcher(const std::string& name, const std::string& command);
+
 }  // namespace vernier::cli

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/report_evaluation.h"
 
+#include <algorithm>
+
 #include "calib/atomic_file.h"
 #include "calib/error.h"
 
@@ -28,10 +30,20 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+bool is_scene(const Json& scene) {
+  return scene.is_object() && scene.contains("name") && scene.contains("matchers") &&
+         scene["matchers"].is_object() &&
+         (!scene.contains("pictures") || scene["pictures"].is_object());
+}
+
 Json read(const fs::path& folder) {
   const fs::path file = folder / evaluation_file;
   Json json = Json::parse(read_whole(file), nullptr, false);
-  if (json.is_object() && json.contains("matchers") && json.contains("scenes")) return json;
+  const bool whole = json.is_object() && json.contains("matchers") &&
+                     json["matchers"].is_object() && json.contains("scenes") &&
+                     json["scenes"].is_array() && !json["scenes"].empty() &&
+                     std::all_of(json["scenes"].begin(), json["scenes"].end(), is_scene);
+  if (whole) return json;
   throw Error(file.string(), "is no evaluation", "write it anew with vernier evaluate -o");
 }
 

@@ -7,6 +7,7 @@
 
 #include "calib/atomic_file.h"
 #include "calib/error.h"
+#include "calib/median.h"
 #include "cli/disparity_picture.h"
 #include "cli/exchanged_pair.h"
 #include "cli/matcher_names.h"
@@ -37,13 +38,6 @@ struct DepthFigures {
   double calibration_share = 0;  ///< of the variance
   int placed = 0, linear = 0, reliable = 0;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
   DepthFigures f;
@@ -95,16 +89,8 @@ std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& fil
   return edges;
 }
 
-Matcher matcher_of(const Options& options) {
-  const std::vector<Matcher> matchers = options.command.empty()
-                                            ? matchers_named(options.matcher, {})
-                                            : matchers_named("", {options.command});
-  if (matchers.size() == 1) return matchers.front();
-  throw Error("--matcher", "it names more than one", "name one");
-}
-
 StereoResult look(const Options& options, const StereoInput& input) {
-  const Matcher matcher = matcher_of(options);
+  const Matcher matcher = one_matcher(options.matcher, options.command);
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
@@ -186,7 +172,7 @@ Json result_json(const Options& options,
                  const DepthFigures& depth) {
   Json segments{{"found", result.segments.size()}};
   for (const auto& [key, count] : refusals(result)) segments[key] = count;
-  Json json{{"matcher", matcher_of(options).name},
+  Json json{{"matcher", one_matcher(options.matcher, options.command).name},
             {"edges", result.edges.size()},
             {"edges_off_the_row", edges.asked},
             {"matched", edges.matched},
@@ -261,8 +247,8 @@ void run(const Options& options, Session& session) {
   }
   std::filesystem::create_directories(folder);
   if (!options.picture.empty()) {
-    write_disparity_picture(input.pair.left, result.edges, result.found, input.range,
-                            options.picture);
+    files.emplace_back(options.picture,
+                       disparity_picture(input.pair.left, result.edges, result.found, input.range));
   }
   write_atomically(files);
   Json json = result_json(options, input, result, edges, depth);

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "calib/median.h"
 #include "sim/measured_figures.h"
 #include "sim/variance_line.h"
 
@@ -13,13 +14,6 @@ namespace {
 
 constexpr double cut_deviations = 3;  // of end points; beyond are outliers
 constexpr double broken_px = 3;       // along: that end is not the same place of the edge
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Lost share of a length, were nothing covered by chance.
 double without_chance(const Sums& sums) {

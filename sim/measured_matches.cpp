@@ -4,6 +4,7 @@
 // psi_cd, psi_cm and psi_s from matched corners and lines.
 #include <cmath>
 
+#include "calib/median.h"
 #include "sim/measured_figures.h"
 #include "sim/sources.h"
 
@@ -12,13 +13,6 @@ namespace {
 
 constexpr double wrong_corner_px = 1.5, wrong_line_px = 3;
 constexpr int disparity_bins = 4;
-constexpr double most_reach_px = 500;  // that a study accepts
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A share's interval is no narrower than that of independent trials: without it, samples that are
 /// all alike would have none.
@@ -29,32 +23,59 @@ void widen_to_wilson(Measured& share) {
   share.interval.high = std::min(1.0, std::fmax(share.interval.high, wilson.high));
 }
 
-/// How far mismatches reach that are spread evenly over a disc, or (`line`) over ± a range, from
-/// those seen beyond `seen_from_px`. Not a number for fewer than `least`.
-double reach_of(const std::vector<double>& errors_px, double seen_from_px, bool line, int least) {
-  if (static_cast<int>(errors_px.size()) < least) return std::numeric_limits<double>::quiet_NaN();
-  const double middle = median(errors_px);
-  const double reach = line ? 2 * middle - seen_from_px
-                            : std::sqrt(2 * middle * middle - seen_from_px * seen_from_px);
-  return std::min(most_reach_px, reach);
-}
+/// Mismatches are spread evenly over a disc, or (`line`) over ± a range, and seen where they are
+/// more than some pixels off.
+struct MismatchModel {
+  double seen_from_px = 0, otherwise_px = 0;  ///< reach where too few are seen to tell it
+  bool line = false;
 
-/// Share of mismatches that lie beyond `seen_from_px`; at least a half of them.
-double seen_share(double reach_px, double otherwise_px, double seen_from_px, bool line) {
-  const double reach = reach_px == reach_px ? reach_px : otherwise_px;
-  const double hidden = std::min(0.5, seen_from_px / reach);
-  return 1 - (line ? hidden : hidden * hidden);
-}
+  /// Reach of which those seen have their median error; not a number for fewer than `least`.
+  double reach_px(const std::vector<double>& wrong_px, int least) const {
+    if (static_cast<int>(wrong_px.size()) < least) return std::numeric_limits<double>::quiet_NaN();
+    const double middle = median(wrong_px);
+    return line ? 2 * middle - seen_from_px
+                : std::sqrt(2 * middle * middle - seen_from_px * seen_from_px);
+  }
 
-Measured mismatch_share(const std::map<int, Sums>& sums,
-                        int count,
-                        double seen,
+  /// Share of mismatches that are seen; at least a half of them.
+  double seen(double reach) const {
+    const double hidden = std::min(0.5, seen_from_px / (reach == reach ? reach : otherwise_px));
+    return 1 - (line ? hidden : hidden * hidden);
+  }
+
+  std::vector<double> wrong(const std::vector<double>& errors_px) const {
+    std::vector<double> wrong_px;
+    for (const double error : errors_px) {
+      if (error > seen_from_px) wrong_px.push_back(error);
+    }
+    return wrong_px;
+  }
+};
+
+/// Share of all matches, the unseen mismatches added; the reach is measured anew in each resample.
+Measured mismatch_share(const ClusteredSamples<double>& errors_px,
+                        const MismatchModel& model,
                         const MeasuringOptions& options) {
-  Measured share = measured_ratio(sums, count, options, [=](const Sums& all) {
-    return std::min(1.0, all.part / (all.whole * seen));
+  Measured share = measured(errors_px, options, [&](const std::vector<double>& errors) {
+    const std::vector<double> wrong = model.wrong(errors);
+    const double seen = model.seen(model.reach_px(wrong, options.wrong_for_reach));
+    return std::min(
+        1.0, static_cast<double>(wrong.size()) / (static_cast<double>(errors.size()) * seen));
   });
+  not_below_zero(share);
   widen_to_wilson(share);
   return share;
+}
+
+Measured mismatch_reach(const ClusteredSamples<double>& errors_px,
+                        const MismatchModel& model,
+                        const MeasuringOptions& options) {
+  Measured reach = measured(errors_px, options, [&](const std::vector<double>& errors) {
+    return model.reach_px(model.wrong(errors), options.wrong_for_reach);
+  });
+  reach.samples = static_cast<int>(model.wrong(errors_px.all()).size());
+  not_below_zero(reach);
+  return reach;
 }
 
 Measured corner_loss(const PairList& pairs,
@@ -82,7 +103,10 @@ Measured corner_loss(const PairList& pairs,
   return loss;
 }
 
-void add_bins(const PairList& pairs, MeasuredStereoMismatch& result) {
+/// Matched lines and wrong ones in four quarters of the disparities that occur.
+std::vector<MismatchByDisparity> by_disparity(const PairList& pairs,
+                                              const ClusterOf& cluster,
+                                              const MeasuringOptions& options) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const PairSamples& pair : pairs) {
     for (const LineMatch& line : pair.lines) {
@@ -90,23 +114,33 @@ void add_bins(const PairList& pairs, MeasuredStereoMismatch& result) {
       most = std::max(most, line.disparity_px);
     }
   }
-  if (!(most > least)) return;
+  if (!(most > least)) return {};
   const double width = (most - least) / disparity_bins;
+  std::map<int, Sums> sums[disparity_bins];
+  std::vector<MismatchByDisparity> bins;
   for (int bin = 0; bin < disparity_bins; ++bin) {
-    result.by_disparity.push_back({least + bin * width, least + (bin + 1) * width, 0, 0, {}});
+    bins.push_back({least + bin * width, least + (bin + 1) * width, 0, 0, {}});
   }
-  for (const PairSamples& pair : pairs) {
-    for (const LineMatch& line : pair.lines) {
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    for (const LineMatch& line : pairs[p].lines) {
       if (!line.matched) continue;
-      const int at = static_cast<int>((line.disparity_px - least) / width);
-      MismatchByDisparity& bin = result.by_disparity[std::min(at, disparity_bins - 1)];
-      ++bin.lines;
-      bin.wrong += line.error_px > wrong_line_px;
+      const int bin =
+          std::min(disparity_bins - 1, static_cast<int>((line.disparity_px - least) / width));
+      const bool wrong = line.error_px > wrong_line_px;
+      ++bins[static_cast<std::size_t>(bin)].lines;
+      bins[static_cast<std::size_t>(bin)].wrong += wrong;
+      Sums& sum = sums[bin][cluster(pairs[p], static_cast<int>(p), line.left_px)];
+      sum.part += wrong;
+      sum.whole += 1;
     }
   }
-  for (MismatchByDisparity& bin : result.by_disparity) {
-    bin.wilson = wilson_interval(bin.wrong, bin.lines);
+  for (int bin = 0; bin < disparity_bins; ++bin) {
+    MismatchByDisparity& of = bins[static_cast<std::size_t>(bin)];
+    of.share = measured_ratio(sums[bin], of.lines, options,
+                              [](const Sums& all) { return all.part / all.whole; });
+    widen_to_wilson(of.share);
   }
+  return bins;
 }
 
 }  // namespace
@@ -116,24 +150,16 @@ MeasuredCorners measured_corners(const PairList& pairs,
                                  const MeasuringOptions& options) {
   MeasuredCorners result;
   result.loss = corner_loss(pairs, cluster, options, result.chance);
-  std::map<int, Sums> sums;
-  std::vector<double> errors;
-  int count = 0;
+  const MismatchModel model{wrong_corner_px, SourceSettings().corner_mismatch_px, false};
+  ClusteredSamples<double> errors;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     for (const CornerError& match : pairs[p].corner_matches) {
-      Sums& sum = sums[cluster(pairs[p], static_cast<int>(p), match.left_px)];
-      const bool wrong = match.error_px > wrong_corner_px;
-      if (wrong) errors.push_back(match.error_px);
-      sum.part += wrong;
-      sum.whole += 1;
-      ++count;
+      errors.add(cluster(pairs[p], static_cast<int>(p), match.left_px), match.error_px);
+      result.wrong += match.error_px > wrong_corner_px;
     }
   }
-  result.wrong = static_cast<int>(errors.size());
-  result.reach_px = reach_of(errors, wrong_corner_px, false, options.wrong_for_reach);
-  const double seen =
-      seen_share(result.reach_px, SourceSettings().corner_mismatch_px, wrong_corner_px, false);
-  result.mismatch = mismatch_share(sums, count, seen, options);
+  result.reach_px = mismatch_reach(errors, model, options);
+  result.mismatch = mismatch_share(errors, model, options);
   return result;
 }
 
@@ -141,30 +167,24 @@ MeasuredStereoMismatch measured_stereo_mismatch(const PairList& pairs,
                                                 const ClusterOf& cluster,
                                                 const MeasuringOptions& options) {
   MeasuredStereoMismatch result;
-  std::map<int, Sums> sums;
-  std::vector<double> errors;
-  int matched = 0, shown = 0, unmatched = 0;
+  const MismatchModel model{wrong_line_px, SourceSettings().stereo_mismatch_px, true};
+  ClusteredSamples<double> errors;
+  int shown = 0, unmatched = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     for (const LineMatch& line : pairs[p].lines) {
       shown += !line.occluded;
       unmatched += !line.occluded && !line.matched;
       if (!line.matched) continue;
-      Sums& sum = sums[cluster(pairs[p], static_cast<int>(p), line.left_px)];
+      errors.add(cluster(pairs[p], static_cast<int>(p), line.left_px), line.error_px);
       const bool wrong = line.error_px > wrong_line_px;
-      if (wrong) errors.push_back(line.error_px);
+      result.wrong += wrong;
       result.occluded += wrong && line.occluded;
-      sum.part += wrong;
-      sum.whole += 1;
-      ++matched;
     }
   }
-  result.wrong = static_cast<int>(errors.size());
   result.unmatched = static_cast<double>(unmatched) / std::max(1, shown);
-  result.reach_px = reach_of(errors, wrong_line_px, true, options.wrong_for_reach);
-  const double seen =
-      seen_share(result.reach_px, SourceSettings().stereo_mismatch_px, wrong_line_px, true);
-  result.share = mismatch_share(sums, matched, seen, options);
-  add_bins(pairs, result);
+  result.reach_px = mismatch_reach(errors, model, options);
+  result.share = mismatch_share(errors, model, options);
+  result.by_disparity = by_disparity(pairs, cluster, options);
   return result;
 }
 

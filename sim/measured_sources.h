@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/cluster_interval.h"
+#include "calib/cluster_interval.h"
 #include "stereo/pair_samples.h"
 
 namespace vernier {
@@ -55,22 +55,22 @@ struct MeasuredCorners {
   double chance = 0;  ///< of a lost corner to have another one in its place
   Measured mismatch;  ///< share of matches, the unseen ones in the middle of the disc added
   int wrong = 0;      ///< matches more than 1.5 px off
-  double reach_px = std::numeric_limits<double>::quiet_NaN();  ///< disc with their median distance
+  Measured reach_px;  ///< radius of the disc with their median distance
 };
 
 /// Lines matched at some disparities.
 struct MismatchByDisparity {
   double from_px = 0, to_px = 0;
   int lines = 0, wrong = 0;
-  Interval wilson;
+  Measured share;  ///< of the lines; not a number where they are few
 };
 
 /// psi_s.
 struct MeasuredStereoMismatch {
-  Measured share;    ///< of matched lines, the unseen ones near 0 added
-  int wrong = 0;     ///< lines more than 3 px off …
-  int occluded = 0;  ///< … and of them, such as the right image does not show
-  double reach_px = std::numeric_limits<double>::quiet_NaN();  ///< ± range with their median error
+  Measured share;        ///< of matched lines, the unseen ones near 0 added
+  int wrong = 0;         ///< lines more than 3 px off …
+  int occluded = 0;      ///< … and of them, such as the right image does not show
+  Measured reach_px;     ///< ± range with their median error
   double unmatched = 0;  ///< share of lines that the right image shows and that are not matched
   std::vector<MismatchByDisparity> by_disparity;  ///< four quarters of the range that occurs
 };

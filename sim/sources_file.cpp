@@ -28,14 +28,15 @@ SourceEntry entry_of(const char* key, const Measured& measured, std::string note
     return entry;
   }
   entry.measured.value = rounded(std::clamp(measured.value, parameter.low, parameter.high));
+  if (measured.value < parameter.low || measured.value > parameter.high) {
+    entry.note += fmt::format("; measured {:.4g}, a study takes {:g} to {:g}", measured.value,
+                              parameter.low, parameter.high);
+  }
   return entry;
 }
 
-SourceEntry reach_entry(const char* key, double reach_px, int wrong, const char* what) {
-  Measured measured;
-  measured.value = reach_px;
-  measured.samples = wrong;
-  SourceEntry entry = entry_of(key, measured, what);
+SourceEntry reach_entry(const char* key, const Measured& reach_px, int wrong, const char* what) {
+  SourceEntry entry = entry_of(key, reach_px, what);
   if (!entry.written) entry.note = fmt::format("only {} mismatches", wrong);
   return entry;
 }
@@ -51,6 +52,14 @@ SourceEntry lateral_shift_entry(const MeasuredLateralShift& shift, ShiftMode mod
       "a shift common to both eyes is not to be seen in a pair; by itself each eye has {:.3f} px",
       shift.independent_px.value);
   return entry;
+}
+
+/// Fit for a comment.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
+  return text;
 }
 
 std::string interval_text(const Measured& measured) {
@@ -114,19 +123,17 @@ std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMod
   return entries;
 }
 
-std::string sources_toml(const MeasuredSources& sources, ShiftMode mode) {
+std::string sources_toml(const MeasuredSources& sources, ShiftMode mode, const std::string& how) {
   std::string names;
   for (const std::string& name : sources.pairs) names += (names.empty() ? "" : ", ") + name;
-  std::replace_if(
-      names.begin(), names.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, ' ');
   std::string text = fmt::format(
       "# Sources of error, measured by vernier characterise in {} pair{} with ground truth: {}\n"
       "# Beside each value its 95 % interval, {}.\n"
-      "# docs/characterise.md says what each one is, and what it leaves out.\n[sources]\n",
-      sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s", names,
+      "# docs/characterise.md says what each one is, and what it leaves out.\n{}[sources]\n",
+      sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s", one_line(names),
       sources.by_pair ? "over pairs"
-                      : "over parts of these images: other scenes may differ by more");
+                      : "over parts of these images: other scenes may differ by more",
+      how.empty() ? "" : "# " + one_line(how) + "\n");
   for (const SourceEntry& entry : source_entries(sources, mode)) {
     text += lines_of(entry, sources, mode);
   }

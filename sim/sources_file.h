@@ -27,7 +27,10 @@ std::vector<SourceEntry> source_entries(const MeasuredSources& sources,
                                         ShiftMode mode = ShiftMode::common);
 
 /// The same as a file: a table [sources] with a comment beside each key. A study reads it
-/// by `file` in its own [sources], or copied into it (docs/file-formats.md).
-std::string sources_toml(const MeasuredSources& sources, ShiftMode mode = ShiftMode::common);
+/// by `file` in its own [sources], or copied into it (docs/file-formats.md). `how` is one more line
+/// of its head: by what matcher and options they were measured.
+std::string sources_toml(const MeasuredSources& sources,
+                         ShiftMode mode = ShiftMode::common,
+                         const std::string& how = "");
 
 }  // namespace vernier

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/interval.h"
+#include "calib/interval.h"
 #include "sim/study_file.h"
 
 namespace vernier {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/variance_line.h"
 
+#include "calib/median.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,9 +16,7 @@ namespace {
 double median_square(const std::vector<SquareSample>& samples) {
   std::vector<double> squares;
   for (const SquareSample& sample : samples) squares.push_back(std::abs(sample.square));
-  const auto middle = squares.begin() + static_cast<long>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return *middle;
+  return median(std::move(squares));
 }
 
 /// Share of the variance of a standard normal that lies within ± cut of it, per sample kept.
@@ -58,9 +58,9 @@ VarianceLine weighted_fit(const std::vector<SquareSample>& samples,
 VarianceLine variance_line(const std::vector<SquareSample>& samples, double cut) {
   if (samples.size() < 2) return {};
   constexpr int rounds = 12;
-  const double median = median_square(samples);
-  VarianceLine line{median / 0.455, 0};  // the median of χ² of one degree of freedom
-  for (int i = 0; i < rounds; ++i) line = weighted_fit(samples, line, 0.1 * median, cut);
+  const double middle = median_square(samples);
+  VarianceLine line{middle / 0.455, 0};  // the median of χ² of one degree of freedom
+  for (int i = 0; i < rounds; ++i) line = weighted_fit(samples, line, 0.1 * middle, cut);
   return line;
 }
 

@@ -46,9 +46,8 @@ Pair mean_of(const std::vector<std::vector<Pair>>& pairs,
   return {mean.density / n, mean.own / n, mean.peer / n};
 }
 
-double ratio_of(const Pair& pair) {
-  return pair.peer > 0 ? pair.own / pair.peer : std::numeric_limits<double>::quiet_NaN();
-}
+/// Not a number where both are 0.
+double ratio_of(const Pair& pair) { return pair.own / pair.peer; }
 
 /// The setting of the largest ratio.
 std::size_t best_setting(const std::vector<std::vector<Pair>>& pairs,
@@ -81,8 +80,8 @@ EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
   result.own_bad_1 = mean.own;
   result.peer_bad_1 = mean.peer;
   result.ratio = ratio_of(mean);
-  result.interval = bootstrap_interval(
-      scenes.size(),
+  result.interval = cluster_interval(
+      static_cast<int>(scenes.size()),
       [&](std::span<const std::size_t> drawn) {
         return ratio_of(mean_of(pairs, best_setting(pairs, drawn), drawn));
       },

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/bootstrap.h"
+#include "calib/cluster_interval.h"
 #include "stereo/matcher_evaluation.h"
 
 namespace vernier {
@@ -22,8 +22,9 @@ struct EqualDensity {
   std::size_t setting = 0;  ///< of the peer: the one that compares best
   double density = 0;       ///< mean over scenes
   double own_bad_1 = 0, peer_bad_1 = 0;
-  double ratio = 0;  ///< of the means, own over the peer's; not a number where the peer's is 0
-  BootstrapInterval interval;  ///< of the ratio, scenes resampled, the best setting chosen anew
+  double ratio = 0;   ///< of the means, own over the peer's; infinite where the peer's alone is 0
+  Interval interval;  ///< of the ratio, scenes resampled, the best setting chosen anew; its upper
+                      ///< end may be infinite
 };
 
 /// On each scene the density is the largest that both reach. Throws Error without scenes, or where

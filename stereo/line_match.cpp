@@ -6,18 +6,11 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/median.h"
 #include "stereo/matcher_evaluation.h"
 
 namespace vernier {
-namespace {
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const std::vector<EdgeDisparity>& found,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/segment_shift.h"
 
+#include "calib/median.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,11 +20,10 @@ struct Beside {
   double along_px, across_px;
 };
 
-double median_across(std::vector<Beside> points) {
-  const auto middle = points.begin() + static_cast<long>(points.size() / 2);
-  std::nth_element(points.begin(), middle, points.end(),
-                   [](const Beside& a, const Beside& b) { return a.across_px < b.across_px; });
-  return middle->across_px;
+double median_across(const std::vector<Beside>& points) {
+  std::vector<double> across;
+  for (const Beside& point : points) across.push_back(point.across_px);
+  return median(std::move(across));
 }
 
 double mean_across(const std::vector<Beside>& points, double from_px, double to_px, int& count) {
@@ -38,9 +39,10 @@ double mean_across(const std::vector<Beside>& points, double from_px, double to_
 
 /// The shift of points that are all of one edge, if both parts have enough.
 std::optional<SegmentShift> shift_of(const WarpedSegment& left, std::vector<Beside> points) {
-  const double median = median_across(points);
-  std::erase_if(
-      points, [&](const Beside& point) { return std::abs(point.across_px - median) > outlier_px; });
+  const double middle_px = median_across(points);
+  std::erase_if(points, [&](const Beside& point) {
+    return std::abs(point.across_px - middle_px) > outlier_px;
+  });
   SegmentShift shift;
   shift.left_px = left.left_px;
   shift.normal = left.normal;

@@ -29,7 +29,7 @@ GeometricError geometric_error(const WarpedPair& warped,
     ++count;
   }
   const double n = std::max(1, count);
-  return {sum / n, std::sqrt(squares / n), std::sqrt(rows / n)};
+  return {count, sum / n, std::sqrt(squares / n), std::sqrt(rows / n)};
 }
 
 WarpedScore evaluate(const WarpedPair& warped,
@@ -38,7 +38,7 @@ WarpedScore evaluate(const WarpedPair& warped,
                      const EvaluationOptions& options) {
   const std::vector<TruthAtEdge> truth = truth_at(warped, edges);
   const int width = warped.pair.left.width_px;
-  WarpedScore result{evaluate(edges, found, truth, width, options), 0};
+  WarpedScore result{evaluate(edges, found, truth, width, options), 0, 0};
   double squares = 0;
   int count = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -56,6 +56,7 @@ WarpedScore evaluate(const WarpedPair& warped,
     ++count;
   }
   result.disparity_error_rms_px = std::sqrt(squares / std::max(1, count));
+  result.right = count;
   return result;
 }
 

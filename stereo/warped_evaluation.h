@@ -11,6 +11,7 @@ namespace vernier {
 
 /// What wrong rows do to a pair before any matcher sees it, over the edges that are asked about.
 struct GeometricError {
+  int edges = 0;                        ///< of none the rest is 0
   double bias_px = 0, bias_rms_px = 0;  ///< disparities of points, less those of the pair as given
   double rows_rms_px = 0;               ///< v_left − v_right
 };
@@ -23,6 +24,7 @@ struct WarpedScore {
   /// Root mean square of found disparities less those of the pair as given, of smooth matches that
   /// are no mismatch: the geometric error as it reaches the depth.
   double disparity_error_rms_px = 0;
+  int right = 0;  ///< how many those are
 };
 
 GeometricError geometric_error(const WarpedPair& warped,

@@ -31,7 +31,7 @@ TEST(Bootstrap, CoversTheMeanAsOftenAsItSays) {
     Draws draws({.seed = 71, .trial = static_cast<std::uint32_t>(t)});
     std::vector<double> values(clusters);
     for (double& v : values) v = -std::log(draws.uniform());  // mean 1
-    const BootstrapInterval i =
+    const Interval i =
         bootstrap_interval(clusters, mean_of(values), {.resamples = 500, .seed = 72});
     covered += i.low <= 1 && 1 <= i.high;
   }
@@ -43,7 +43,7 @@ TEST(Bootstrap, CoversTheMeanAsOftenAsItSays) {
 TEST(Bootstrap, HasTheVarianceOfAMean) {
   std::vector<double> values(30);
   std::iota(values.begin(), values.end(), 0.0);
-  const BootstrapInterval i =
+  const Interval i =
       bootstrap_interval(values.size(), mean_of(values), {.resamples = 20'000});
   // A quantile of 20,000 resamples has a deviation of 0.019 sd, and means come in steps of 0.02 sd.
   const double sd = std::sqrt((30.0 * 30 - 1) / 12 / 30);
@@ -65,7 +65,7 @@ TEST(Bootstrap, LeavesOutWhatIsNotFinite) {
   const auto value = [](std::span<const std::size_t> drawn) {
     return drawn[0] == 0 ? std::nan("") : static_cast<double>(drawn[0]);
   };
-  const BootstrapInterval i = bootstrap_interval(3, value);
+  const Interval i = bootstrap_interval(3, value);
   EXPECT_EQ(i.low, 1);
   EXPECT_EQ(i.high, 2);
   EXPECT_TRUE(std::isnan(bootstrap_interval(1, value).low));

@@ -8,6 +8,7 @@
 import json
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -126,6 +127,12 @@ class Evaluate(unittest.TestCase):
                            5 * said['cells'][2]['geometric_bias_rms_px'])
         again = self.run_it('-q', *more, '--threads', '1')
         self.assertEqual(json.loads(again.stdout)['calibration_error'], said)
+        self.assertEqual([c['not_physical'] for c in said['cells']], [0] * 8)
+        wild = self.run_it('-q', '--matcher', 'edge', '--psi-c', '1000', '--draws', '4', '--json')
+        self.assertEqual(wild.returncode, 0, wild.stderr)
+        cell = json.loads(wild.stdout)['calibration_error']['cells'][2]
+        self.assertEqual(cell['pairs'] + cell['not_physical'], 4)
+        self.assertLess(cell['matchers']['edge']['density'] or 0, 0.5)
         other = self.run_it('-q', *more, '--seed', '2')
         self.assertNotEqual(json.loads(other.stdout)['calibration_error'], said)
 
@@ -149,16 +156,35 @@ class Evaluate(unittest.TestCase):
         page = (self.folder / 'page.html').read_text()
         self.assertIn('"calibration_error"', page)
         self.assertEqual(page.count('data:image/png;base64,'), 2)
-        (self.folder / 'out' / 'evaluation.json').write_text('{"scenes": 3')
-        done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
-                              capture_output=True, text=True)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn('is no evaluation', done.stderr)
+        before = (self.folder / 'out' / 'evaluation.json').read_text()
+        self.complains('-o', 'out', of='none.pgm', right='none')
+        self.assertEqual((self.folder / 'out' / 'evaluation.json').read_text(), before)
+        for broken in ('{"scenes": 3', '{"matchers": {}, "scenes": 3}',
+                       '{"matchers": {}, "scenes": [1]}', '{"matchers": {}, "scenes": []}',
+                       '{"matchers": {}, "scenes": [{"name": "a", "matchers": {}, "pictures": "x"}]}'):
+            (self.folder / 'out' / 'evaluation.json').write_text(broken)
+            done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, broken)
+            self.assertIn('is no evaluation', done.stderr)
         self.assertEqual((self.folder / 'page.html').read_text(), page)
         (self.folder / 'study').mkdir()
         (self.folder / 'study' / 'study.toml').write_text('')
         self.complains('-o', 'study', of='holds a study')
         self.complains('-o', 'left.pgm', of='left.pgm')
+        name = '01-01_left_disparity.disparity.png'  # an input as the folder would name a picture
+        (self.folder / 'inputs').mkdir()
+        left = self.folder / 'inputs' / name
+        shutil.copy(self.folder / 'left.pgm', left)
+        (self.folder / 'pairs.toml').write_text(
+            f'[[pair]]\nname = "01 left disparity"\nleft = "inputs/{name}"\n'
+            'right = "right.pgm"\ntruth = "truth.pgm"\ntruth_scale = 4\nmax_disparity = 24\n')
+        was = left.read_bytes()
+        done = subprocess.run([PROGRAM, 'evaluate', '-q', '--scenes', 'pairs.toml', '-o', 'inputs'],
+                              cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn('is an input', done.stderr)
+        self.assertEqual(left.read_bytes(), was)
 
     def test_bad_input(self):
         self.complains(of='small.pgm', right='small')
@@ -167,7 +193,10 @@ class Evaluate(unittest.TestCase):
         self.complains(of='exchanged', left='right', right='left')
         self.complains(of='width', most=400)
         self.complains('--matcher', 'best', of='"best" is no matcher')
-        self.complains('--psi-c', '1,-2', of='-2 is negative')
+        self.complains('--psi-c', '1,-2', of='-2 is not within')
+        self.complains('--psi-c', '1e5', of='not within')
+        self.complains('--rig', 'none.json', of='--psi-c')
+        self.complains('--draws', '3', of='--psi-c')
         self.complains('--psi-c', '1,many', of='numbers')
         self.complains('--psi-c', '1', '--rig', 'none.json', of='none.json')
         self.complains('--picture', 'a.png', '--error-picture', './a.png', of='another output')

@@ -3,7 +3,9 @@
 //
 // What is measured against what the simulator's own sources put in, on edges and corners before a
 // plane. All seeds are fixed. Where intervals are counted, 100 experiments of 95 % hold 86 or more
-// with a probability of 0.9996; the false-alarm rate is 4e-4 each.
+// with a probability of 0.99986: the false-alarm rate is 1.4e-4 each. Over parts of one image they
+// hold 92 %, and 83 or fewer in 100 with a probability of 0.003. Nor may they be wider than they
+// have to be: twice as wide as t of 7 degrees of freedom, 2.36 deviations of what is measured.
 #include "sim/measured_sources.h"
 
 #include <gtest/gtest.h>
@@ -71,6 +73,32 @@ MeasuredSources experiment(const SourceSettings& settings,
 bool holds(const Measured& measured, double value) {
   return measured.interval.low <= value && value <= measured.interval.high;
 }
+
+/// Intervals of many experiments.
+class Intervals {
+ public:
+  void add(const Measured& measured, double truth) {
+    held_ += holds(measured, truth);
+    sum_ += measured.value;
+    squares_ += measured.value * measured.value;
+    width_ += measured.interval.high - measured.interval.low;
+    ++count_;
+  }
+
+  void expect_true(const std::string& name, int least = least_held) const {
+    testing::Test::RecordProperty("held_" + name, held_);
+    EXPECT_GE(held_, least) << name;
+    const double mean = sum_ / count_;
+    const double deviation = std::sqrt(std::max(0.0, squares_ / count_ - mean * mean));
+    EXPECT_LT(0.5 * width_ / count_, 2 * 2.36 * deviation) << name;
+  }
+
+  double mean() const { return sum_ / count_; }
+
+ private:
+  int held_ = 0, count_ = 0;
+  double sum_ = 0, squares_ = 0, width_ = 0;
+};
 
 void sample_loss(Frame& frame) {
   frame.samples.losses = edge_losses(warped_segments(frame.left, truth()), frame.right);
@@ -140,7 +168,7 @@ TEST(MeasuredSources, EdgeLossIsTheShareOfLengthTakenAway) {
 
 /// Every pair loses another share, U(0, 0.3): the interval is for the mean over such pairs.
 TEST(MeasuredSources, EdgeLossIntervalHoldsTheMeanOverScenes) {
-  int held = 0;
+  Intervals share;
   for (std::uint32_t trial = 0; trial < experiments; ++trial) {
     std::vector<PairSamples> pairs;
     for (std::uint32_t k = 0; k < frames; ++k) {
@@ -150,10 +178,9 @@ TEST(MeasuredSources, EdgeLossIntervalHoldsTheMeanOverScenes) {
       sample_loss(frame);
       pairs.push_back(std::move(frame.samples));
     }
-    held += holds(measure_sources(pairs).edge_loss.share, 0.15);
+    share.add(measure_sources(pairs).edge_loss.share, 0.15);
   }
-  RecordProperty("held", held);
-  EXPECT_GE(held, least_held);
+  share.expect_true("edge_loss");
 }
 
 TEST(MeasuredSources, LateralShiftIsByWhatTheEyesDiffer) {
@@ -161,16 +188,13 @@ TEST(MeasuredSources, LateralShiftIsByWhatTheEyesDiffer) {
     SourceSettings settings = no_sources();
     settings.lateral_shift_px = size;
     settings.lateral_shift_mode = ShiftMode::independent;
-    int held = 0;
-    double mean = 0;
+    Intervals shift;
     for (std::uint32_t trial = 0; trial < experiments; ++trial) {
       const MeasuredSources s = experiment(settings, trial, false, sample_shift);
-      held += holds(s.lateral_shift.independent_px, size);
-      mean += s.lateral_shift.independent_px.value / experiments;
+      shift.add(s.lateral_shift.independent_px, size);
     }
-    RecordProperty("held_" + std::to_string(size), held);
-    EXPECT_NEAR(mean, size, 0.03 * size);
-    EXPECT_GE(held, least_held) << size;
+    EXPECT_NEAR(shift.mean(), size, 0.03 * size);
+    shift.expect_true("shift_" + std::to_string(size));
   }
   SourceSettings common = no_sources();
   common.lateral_shift_px = 1;
@@ -206,26 +230,16 @@ TEST(MeasuredSources, EndPointsHaveTheirSigmaAcrossAndAlong) {
   settings.endpoint_sigma_px = 0.15;
   settings.lateral_shift_px = 0.3;  // is no error of an end point
   settings.lateral_shift_mode = ShiftMode::independent;
-  int across = 0, along = 0;
-  double mean = 0, square = 0, half_width = 0;
+  Intervals across, along;
   for (std::uint32_t trial = 0; trial < experiments; ++trial) {
     const MeasuredSources s = experiment(settings, trial, false, sample_ends);
-    across += holds(s.endpoints.across_px, 0.15);
-    along += holds(s.endpoints.along_px, 0.15);
-    const Measured& m = s.endpoints.across_px;
-    mean += m.value / experiments;
-    square += m.value * m.value / experiments;
-    half_width += 0.5 * (m.interval.high - m.interval.low) / experiments;
+    across.add(s.endpoints.across_px, 0.15);
+    along.add(s.endpoints.along_px, 0.15);
     EXPECT_LT(s.endpoints.broken, 0.01);
   }
-  // nor are intervals wider than they have to be: t of 7 degrees of freedom, 2.36 deviations
-  EXPECT_LT(half_width, 1.5 * 2.36 * std::sqrt(square - mean * mean));
-
-  RecordProperty("held_across", across);
-  RecordProperty("held_along", along);
-  EXPECT_NEAR(mean, 0.15, 0.005);
-  EXPECT_GE(across, least_held);
-  EXPECT_GE(along, least_held);
+  EXPECT_NEAR(across.mean(), 0.15, 0.005);
+  across.expect_true("across");
+  along.expect_true("along");
 }
 
 TEST(MeasuredSources, CornersAreLostAndMismatchedAsSet) {
@@ -233,19 +247,17 @@ TEST(MeasuredSources, CornersAreLostAndMismatchedAsSet) {
   lost.corner_loss = 0.15;
   wrong.corner_mismatch = 0.03;
   wrong.corner_mismatch_px = 10;
-  int held_loss = 0, held_mismatch = 0;
+  Intervals loss, mismatch;
   double reach = 0;
   int reaches = 0;
   for (std::uint32_t trial = 0; trial < experiments; ++trial) {
-    held_loss += holds(experiment(lost, trial, true, sample_corners).corners.loss, 0.15);
+    loss.add(experiment(lost, trial, true, sample_corners).corners.loss, 0.15);
     const MeasuredCorners c = experiment(wrong, trial, true, sample_corners).corners;
-    held_mismatch += holds(c.mismatch, 0.03);
-    if (c.reach_px == c.reach_px) reach += c.reach_px, ++reaches;
+    mismatch.add(c.mismatch, 0.03);
+    if (c.reach_px.known()) reach += c.reach_px.value, ++reaches;
   }
-  RecordProperty("held_loss", held_loss);
-  RecordProperty("held_mismatch", held_mismatch);
-  EXPECT_GE(held_loss, least_held);
-  EXPECT_GE(held_mismatch, least_held);
+  loss.expect_true("corner_loss");
+  mismatch.expect_true("corner_mismatch");
   EXPECT_GT(reaches, 90);
   EXPECT_NEAR(reach / reaches, 10, 0.5);
 }
@@ -254,21 +266,20 @@ TEST(MeasuredSources, StereoMismatchIsTheShareOfLines) {
   SourceSettings settings = no_sources();
   settings.stereo_mismatch = 0.05;
   settings.stereo_mismatch_px = 20;
-  int held = 0;
-  double reach = 0;
+  Intervals share, range;
   for (std::uint32_t trial = 0; trial < experiments; ++trial) {
     const MeasuredStereoMismatch m =
         experiment(settings, trial, true, sample_lines).stereo_mismatch;
-    held += holds(m.share, 0.05);
-    reach += m.reach_px / experiments;
+    share.add(m.share, 0.05);
+    range.add(m.reach_px, 20);
     int lines = 0, wrong = 0;
     for (const MismatchByDisparity& bin : m.by_disparity) lines += bin.lines, wrong += bin.wrong;
     EXPECT_EQ(lines, m.share.samples);
     EXPECT_EQ(wrong, m.wrong);
   }
-  RecordProperty("held", held);
-  EXPECT_GE(held, least_held);
-  EXPECT_NEAR(reach, 20, 1);
+  share.expect_true("stereo_mismatch");
+  range.expect_true("stereo_mismatch_px", 80);  // a median's few values make steps
+  EXPECT_NEAR(range.mean(), 20, 1);
 }
 
 /// One pair: parts of its image are the clusters.
@@ -283,10 +294,11 @@ TEST(MeasuredSources, IntervalOfOnePairHoldsItsShare) {
     loss += holds(s.corners.loss, 0.15);
     ends += holds(s.endpoints.across_px, 0.15);
   }
-  RecordProperty("held_loss", loss);
-  RecordProperty("held_ends", ends);
-  EXPECT_GE(loss, least_held);
-  EXPECT_GE(ends, least_held);
+  constexpr int least_of_one = 84;
+  RecordProperty("held_loss_of_one", loss);
+  RecordProperty("held_ends_of_one", ends);
+  EXPECT_GE(loss, least_of_one);
+  EXPECT_GE(ends, least_of_one);
 }
 
 TEST(MeasuredSources, FewSamplesSayNothingAndFewPairsArePartsOfImages) {

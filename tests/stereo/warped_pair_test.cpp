@@ -111,6 +111,19 @@ Errors errors(const WarpedPair& warped) {
   return {score.all.rms_inlier_px, score.all.bad_1, score.all.matched};
 }
 
+/// Share of random disparities that count as wrong by more than a pixel.
+double errors_of_random(const WarpedPair& warped) {
+  const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
+  std::vector<EdgeDisparity> found(edges.size());
+  Draws draws({.seed = 913});
+  for (EdgeDisparity& d : found) {
+    d.disparity_px = static_cast<float>(draws.uniform(range.least_px, range.most_px));
+  }
+  return evaluate(edges, found, truth_at(warped, edges), warped.pair.left.width_px,
+                  {.least_angle_rad = 0.35, .border_px = 40})
+      .all.bad_1;
+}
+
 double largest(const DisparityMap& map) {
   double most = 0;
   for (const float value : map.values) {
@@ -132,6 +145,8 @@ TEST(WarpedPair, EdgesAreFoundWhereTheTruthSays) {
     EXPECT_GT(found.matched, 0.9 * exact.matched);
     EXPECT_LT(found.rms_px, exact.rms_px + 0.15);
     EXPECT_LT(found.wrong, exact.wrong + 0.06);
+    // What counts as right is not so much that anything would: a random disparity is wrong.
+    EXPECT_GT(errors_of_random(warped), 0.8);
   }
   EXPECT_GT(moved_px, 1);  // or the crossings were not tried
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "calib/bootstrap.h"
-#include "sim/interval.h"
+#include "calib/interval.h"
 
 namespace vernier {
 

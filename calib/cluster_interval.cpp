@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/cluster_interval.h"
+#include "calib/cluster_interval.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +32,8 @@ Interval cluster_interval(int clusters,
   std::vector<std::size_t> each(static_cast<std::size_t>(clusters));
   std::iota(each.begin(), each.end(), 0);
   const double value = statistic(each);
-  const BootstrapInterval drawn = bootstrap_interval(each.size(), statistic, options);
-  if (!std::isfinite(value) || !std::isfinite(drawn.low)) return {nan, nan};
+  const Interval drawn = bootstrap_interval(each.size(), statistic, options);
+  if (!std::isfinite(value) || std::isnan(drawn.low)) return {nan, nan};
   const double few = student_quantile(0.975, clusters - 1) / normal_quantile(0.975) *
                      std::sqrt(clusters / (clusters - 1.0));
   if (is_scale && drawn.low > 0.5 * value && drawn.low > 0) {

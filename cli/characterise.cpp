@@ -14,7 +14,8 @@ namespace {
 
 struct Options {
   SceneOptions scenes;
-  std::string matcher = "edge", command, output, lateral_shift = "common";
+  MatcherOptions matcher{"edge", {}, 0};
+  std::string output, lateral_shift = "common";
   std::uint64_t seed = 1;
   bool repair = false;
   PairSamplesOptions sampling;
@@ -79,7 +80,7 @@ bool say_doubts(const MeasuredSources& sources, Session& session) {
 void run(const Options& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   if (!options.output.empty()) spare_inputs(inputs_of(options.scenes, files), options.output);
-  const Matcher matcher = one_matcher(options.matcher, options.command);
+  const Matcher matcher = one_matcher(options.matcher);
   const ShiftMode mode =
       options.lateral_shift == "common" ? ShiftMode::common : ShiftMode::independent;
   std::vector<PairSamples> samples;
@@ -116,13 +117,10 @@ void add_characterise(CLI::App& app, Session& session) {
                             "vernier characterise --scenes pairs.toml -o sources.toml\n"
                             "  then in a study:  [sources]  file = \"sources.toml\"");
   add_scene_options(*verb, o->scenes);
-  auto* matcher = verb->add_option("--matcher", o->matcher,
+  auto* matcher = verb->add_option("--matcher", o->matcher.names,
                                    "whose mismatch is measured: edge, stretch, bm or sgbm")
                       ->capture_default_str();
-  verb->add_option("--command", o->command,
-                   "a program as the matcher: its command with {left} {right} {output}, {least} "
-                   "{most}")
-      ->excludes(matcher);
+  add_command_options(*verb, o->matcher)->excludes(matcher);
   verb->add_option("-o,--output", o->output, "TOML file with a table [sources]");
   verb->add_option("--lateral-shift", o->lateral_shift,
                    "common: its default stays, for a pair cannot tell; independent: what the eyes "

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 struct Options {
   SceneOptions scenes;
-  std::string matchers = "edge,sgbm", outline = "either", picture, error_picture;
-  std::vector<std::string> commands;
+  MatcherOptions matchers{"edge,sgbm", {}, 0};
+  std::string outline = "either", picture, error_picture;
   std::string psi_c, rows_px, output;
   DrawOptions draws;
   bool repair = false, equal_density = false;
@@ -187,6 +187,10 @@ DrawOptions draw_options(const Options& options) {
   };
   draws.psi_c = list(options.psi_c, "--psi-c");
   draws.rows_px = list(options.rows_px, "--rows-moved-px");
+  for (std::vector<double>* values : {&draws.psi_c, &draws.rows_px}) {
+    std::sort(values->begin(), values->end());
+    values->erase(std::unique(values->begin(), values->end()), values->end());
+  }
   for (const double psi_c : draws.psi_c) {
     if (psi_c >= 0 && psi_c <= most_psi_c) continue;
     throw Error("--psi-c", fmt::format("{:g} is not within 0 and {:g}", psi_c, most_psi_c),
@@ -195,10 +199,43 @@ DrawOptions draw_options(const Options& options) {
   return draws;
 }
 
+/// What the figures depend on beside the pairs, which stand with their scores.
+Json settings_json(const Options& options, const std::vector<Matcher>& matchers) {
+  Json names = Json::array();
+  for (const Matcher& matcher : matchers) names.push_back(matcher.name);
+  return {{"list", options.scenes.scenes.empty() ? Json() : Json(options.scenes.scenes)},
+          {"matchers", names},
+          {"commands", options.matchers.commands},
+          {"outline", options.outline},
+          {"repair", options.repair}};
+}
+
+/// Doubts a pair on which no matcher does what matchers do.
+void judge(const Scene& scene, const std::vector<Run>& runs, Session& session) {
+  constexpr double hardly_any = 0.05, some = 0.3, mostly_wrong = 1.0 / 3;
+  const auto all = [&](const auto& of) { return std::all_of(runs.begin(), runs.end(), of); };
+  if (all([](const Run& run) { return run.score.all.density < hardly_any; })) {
+    session.doubt(scene.file.name +
+                  ": no matcher finds anything; look at both images and at the "
+                  "range of disparities");
+  } else if (all([](const Run& run) {
+               return run.score.all.density < some || run.score.all.bad_1 > mostly_wrong;
+             })) {
+    session.doubt(
+        fmt::format("{}: {:.0f} % of what matchers find is wrong by more than a pixel: "
+                    "see that the truth is of this left image, and at its scale ({:g} "
+                    "values a pixel)",
+                    scene.file.name, 100 * runs.front().score.all.bad_1, scene.file.truth_scale));
+  }
+}
+
 void run(const Options& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   check_outputs(options, files);
-  const std::vector<Matcher> matchers = matchers_named(options.matchers, options.commands);
+  const std::vector<Matcher> matchers = matchers_named(options.matchers);
+  if (options.equal_density && matchers.size() < 2) {
+    throw Error("--equal-density", "there is one matcher only", "name another to compare with");
+  }
   EvaluationOptions how;
   if (options.outline == "foreground") how.outline = OutlineRule::foreground;
   cv::setNumThreads(1);  // CPU times are of one thread
@@ -213,17 +250,20 @@ void run(const Options& options, Session& session) {
     const std::vector<Run> runs = run_scene(scene, matchers, how, report);
     add_outputs(options, static_cast<std::size_t>(done), scene, runs[0], how.outline,
                 report.scenes.back(), outputs);
+    judge(scene, runs, session);
     if (options.equal_density) equal_density.add(scene, runs, how);
     under_error.add(scene, session);
     progress.update(++done, static_cast<int>(files.size()));
   }
   Json json = concluded(options, matchers, report);
+  json["settings"] = settings_json(options, matchers);
   if (options.equal_density) {
     json["equal_density"] = equal_density.json();
     json["curves"] = equal_density.curves();
     report.text += equal_density.text();
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
+  json["doubts"] = session.doubts();
   write_outputs(options, json, std::move(outputs));
   session.result(json, report.text + under_error.text());
 }
@@ -265,13 +305,11 @@ void add_evaluate(CLI::App& app, Session& session) {
       "--max-disparity 64 --matcher edge,bm,sgbm");
   add_scene_options(*verb, o->scenes);
   add_error_options(verb, *o);
-  verb->add_option("--matcher", o->matchers, "edge, stretch, bm, sgbm, with commas between")
+  verb->add_option("--matcher", o->matchers.names,
+                   "edge, stretch, bm, sgbm and names of commands, with commas between; the first "
+                   "is in the pictures")
       ->capture_default_str();
-  verb->add_option("--command", o->commands,
-                   "a program as a matcher: its command with {left} {right} {output}, {least} "
-                   "{most} (repeatable)")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_command_options(*verb, o->matchers);
   verb->add_option("--outline", o->outline,
                    "what is right at a step of the truth: either surface, or the foreground alone")
       ->check(CLI::IsMember({"either", "foreground"}))
@@ -282,8 +320,10 @@ void add_evaluate(CLI::App& app, Session& session) {
   verb->add_option("--picture", o->picture,
                    "PNG of the first pair's edges by the first matcher, blue far to red near")
       ->check(png_name);
-  verb->add_option("--error-picture", o->error_picture,
-                   "the same by error: green to 0.5 px, yellow to 1, orange to 3, red; blue: none")
+  verb->add_option(
+          "--error-picture", o->error_picture,
+          "the same by error: green to 0.5 px, yellow to 1, orange to 3, red; blue: no match, "
+          "black: not judged")
       ->check(png_name);
   verb->callback([o, verb, &session] {
     require_scenes(*verb, o->scenes);

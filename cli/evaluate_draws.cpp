@@ -49,7 +49,7 @@ SceneRig rig_of(const Scene& scene, Session& session) {
     rig.name = "nominal, resized";
     return rig;
   }
-  RigFile file = read_rig(scene.file.rig);
+  RigFile file = read_rig(find_rig(scene.file.rig.string()));
   for (const std::string& warning : file.warnings) session.warn(warning);
   rig.estimate = std::move(file.estimate);
   required_covariance(rig.estimate, scene.file.rig.string());

@@ -57,6 +57,13 @@ Json mean_curve(const std::vector<const std::vector<CurvePoint>*>& curves) {
   return mean;
 }
 
+/// Whether leaving out the less sure changes anything.
+bool states_confidence(const std::vector<SceneCurves>& scenes) {
+  return std::any_of(scenes.begin(), scenes.end(), [](const SceneCurves& scene) {
+    return scene.peer.front().front().density != scene.peer.front().back().density;
+  });
+}
+
 }  // namespace
 
 EvaluationAtEqualDensity::EvaluationAtEqualDensity(const std::vector<Matcher>& matchers)
@@ -108,14 +115,16 @@ Json EvaluationAtEqualDensity::json() const {
     if (peer.scenes.empty()) continue;
     const EqualDensity e = at_equal_density(peer.scenes);
     const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
-    peers[peer.name] = {{"setting", peer.settings[e.setting]},
-                        {"scenes", peer.scenes.size()},
-                        {"left_out", peer.left_out},
-                        {"density", e.density},
-                        {"bad_1", e.own_bad_1},
-                        {"peer_bad_1", e.peer_bad_1},
-                        {"ratio", number(e.ratio)},
-                        {"ratio_interval_95", {number(e.interval.low), number(e.interval.high)}}};
+    const bool cut = !peer.sweeps.empty() || states_confidence(peer.scenes);
+    peers[peer.name] = {
+        {"setting", cut ? peer.settings[e.setting] : "as it is: states no confidence"},
+        {"scenes", peer.scenes.size()},
+        {"left_out", peer.left_out},
+        {"density", e.density},
+        {"bad_1", e.own_bad_1},
+        {"peer_bad_1", e.peer_bad_1},
+        {"ratio", number(e.ratio)},
+        {"ratio_interval_95", {number(e.interval.low), number(e.interval.high)}}};
   }
   return {{"matcher", matchers_.front().name}, {"against", peers}};
 }

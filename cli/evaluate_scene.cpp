@@ -8,8 +8,10 @@
 #include <algorithm>
 
 #include "calib/error.h"
+#include "cli/camera_images.h"
 #include "cli/exchanged_pair.h"
 #include "stereo/canny_edges.h"
+#include "stereo/matcher_input.h"
 #include "stereo/vertical_field.h"
 
 namespace vernier::cli {
@@ -48,7 +50,8 @@ void repair(Scene& scene, bool wanted, Session& session) {
   if (!field.significant && !field.unrectified && !wanted) return;
   session.say(scene.file.name + ": " + describe(field));
   if (field.unrectified) {
-    session.warn(scene.file.name + ": rectify the pair first (vernier rectify)");
+    session.doubt(scene.file.name +
+                  ": its rows do not agree; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
     scene.pair.right = repaired_right(scene.pair.right, field);
   } else if (field.significant) {
@@ -56,16 +59,39 @@ void repair(Scene& scene, bool wanted, Session& session) {
   }
 }
 
+/// Says so where the truth of some edges is outside of what is searched.
+void check_range(const Scene& scene, Session& session) {
+  constexpr double some = 0.02, much = 0.2;
+  const DisparityRange& range = scene.file.range;
+  float least = 0, most = 0;
+  int known = 0, outside = 0;
+  for (const TruthAtEdge& at : scene.truth) {
+    if (!at.known) continue;
+    ++known;
+    least = std::min(least, at.own_px);
+    most = std::max(most, at.own_px);
+    outside += at.own_px < static_cast<float>(range.least_px) - 1 ||
+               at.own_px > static_cast<float>(range.most_px) + 1;
+  }
+  const double share = static_cast<double>(outside) / std::max(1, known);
+  if (share < some) return;
+  const std::string words = fmt::format(
+      "{}: the truth of {:.0f} % of the edges is not within {} and {} px, which is searched; it "
+      "reaches from {:.0f} to {:.0f}",
+      scene.file.name, 100 * share, range.least_px, range.most_px, least, most);
+  if (share > much) {
+    session.doubt(words);
+  } else {
+    session.warn(words);
+  }
+}
+
 }  // namespace
 
 Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& session) {
   Scene scene{file, {}, {}, {}, {}, 0};
-  for (const bool left : {true, false}) {
-    std::string remark;
-    (left ? scene.pair.left : scene.pair.right) =
-        read_grey_levels(left ? file.left : file.right, &remark);
-    if (!remark.empty()) session.say((left ? file.left : file.right).string() + ": " + remark);
-  }
+  scene.pair.left = read_image(file.left.string(), session);
+  scene.pair.right = read_image(file.right.string(), session);
   const GreyLevels &left = scene.pair.left, &right = scene.pair.right;
   if (left.width_px != right.width_px || left.height_px != right.height_px) {
     throw Error(file.right.string(),
@@ -73,15 +99,19 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
                             left.width_px, left.height_px),
                 "give a rectified pair of one size");
   }
+  check_matcher_input(scene.pair, file.range, file.left.string());
+  check_two_images(scene.pair, file.left.string(), file.right.string());
   scene.map = read_stereo_truth(file, left.width_px, left.height_px);
   repair(scene, wants_repair, session);
   const double start = cpu_ms();
   scene.edges = canny_edges(left);
   scene.edges_ms = cpu_ms() - start;
   if (scene.edges.empty()) {
-    throw Error(file.left.string(), "it has no edges", "give an image of something");
+    throw Error(file.left.string(), "it has no edges",
+                "give an image of something; of 16 bits, one that uses their whole range");
   }
   scene.truth = truth_at(scene.map, scene.edges);
+  check_range(scene, session);
   return scene;
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/matcher_names.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "calib/error.h"
+#include "cli/option_checks.h"
 #include "stereo/dense_matchers.h"
 #include "stereo/edge_matcher.h"
 #include "stereo/external_matcher.h"
@@ -18,36 +20,80 @@ Matcher matcher_named(const std::string& name) {
   if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
-  throw Error(
-      "--matcher", "\"" + name + "\" is no matcher",
-      "name edge, stretch, bm or sgbm, with commas between, or give a program with --command");
+  throw Error("--matcher", "\"" + name + "\" is no matcher",
+              "name edge, stretch, bm, sgbm, or one that --command NAME=… gives");
+}
+
+bool is_named(const std::vector<Matcher>& matchers, const std::string& name) {
+  return std::any_of(matchers.begin(), matchers.end(),
+                     [&](const Matcher& matcher) { return matcher.name == name; });
+}
+
+/// "NAME=command" or a command, which is then named by its program, and numbered if need be.
+Matcher command_matcher(const std::string& text,
+                        double time_limit_s,
+                        const std::vector<Matcher>& others) {
+  const std::size_t end =
+      text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.");
+  const bool named = end != std::string::npos && end > 0 && text[end] == '=';
+  Matcher matcher =
+      external_matcher(named ? text.substr(end + 1) : text, {.time_limit_s = time_limit_s});
+  if (named) matcher.name = text.substr(0, end);
+  const std::string base = matcher.name;
+  for (int k = 2; !named && is_named(others, matcher.name); ++k) {
+    matcher.name = base + "-" + std::to_string(k);
+  }
+  return matcher;
 }
 
 }  // namespace
 
-std::vector<Matcher> matchers_named(const std::string& names,
-                                    const std::vector<std::string>& commands) {
-  std::vector<Matcher> matchers;
-  std::istringstream stream(names);
-  for (std::string name; std::getline(stream, name, ',');) {
-    if (!name.empty()) matchers.push_back(matcher_named(name));
-  }
-  for (const std::string& command : commands) matchers.push_back(external_matcher(command));
-  for (std::size_t i = 0; i < matchers.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (matchers[i].name != matchers[j].name) continue;
-      throw Error("--matcher", "\"" + matchers[i].name + "\" is named twice", "name each once");
+std::vector<Matcher> matchers_named(const MatcherOptions& options) {
+  std::vector<Matcher> programs, matchers;
+  const auto add = [](std::vector<Matcher>& to, const Matcher& matcher) {
+    if (is_named(to, matcher.name)) {
+      throw Error("--matcher", "\"" + matcher.name + "\" is named twice", "name each once");
     }
+    to.push_back(matcher);
+  };
+  for (const std::string& command : options.commands) {
+    add(programs, command_matcher(command, options.time_limit_s, programs));
+  }
+  std::istringstream stream(options.names);
+  for (std::string name; std::getline(stream, name, ',');) {
+    if (name.empty()) continue;
+    const auto program = std::find_if(programs.begin(), programs.end(),
+                                      [&](const Matcher& m) { return m.name == name; });
+    add(matchers, program != programs.end() ? *program : matcher_named(name));
+  }
+  for (const Matcher& program : programs) {
+    if (!is_named(matchers, program.name)) matchers.push_back(program);
   }
   if (matchers.empty()) throw Error("--matcher", "it names none", "name edge, stretch, bm or sgbm");
   return matchers;
 }
 
-Matcher one_matcher(const std::string& name, const std::string& command) {
-  const std::vector<Matcher> matchers =
-      command.empty() ? matchers_named(name, {}) : matchers_named("", {command});
+Matcher one_matcher(const MatcherOptions& options) {
+  MatcherOptions one = options;
+  if (!one.commands.empty()) one.names.clear();
+  const std::vector<Matcher> matchers = matchers_named(one);
   if (matchers.size() == 1) return matchers.front();
-  throw Error("--matcher", "\"" + name + "\" names more than one", "name one");
+  throw Error("--matcher", "it names more than one", "name one of edge, stretch, bm and sgbm");
+}
+
+CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options) {
+  CLI::Option* commands =
+      verb.add_option("--command", options.commands,
+                      "a program as a matcher: NAME=COMMAND or COMMAND with {left} {right} "
+                      "{output}, {least} {most} in it (docs/matchers.md)")
+          ->expected(1)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--time-limit-s", options.time_limit_s,
+                  "after which such a program is stopped, for each pair; 0: never")
+      ->check(finite_and_not_negative)
+      ->needs(commands)
+      ->capture_default_str();
+  return commands;
 }
 
 }  // namespace vernier::cli

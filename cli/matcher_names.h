@@ -5,16 +5,27 @@
 #include <string>
 #include <vector>
 
+#include "cli/session.h"
 #include "stereo/matcher.h"
 
 namespace vernier::cli {
 
-/// The matchers of a list such as "edge,bm,sgbm", then those of commands with {left}, {right} and
-/// {output} in them (stereo/external_matcher.h). Throws Error for a name that is none.
-std::vector<Matcher> matchers_named(const std::string& names,
-                                    const std::vector<std::string>& commands);
+/// Matchers on the command line.
+struct MatcherOptions {
+  std::string names;                  ///< "edge,bm,sgbm"; names of commands among them if need be
+  std::vector<std::string> commands;  ///< programs (stereo/external_matcher.h), "NAME=command" …
+                                      ///< or the command alone, named by its program
+  double time_limit_s = 0;            ///< of a program for each pair; 0: none
+};
 
-/// The one that `command` runs or, where that is empty, `name` names. Throws Error for several.
-Matcher one_matcher(const std::string& name, const std::string& command);
+/// Those of the list in its order, then the commands that it does not name. Throws Error for a name
+/// that is none, one given twice, and where nothing is named.
+std::vector<Matcher> matchers_named(const MatcherOptions& options);
+
+/// The only command or, where there is none, the only one of the list. Throws Error for several.
+Matcher one_matcher(const MatcherOptions& options);
+
+/// --command and --time-limit-s.
+CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options);
 
 }  // namespace vernier::cli

@@ -31,6 +31,8 @@ std::string png_name(const std::string& text) {
   return std::filesystem::path(text).extension() == ".png" ? "" : text + " does not end in .png";
 }
 
+std::string not_empty(const std::string& text) { return text.empty() ? "is empty" : ""; }
+
 std::string not_negative(const std::string& text) {
   return text.find('-') == std::string::npos
              ? ""

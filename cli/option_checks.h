@@ -18,6 +18,8 @@ std::string finite(const std::string& text);
 /// The name of a PNG file.
 std::string png_name(const std::string& text);
 
+std::string not_empty(const std::string& text);
+
 /// Without it -1 would wrap round to the largest seed.
 std::string not_negative(const std::string& text);
 

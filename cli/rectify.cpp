@@ -96,6 +96,23 @@ void judge(const Rectified& rectified,
            const Options& options,
            Session& session) {
   const VerticalField& field = rectified.field;
+  constexpr double nearly_all = 0.9;
+  const double blank = std::max(rectified.images.left_valid.blank_share(),
+                                rectified.images.right_valid.blank_share());
+  if (blank > nearly_all) {
+    session.doubt(
+        fmt::format("{:.0f} % of a rectified image is blank; see --f-px and --size", 100 * blank));
+    return;
+  }
+  if (!field.unrectified && !field.known) {
+    const std::string words =
+        "the rows of the rectified images could not be checked: " + describe(field);
+    if (field.corners == 0) {
+      session.doubt(words);
+    } else {
+      session.warn(words);
+    }
+  }
   if (!field.unrectified) return;
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
     const VerticalField exchanged = rectify(rig, right, left, options).field;
@@ -204,6 +221,13 @@ std::string result_text(const RectifiedGeometry& g,
 void run(Options options, Session& session) {
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size, "--size");
+    constexpr int most_side = 20'000;
+    constexpr double most_pixels = 1e8;
+    if (width > most_side || height > most_side || double(width) * height > most_pixels) {
+      throw Error("--size",
+                  fmt::format("{}x{} is more than a hundred million pixels", width, height),
+                  "give a smaller size");
+    }
     options.geometry.size_px = {width, height};
   }
   const std::filesystem::path rig_file = find_rig(options.rig);

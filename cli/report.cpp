@@ -39,6 +39,9 @@ Inputs inputs_of(const Options& options) {
         throw Error(name, "is a second evaluation", "give one a page");
       }
       inputs.evaluation = name;
+    } else if (!fs::exists(fs::path(name) / "study.toml")) {
+      throw Error(name, "is neither the folder of a study nor of an evaluation",
+                  "give what vernier study or vernier evaluate wrote with -o");
     } else if (inputs.study.empty()) {
       inputs.study = name;
     } else {

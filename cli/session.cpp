@@ -162,8 +162,10 @@ std::vector<double> parse_numbers(const std::string& text,
   }
   const bool open = !text.empty() && text.back() == ',';
   if (open || at != end || values.size() != n) {
-    throw Error(option, "\"" + text + "\" is not " + std::to_string(n) + " numbers",
-                "separate them by commas");
+    throw Error(option,
+                "\"" + text + "\" is not " +
+                    (n == 1 ? std::string("a number") : std::to_string(n) + " numbers"),
+                "separate numbers by commas");
   }
   return values;
 }

@@ -29,7 +29,8 @@ struct Options {
   StereoInputOptions input;
   SpaceSegmentOptions space;
   double least_angle_deg = 5;
-  std::string matcher = "edge", command, output, picture;
+  MatcherOptions matcher{"edge", {}, 0};
+  std::string output, picture;
 };
 
 /// Medians over placed segments, of their farther ends.
@@ -90,7 +91,7 @@ std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& fil
 }
 
 StereoResult look(const Options& options, const StereoInput& input) {
-  const Matcher matcher = one_matcher(options.matcher, options.command);
+  const Matcher matcher = one_matcher(options.matcher);
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
@@ -172,7 +173,7 @@ Json result_json(const Options& options,
                  const DepthFigures& depth) {
   Json segments{{"found", result.segments.size()}};
   for (const auto& [key, count] : refusals(result)) segments[key] = count;
-  Json json{{"matcher", one_matcher(options.matcher, options.command).name},
+  Json json{{"matcher", one_matcher(options.matcher).name},
             {"edges", result.edges.size()},
             {"edges_off_the_row", edges.asked},
             {"matched", edges.matched},
@@ -220,7 +221,24 @@ std::string result_text(const StereoInput& input,
   return text;
 }
 
+/// Refuses outputs that are inputs or each other before any work is done.
+void check_outputs(const Options& options) {
+  std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
+  if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
+  const std::filesystem::path folder = options.output;
+  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
+    throw Error(options.output, "is not a folder", "name another with -o");
+  }
+  for (const char* name : {"edges.csv", "segments.csv", "segments.json", "segments.ply"}) {
+    spare_inputs(inputs, folder / name);
+    if (!options.picture.empty()) check_different("--picture", options.picture, folder / name);
+  }
+  if (!options.picture.empty()) spare_inputs(inputs, options.picture);
+}
+
 void run(const Options& options, Session& session) {
+  one_matcher(options.matcher);
+  check_outputs(options);
   const StereoInput input = read_stereo_input(options.input, session);
   const StereoResult result = look(options, input);
   const EdgeFigures edges = edge_figures(result, options.least_angle_deg * std::numbers::pi / 180);
@@ -233,18 +251,9 @@ void run(const Options& options, Session& session) {
       {folder / "segments.csv", segments_csv(result)},
       {folder / "segments.json", segments_json(input, result)}};
   if (input.geometry) files.emplace_back(folder / "segments.ply", segments_ply(result));
-  std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
-  if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
   Json names = Json::array();
-  for (const auto& [name, content] : files) {
-    spare_inputs(inputs, name);
-    if (!options.picture.empty()) check_different("--picture", options.picture, name);
-    names.push_back(name.string());
-  }
-  if (!options.picture.empty()) {
-    spare_inputs(inputs, options.picture);
-    names.push_back(options.picture);
-  }
+  for (const auto& [name, content] : files) names.push_back(name.string());
+  if (!options.picture.empty()) names.push_back(options.picture);
   std::filesystem::create_directories(folder);
   if (!options.picture.empty()) {
     files.emplace_back(options.picture,
@@ -292,12 +301,9 @@ void add_stereo(CLI::App& app, Session& session) {
       "  vernier stereo --rectified --left im0.png --right im1.png --f-px 994.978 --baseline-m "
       "0.193001 --centre-px 311.193,254.877 --offset-px 31.086 --max-disparity 70 -o seen");
   add_cameras(verb, o->input);
-  auto* names =
-      verb->add_option("--matcher", o->matcher, "edge, stretch, bm or sgbm")->capture_default_str();
-  verb->add_option("--command", o->command,
-                   "a program as the matcher: its command with {left} {right} {output}, {least} "
-                   "{most}")
-      ->excludes(names);
+  auto* names = verb->add_option("--matcher", o->matcher.names, "edge, stretch, bm or sgbm")
+                    ->capture_default_str();
+  add_command_options(*verb, o->matcher)->excludes(names);
   verb->add_option("--epipolar-reject-deg", o->least_angle_deg,
                    "segments nearer to the row than this have no place")
       ->check(CLI::Range(0.0, 80.0))
@@ -309,6 +315,7 @@ void add_stereo(CLI::App& app, Session& session) {
       ->check(png_name);
   verb->add_option("-o,--output", o->output,
                    "folder for edges.csv, segments.csv, segments.json and segments.ply")
+      ->check(not_empty)
       ->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

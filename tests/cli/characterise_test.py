@@ -121,7 +121,7 @@ class Characterise(unittest.TestCase):
     def test_nothing_to_be_trusted(self):
         write_pgm(self.folder / 'nearly.pgm', [[100 + 60 * (x == 100 and 60 < y < 90)
                                                 for x in range(WIDTH)] for y in range(HEIGHT)])
-        for more in ({'scale': '2'}, {'left': 'nearly', 'right': 'nearly'}):
+        for more in ({'scale': '2'}, {'left': 'nearly'}):
             done = self.run_it('-o', 'sources.toml', **more)
             self.assertEqual(done.returncode, 3, f'{more} {done.stderr}')
             self.assertIn('doubtful', done.stderr)
@@ -134,7 +134,7 @@ class Characterise(unittest.TestCase):
             self.assertEqual(done.stdout, '')
             self.assertIn(of, done.stderr.splitlines()[-1])
         complains(self.run_it('-q', right='small'), 'small.pgm')
-        complains(self.run_it('-q', left='blank', right='blank'), 'no edges')
+        complains(self.run_it('-q', left='blank'), 'no edges')
         complains(self.run_it('-q', left='right', right='left'), 'exchanged')
         complains(self.run_it('-q', truth='small'), 'small.pgm')
         complains(self.run_it('-q', '--matcher', 'edge,bm'), 'more than one')

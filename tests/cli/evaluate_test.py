@@ -106,6 +106,39 @@ class Evaluate(unittest.TestCase):
         self.assertGreater(score['mismatch'], 0.1)  # the box
         self.assertLess(score['mismatch'], 0.5)
 
+    def doubts(self, *more, of, **files):
+        done = self.run_it('-q', '--json', *more, **files)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn(of, done.stderr)
+        self.assertTrue(any(of in doubt for doubt in json.loads(done.stdout)['doubts']))
+
+    def test_what_cannot_be_is_doubted(self):
+        right = [[(7 * x * y) % 251 for x in range(WIDTH)] for y in range(HEIGHT)]
+        write_pgm(self.folder / 'other.pgm', right)
+        write_pgm(self.folder / 'twice.pgm', [[2 * d for d in row] for row in pair()[2]])
+        self.doubts(of='see that the truth is of this left image', truth='twice')
+        self.doubts(of='which is searched', most=4)
+        self.doubts(of='do not agree', right='other')
+
+    def test_programs_have_names_and_places(self):
+        (self.folder / 'even.py').write_text(
+            f'import sys, struct\nw, h = {WIDTH}, {HEIGHT}\n'
+            'open(sys.argv[1], "wb").write(b"Pf\\n%d %d\\n-1\\n" % (w, h) + '
+            'struct.pack("<%df" % (w * h), *[6.0] * (w * h)))\n')
+        command = f'{sys.executable} even.py {{output}} {{left}} {{right}}'
+        done = self.run_it('-q', '--matcher', 'mine,edge', '--command', command, '--command',
+                           'mine=' + command, '--command', command, '--equal-density', '--json')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        first, second = [n for n in said['matchers'] if n not in ('mine', 'edge')]
+        self.assertEqual(list(said['matchers'])[:2], ['mine', 'edge'])
+        self.assertEqual(second, first + '-2')
+        self.assertIn('no confidence', said['equal_density']['against'][first]['setting'])
+        (self.folder / 'slow.py').write_text('import time\ntime.sleep(60)\n')
+        self.complains('--matcher', '', '--time-limit-s', '0.3', '--command',
+                       f'{sys.executable} slow.py {{output}} {{left}} {{right}}',
+                       of='did not end within')
+
     def test_under_calibration_error(self):
         more = ('--matcher', 'edge,sgbm', '--psi-c', '1,10', '--draws', '2', '--rows-moved-px', '2',
                 '--json')
@@ -188,7 +221,11 @@ class Evaluate(unittest.TestCase):
 
     def test_bad_input(self):
         self.complains(of='small.pgm', right='small')
-        self.complains(of='no edges', left='blank', right='blank')
+        self.complains(of='no edges', left='blank')
+        self.complains(of='the same image', right='left')
+        self.complains('--matcher', 'mine', of='"mine" is no matcher')
+        self.complains('--equal-density', '--matcher', 'edge', of='one matcher only')
+        self.complains('--psi-c', '1', '--time-limit-s', '3', of='--command')
         self.complains(of='small.pgm', truth='small')
         self.complains(of='exchanged', left='right', right='left')
         self.complains(of='width', most=400)

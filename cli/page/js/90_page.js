@@ -20,14 +20,19 @@ function notice_without_plots() {
 
 /** How the page was made: program, study file and the settings of every cell. */
 function making_section(report) {
-  const { program, study } = report;
-  if (!program && !study) return;
+  const { program, study, evaluation } = report;
+  if (!program && !study && !evaluation) return;
   const rows = [
     ["Program", program?.version && `vernier ${program.version}`],
     ["Processor's instruction set", program?.instruction_set],
     ["Study file", study?.file], ["Method", study?.method],
     ["Trials a cell", study && count(study.trials)],
     ["Seed", is_number(study?.seed) ? String(study.seed) : null],
+    ["Pairs", evaluation?.settings?.list ?? evaluation?.scenes.map((scene) => scene.left).join(", ")],
+    ["Rows repaired before", evaluation?.settings && (evaluation.settings.repair ? "yes" : "no")],
+    ["Programs as matchers", evaluation?.settings?.commands?.join("; ")],
+    ["Rigs drawn of each pair", evaluation?.calibration_error
+      && `${evaluation.calibration_error.draws}, seed ${evaluation.calibration_error.seed}`],
     ["Rig", report.rigs?.map((rig) => rig.file).filter(Boolean).join(", ")],
   ].filter(([, value]) => value).map(([name, value]) => ({ name, value }));
   const made = section("making", "How this was made", paragraph("The same program, files and seed"

@@ -90,9 +90,9 @@ MeasuredSources all_measured() {
   sources.endpoints.across_px = measured(0.12);
   sources.corners.loss = measured(0.17);
   sources.corners.mismatch = measured(0.02);
-  sources.corners.reach_px = 7;
+  sources.corners.reach_px = measured(7);
   sources.stereo_mismatch.share = measured(0.03);
-  sources.stereo_mismatch.reach_px = 30;
+  sources.stereo_mismatch.reach_px = measured(30);
   return sources;
 }
 

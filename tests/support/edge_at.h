@@ -11,8 +11,8 @@ namespace vernier::test {
 /// An upright edge that crosses row y at row_x.
 inline EdgePoint edge_at(float row_x, int y) {
   EdgePoint edge;
-  edge.pixel_px << row_x, static_cast<float>(y);
-  edge.normal << 1, 0;
+  edge.pixel_px = {row_x, static_cast<float>(y)};
+  edge.normal = {1, 0};
   edge.x = static_cast<int>(std::lround(row_x));
   edge.y = y;
   edge.row_x_px = row_x;

@@ -19,6 +19,10 @@ const SourceParameter& parameter_of(std::string_view key) {
 /// Four digits: more than any interval here is worth.
 double rounded(double value) { return std::stod(fmt::format("{:.4g}", value)); }
 
+std::string text_of(const Measured& measured) {
+  return measured.known() ? fmt::format("{:.4g}", measured.value) : "not known";
+}
+
 SourceEntry entry_of(const char* key, const Measured& measured, std::string note) {
   const SourceParameter& parameter = parameter_of(key);
   SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
@@ -102,8 +106,8 @@ std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMod
   entries.push_back(
       entry_of("edge_loss", loss.share,
                fmt::format("share of left segments' length on no right segment; right "
-                           "to left {:.4g}, on no edge at all {:.4g}",
-                           loss.to_left.value, loss.on_edges.value)));
+                           "to left {}, on no edge at all {}",
+                           text_of(loss.to_left), text_of(loss.on_edges))));
   entries.push_back(entry_of(
       "endpoint_sigma_px", ends.across_px,
       fmt::format("across the line; along it {:.3f} px, {:.0f} % of segments cut short left out",

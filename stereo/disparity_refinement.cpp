@@ -50,6 +50,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 alignas(64) constexpr float inside[lanes] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
 alignas(64) constexpr float column[lanes] = {-4, -3, -2, -1, 0, 1, 2, 3, 4};
 
+/// JᵀJ from its sums.
+Normal normal_of(const double (&S)[15]) {
+  Normal N;
+  N << S[0], S[1], S[3], S[6], S[9],   //
+      S[1], S[2], S[4], S[7], S[10],   //
+      S[3], S[4], S[5], S[8], S[11],   //
+      S[6], S[7], S[8], S[12], S[13],  //
+      S[9], S[10], S[11], S[13], pixels;
+  return N;
+}
+
 /// Loads the left patch and returns JᵀJ.
 Normal load_left(const PaddedImage& left, int x, int y, LeftPatch& patch) {
   const hn::CappedTag<float, lanes> d;
@@ -95,13 +106,7 @@ Normal load_left(const PaddedImage& left, int x, int y, LeftPatch& patch) {
                                    in};
     for (int k = 0; k < 15; ++k) S[k] += hn::GetLane(hn::SumOfLanes(d, sums[k]));
   }
-  Normal N;
-  N << S[0], S[1], S[3], S[6], S[9],   //
-      S[1], S[2], S[4], S[7], S[10],   //
-      S[3], S[4], S[5], S[8], S[11],   //
-      S[6], S[7], S[8], S[12], S[13],  //
-      S[9], S[10], S[11], S[13], pixels;
-  return N;
+  return normal_of(S);
 }
 
 /// The right image along a row at base + stretch i, by cubic convolution (Keys 1981, a = −1/2).
@@ -163,6 +168,27 @@ RightSums right_sums(const PaddedImage& right,
   return sums;
 }
 
+/// Standard deviation and correlation of a fit; `inverse` is N⁻¹₀₀.
+void judge_fit(const Normal& J2,
+               const RightSums& K,
+               const Unknowns& fit,
+               double inverse,
+               float stretch,
+               const RefinementOptions& options,
+               RefinedDisparity& result) {
+  const double gain = fit[3];
+  const double residual = K.squares - 2 * fit.dot(K.with_left) + fit.dot(J2 * fit);
+  const double mean_square = std::max(residual / (pixels - unknowns),
+                                      options.noise_left * options.noise_left * gain * gain +
+                                          options.noise_right * options.noise_right);
+  const double left_power = J2(3, 3) - J2(3, 4) * J2(3, 4) / pixels,
+               right_power = K.squares - K.sum * K.sum / pixels,
+               both = K.with_left[3] - J2(3, 4) * K.sum / pixels;
+  result.sigma_px =
+      static_cast<float>(stretch * std::sqrt(std::max(0.0, mean_square * inverse)) / gain);
+  result.score = static_cast<float>(both / std::sqrt(std::max(1e-9, left_power * right_power)));
+}
+
 RefinedDisparity refine(const PaddedImage& left,
                         const PaddedImage& right,
                         const RefinementStart& start,
@@ -190,17 +216,7 @@ RefinedDisparity refine(const PaddedImage& left,
     const auto more_shear = static_cast<float>(fit[2] / gain);
     constexpr float near_px = 0.05f;  // this step leaves a tenth of it
     if (std::abs(shift) < near_px || step + 1 == options.iterations) {
-      const double residual = K.squares - 2 * fit.dot(K.with_left) + fit.dot(J2 * fit);
-      const double mean_square = std::max(residual / (pixels - unknowns),
-                                          options.noise_left * options.noise_left * gain * gain +
-                                              options.noise_right * options.noise_right);
-      const double inverse = factor.solve(Unknowns::Unit(0))[0];
-      const double left_power = J2(3, 3) - J2(3, 4) * J2(3, 4) / pixels,
-                   right_power = K.squares - K.sum * K.sum / pixels,
-                   both = K.with_left[3] - J2(3, 4) * K.sum / pixels;
-      result.sigma_px =
-          static_cast<float>(stretch * std::sqrt(std::max(0.0, mean_square * inverse)) / gain);
-      result.score = static_cast<float>(both / std::sqrt(std::max(1e-9, left_power * right_power)));
+      judge_fit(J2, K, fit, factor.solve(Unknowns::Unit(0))[0], stretch, options, result);
       result.settled = std::abs(shift) < near_px;
     }
     // The left patch moved by (shift, stretch, shear) is what the right one shows now: undo it.

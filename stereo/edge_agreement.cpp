@@ -9,57 +9,82 @@
 #include "stereo/connected_sets.h"
 
 namespace vernier {
+namespace {
+
+/// Chains of matched points that are near each other and agree, built row by row.
+class Chains {
+ public:
+  Chains(const PointsByRow& points, int reach, double slope, const std::vector<float>& disparity)
+      : points_(points), reach_(reach), slope_(slope), disparity_(disparity) {
+    for (int p = 0; p < points.size(); ++p) sets_.add();
+  }
+
+  /// The rows in their order.
+  void add_row(int y) {
+    std::vector<int> from;  // the first of each row above that is not too far left
+    for (int j = std::max(0, y - reach_); j < y; ++j) {
+      from.push_back(row_begin_[static_cast<std::size_t>(j)]);
+    }
+    const auto row = static_cast<std::size_t>(y);
+    for (int p = points_.row_begin[row]; p < points_.row_begin[row + 1]; ++p) {
+      if (std::isnan(disparity_[static_cast<std::size_t>(p)])) continue;
+      for (std::size_t j = 0; j < from.size(); ++j) {
+        join_near(p, from[j], row_begin_[row - from.size() + j + 1]);
+      }
+      const auto end = static_cast<int>(matched_.size());
+      int own = std::max(row_begin_[row], end - reach_);
+      join_near(p, own, end);
+      matched_.push_back(p);
+    }
+    row_begin_.push_back(static_cast<int>(matched_.size()));
+  }
+
+  /// Matched points whose chain has fewer.
+  std::vector<int> of_fewer_than(int least) {
+    std::vector<int> size(disparity_.size(), 0), few;
+    for (const int p : matched_) ++size[static_cast<std::size_t>(sets_.root(p))];
+    for (const int p : matched_) {
+      if (size[static_cast<std::size_t>(sets_.root(p))] < least) few.push_back(p);
+    }
+    return few;
+  }
+
+ private:
+  int x_of(int p) const { return points_.x[static_cast<std::size_t>(p)]; }
+
+  /// Joins p with those of matched_[begin, end) that agree; `begin` follows p to the right.
+  void join_near(int p, int& begin, int end) {
+    const int x = x_of(p);
+    while (begin < end && x_of(matched_[static_cast<std::size_t>(begin)]) < x - reach_) ++begin;
+    for (int i = begin; i < end; ++i) {
+      const int q = matched_[static_cast<std::size_t>(i)];
+      if (x_of(q) > x + reach_) break;
+      const double most = 1 + slope_ * std::abs(x_of(q) - x);
+      const float off =
+          disparity_[static_cast<std::size_t>(q)] - disparity_[static_cast<std::size_t>(p)];
+      if (std::abs(off) <= most) sets_.join(p, q);
+    }
+  }
+
+  const PointsByRow& points_;
+  int reach_;
+  double slope_;
+  const std::vector<float>& disparity_;
+  ConnectedSets sets_;
+  std::vector<int> matched_, row_begin_{0};  // by row
+};
+
+}  // namespace
+
 void drop_lonely(const PointsByRow& points,
                  int least_points,
                  int reach,
                  double slope,
                  std::vector<float>& disparity) {
-  std::vector<int> matched;  // by row
-  std::vector<int> row_begin{0};
-  ConnectedSets chains;
-  for (int p = 0; p < points.size(); ++p) chains.add();
+  Chains chains(points, reach, slope, disparity);
   const auto height = static_cast<int>(points.row_begin.size()) - 1;
-  for (int y = 0; y < height; ++y) {
-    std::vector<int> from;  // the first of each row above that is not too far left
-    for (int j = std::max(0, y - reach); j < y; ++j) {
-      from.push_back(row_begin[static_cast<std::size_t>(j)]);
-    }
-    const auto row = static_cast<std::size_t>(y);
-    for (int p = points.row_begin[row]; p < points.row_begin[row + 1]; ++p) {
-      const auto k = static_cast<std::size_t>(p);
-      if (std::isnan(disparity[k])) continue;
-      const int x = points.x[k];
-      const auto join_near = [&](int& begin, int end) {
-        while (begin < end &&
-               points.x[static_cast<std::size_t>(matched[static_cast<std::size_t>(begin)])] <
-                   x - reach) {
-          ++begin;
-        }
-        for (int i = begin; i < end; ++i) {
-          const int q = matched[static_cast<std::size_t>(i)];
-          if (points.x[static_cast<std::size_t>(q)] > x + reach) break;
-          const double most = 1 + slope * std::abs(points.x[static_cast<std::size_t>(q)] - x);
-          if (std::abs(disparity[static_cast<std::size_t>(q)] - disparity[k]) <= most) {
-            chains.join(p, q);
-          }
-        }
-      };
-      for (std::size_t j = 0; j < from.size(); ++j) {
-        const auto above = static_cast<std::size_t>(y) - from.size() + j;
-        join_near(from[j], row_begin[above + 1]);
-      }
-      int own = row_begin[row];
-      const auto end = static_cast<int>(matched.size());
-      own = std::max(own, end - reach);
-      join_near(own, end);
-      matched.push_back(p);
-    }
-    row_begin.push_back(static_cast<int>(matched.size()));
-  }
-  std::vector<int> size(points.x.size(), 0);
-  for (const int p : matched) ++size[static_cast<std::size_t>(chains.root(p))];
-  for (const int p : matched) {
-    if (size[static_cast<std::size_t>(chains.root(p))] >= least_points) continue;
+  for (int y = 0; y < height; ++y) chains.add_row(y);
+  for (const int p : chains.of_fewer_than(least_points)) {
     disparity[static_cast<std::size_t>(p)] = std::numeric_limits<float>::quiet_NaN();
   }
 }

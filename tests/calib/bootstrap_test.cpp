@@ -43,8 +43,7 @@ TEST(Bootstrap, CoversTheMeanAsOftenAsItSays) {
 TEST(Bootstrap, HasTheVarianceOfAMean) {
   std::vector<double> values(30);
   std::iota(values.begin(), values.end(), 0.0);
-  const Interval i =
-      bootstrap_interval(values.size(), mean_of(values), {.resamples = 20'000});
+  const Interval i = bootstrap_interval(values.size(), mean_of(values), {.resamples = 20'000});
   // A quantile of 20,000 resamples has a deviation of 0.019 sd, and means come in steps of 0.02 sd.
   const double sd = std::sqrt((30.0 * 30 - 1) / 12 / 30);
   EXPECT_NEAR(i.low, 14.5 - 1.96 * sd, 0.09 * sd);

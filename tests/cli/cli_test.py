@@ -531,7 +531,7 @@ class BadInput(Case):
         self.complains('simulate', '--pose', '1,2', of='is not 3 numbers')
         self.complains('simulate', '--pose', '1,2,3', '--source', 'edge_los=1', of='edge_loss')
         self.complains('report', self.folder, '-o', self.folder / 'r.html',
-                       of='is not the folder of a study')
+                       of='is neither the folder of a study')
         self.complains('report', 'no.rig.json', '-o', self.folder / 'r.html', of='no such file')
         (self.folder / 'other.json').write_text('{"format": "other"}')
         self.complains('report', 'nominal', self.folder / 'other.json', '-o',
@@ -539,6 +539,7 @@ class BadInput(Case):
                        leaves=[self.folder / 'r.html'])
         for name in ('one', 'two'):
             (self.folder / name).mkdir()
+            (self.folder / name / 'study.toml').touch()
         self.complains('report', self.folder / 'one', self.folder / 'two', '-o',
                        self.folder / 'r.html', of='is a second folder of a study')
 

@@ -136,8 +136,10 @@ function calibration_error_section(evaluation, names) {
     + " disparities that the pair then has: a mismatch was matched to something else. What the"
     + " geometry itself does to disparities stands apart, as bias; the error in found disparities"
     + " holds both. Repair takes away what the rows differ by, found from corners of the pair."
-    + " The pair as given is taken to have exact rows: where it has not, what repair takes away of"
-    + " its own error is shown as rows."));
+    + " What the rows of the pair as given differ by is taken away before any error is put in, so"
+    + " that ψ_c = 0 is the pair without it. An edge where rows are off may be found anywhere"
+    + " between its point's disparity and the place where it crosses the row: all of that counts as"
+    + " right."));
   const drawn = cells.filter((cell) => cell.psi_c > 0);
   if (drawn.length > 2) made.append(mismatch_figure(drawn, names) || "");
   const rows = cells.flatMap((cell) => names.map((name) =>

@@ -42,7 +42,8 @@ function making_section(report) {
     { head: "What", text: true, cell: (row) => row.name },
     { head: "Used", text: true, cell: (row) => row.value },
   ], rows, { wide: false }));
-  if (program?.command) made.append(element("pre", {}, element("code", {}, program.command)));
+  const commands = [evaluation?.settings?.command, program?.command].filter(Boolean);
+  if (commands.length) made.append(element("pre", {}, element("code", {}, commands.join("\n"))));
   if (study?.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells));
 }
 

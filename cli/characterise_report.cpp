@@ -7,12 +7,11 @@
 namespace vernier::cli {
 namespace {
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json measured_json(const Measured& measured) {
-  return {{"value", finite(measured.value)},
-          {"interval_95", {finite(measured.interval.low), finite(measured.interval.high)}},
-          {"n", measured.samples}};
+  return {
+      {"value", json_number(measured.value)},
+      {"interval_95", {json_number(measured.interval.low), json_number(measured.interval.high)}},
+      {"n", measured.samples}};
 }
 
 /// Least and largest of a source's values over the pairs.
@@ -33,7 +32,7 @@ Json sources_json(const CharacteriseReport& report) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Json entry = measured_json(entries[i].measured);
     const Interval range = over_pairs(report, i);
-    entry["over_pairs"] = {finite(range.low), finite(range.high)};
+    entry["over_pairs"] = {json_number(range.low), json_number(range.high)};
     entry["default"] = entries[i].otherwise;
     entry["written"] = entries[i].written;
     entry["note"] = entries[i].note;
@@ -59,7 +58,7 @@ Json edges_json(const MeasuredSources& s) {
            {{"independent_px", measured_json(shift.independent_px)},
             {"relative_rms_px", measured_json(shift.relative_px)},
             {"towards_brighter_px", measured_json(shift.towards_px)},
-            {"truth_error_px", finite(shift.truth_px)},
+            {"truth_error_px", json_number(shift.truth_px)},
             {"beyond", shift.beyond}}},
           {"endpoints",
            {{"across_px", measured_json(ends.across_px)},
@@ -144,7 +143,7 @@ Json report_json(const CharacteriseReport& report) {
   for (const MeasuredSources& pair : report.each) {
     Json scene{{"name", pair.pairs.front()}};
     for (const SourceEntry& entry : source_entries(pair, report.mode)) {
-      scene[entry.key] = finite(entry.measured.value);
+      scene[entry.key] = json_number(entry.measured.value);
     }
     json["scenes"].push_back(std::move(scene));
   }

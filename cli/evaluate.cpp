@@ -17,10 +17,8 @@
 #include "cli/scene_options.h"
 #include "cli/session.h"
 #include "cli/spare_inputs.h"
-#include "stereo/canny_edges.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/stereo_scenes.h"
-#include "stereo/vertical_field.h"
 
 namespace vernier::cli {
 namespace {
@@ -105,10 +103,8 @@ void add_outputs(const Options& options,
                  Json& of_scene,
                  Outputs& outputs) {
   const bool first = number == 0;
-  if (options.output.empty() &&
-      !(first && !(options.picture.empty() && options.error_picture.empty()))) {
-    return;
-  }
+  const bool first_alone = first && (!options.picture.empty() || !options.error_picture.empty());
+  if (options.output.empty() && !first_alone) return;
   const Pictures pictures = pictures_of(scene, run, rule);
   if (first && !options.picture.empty()) outputs.emplace_back(options.picture, pictures.disparity);
   if (first && !options.error_picture.empty()) {
@@ -291,7 +287,7 @@ void run(const Options& options, Session& session) {
   if (options.equal_density) {
     json["equal_density"] = equal_density.json();
     json["curves"] = equal_density.curves();
-    report.text += equal_density.text();
+    report.text += EvaluationAtEqualDensity::text(json["equal_density"]);
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
   json["doubts"] = session.doubts();

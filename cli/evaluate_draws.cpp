@@ -100,12 +100,14 @@ bool is_physical(const Rig& drawn, const Rig& true_rig) {
 
 std::vector<DrawFigures> figures_of(const WarpedPair& warped,
                                     const std::vector<EdgePoint>& edges,
+                                    const std::vector<TruthAtEdge>& truth,
                                     const DisparityRange& range,
                                     const std::vector<Matcher>& matchers,
                                     const EvaluationOptions& how) {
   std::vector<DrawFigures> figures;
   for (const Matcher& matcher : matchers) {
-    const WarpedScore s = evaluate(warped, edges, matcher.match(warped.pair, edges, range), how);
+    const WarpedScore s =
+        evaluate(warped, edges, truth, matcher.match(warped.pair, edges, range), how);
     const auto of = [](int count, double figure) { return count > 0 ? figure : NAN; };
     const int matched = s.score.all.matched;
     figures.push_back({of(s.score.all.edges, s.score.all.density), of(matched, s.score.all.bad_1),
@@ -121,14 +123,17 @@ DrawTrial run_trial(WarpedPair warped,
                     const EvaluationOptions& how) {
   DrawTrial trial;
   const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
-  trial.figures[0] = figures_of(warped, edges, range, matchers, how);
-  trial.geometry[0] = geometric_error(warped, edges, how);
+  const auto score = [&](std::size_t repaired) {
+    const std::vector<TruthAtEdge> truth = truth_at(warped, edges);
+    trial.figures[repaired] = figures_of(warped, edges, truth, range, matchers, how);
+    trial.geometry[repaired] = geometric_error(warped, edges, truth, how);
+  };
+  score(0);
   const VerticalField field = vertical_field(warped.pair, range);
   trial.repaired = field.significant && !field.unrectified;
   if (trial.repaired) {
     repair(warped, field);
-    trial.figures[1] = figures_of(warped, edges, range, matchers, how);
-    trial.geometry[1] = geometric_error(warped, edges, how);
+    score(1);
   } else {
     trial.figures[1] = trial.figures[0];
     trial.geometry[1] = trial.geometry[0];
@@ -144,13 +149,7 @@ RectifiedPair without_own_field(const Scene& scene) {
                                : scene.pair.right};
 }
 
-/// Mean of one figure over a cell, with the interval of resampled scenes; of resampled draws where
-/// there is one scene. Scenes and draws without it are left out.
-struct Summary {
-  double mean = NAN;
-  Interval interval{NAN, NAN};
-};
-
+/// Not a number of none.
 double mean_of_numbers(const std::vector<double>& values) {
   double sum = 0;
   int count = 0;
@@ -162,7 +161,11 @@ double mean_of_numbers(const std::vector<double>& values) {
   return count > 0 ? sum / count : NAN;
 }
 
-Summary summary(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+/// A figure of every scene, or of every draw where there is one scene; without those that have
+/// none.
+std::vector<double> clusters_of(const ErrorCell& cell,
+                                std::size_t matcher,
+                                double DrawFigures::*figure) {
   std::vector<double> clusters;
   for (const auto& scene : cell.figures) {
     std::vector<double> draws;
@@ -174,6 +177,15 @@ Summary summary(const ErrorCell& cell, std::size_t matcher, double DrawFigures::
     }
   }
   std::erase_if(clusters, [](double value) { return std::isnan(value); });
+  return clusters;
+}
+
+double mean_of(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+  return mean_of_numbers(clusters_of(cell, matcher, figure));
+}
+
+Interval interval_of(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+  const std::vector<double> clusters = clusters_of(cell, matcher, figure);
   const Interval interval = cluster_interval(static_cast<int>(clusters.size()),
                                              [&](std::span<const std::size_t> drawn) {
                                                double sum = 0;
@@ -181,7 +193,7 @@ Summary summary(const ErrorCell& cell, std::size_t matcher, double DrawFigures::
                                                return sum / static_cast<double>(drawn.size());
                                              },
                                              {.resamples = 1999});
-  return {mean_of_numbers(clusters), {std::fmax(0, interval.low), interval.high}};
+  return {std::fmax(0, interval.low), interval.high};
 }
 
 double rms(const std::vector<double>& values) {
@@ -189,8 +201,6 @@ double rms(const std::vector<double>& values) {
   for (const double v : values) squares.push_back(v * v);
   return std::sqrt(mean_of_numbers(squares));
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json interval_json(const Interval& interval) {
   if (!std::isfinite(interval.high)) return Json();
@@ -209,9 +219,8 @@ std::string percent(double share) {
 std::string pixels(double px) { return std::isnan(px) ? "-" : fmt::format("{:.3f}", px); }
 
 std::string line_of(const ErrorCell& cell, std::size_t m, const std::string& matcher) {
-  const auto mean = [&](double DrawFigures::*figure) { return summary(cell, m, figure).mean; };
-  const Summary mismatch = summary(cell, m, &DrawFigures::mismatch);
-  const Json interval = interval_json(mismatch.interval);
+  const auto mean = [&](double DrawFigures::*figure) { return mean_of(cell, m, figure); };
+  const Json interval = interval_json(interval_of(cell, m, &DrawFigures::mismatch));
   const std::string range = interval.is_null()
                                 ? "-"
                                 : fmt::format("{:.2f} … {:.2f} %", 100 * interval[0].get<double>(),
@@ -220,8 +229,8 @@ std::string line_of(const ErrorCell& cell, std::size_t m, const std::string& mat
   return fmt::format("{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n",
                      error_name(cell), repair, pixels(rms(cell.bias_rms_px)),
                      pixels(rms(cell.rows_rms_px)), matcher, percent(mean(&DrawFigures::density)),
-                     percent(mean(&DrawFigures::bad_1)), percent(mismatch.mean), range,
-                     pixels(mean(&DrawFigures::disparity_error_rms_px)));
+                     percent(mean(&DrawFigures::bad_1)), percent(mean(&DrawFigures::mismatch)),
+                     range, pixels(mean(&DrawFigures::disparity_error_rms_px)));
 }
 
 }  // namespace
@@ -306,16 +315,19 @@ Json EvaluationUnderError::json() const {
   for (const ErrorCell& cell : cells_) {
     Json matchers = Json::object();
     for (std::size_t m = 0; m < matchers_.size(); ++m) {
-      const Summary density = summary(cell, m, &DrawFigures::density);
-      const Summary mismatch = summary(cell, m, &DrawFigures::mismatch);
+      const auto mean = [&](double DrawFigures::*figure) {
+        return json_number(mean_of(cell, m, figure));
+      };
+      const auto interval = [&](double DrawFigures::*figure) {
+        return interval_json(interval_of(cell, m, figure));
+      };
       matchers[matchers_[m].name] = {
-          {"density", number(density.mean)},
-          {"density_interval_95", interval_json(density.interval)},
-          {"bad_1", number(summary(cell, m, &DrawFigures::bad_1).mean)},
-          {"mismatch", number(mismatch.mean)},
-          {"mismatch_interval_95", interval_json(mismatch.interval)},
-          {"disparity_error_rms_px",
-           number(summary(cell, m, &DrawFigures::disparity_error_rms_px).mean)}};
+          {"density", mean(&DrawFigures::density)},
+          {"density_interval_95", interval(&DrawFigures::density)},
+          {"bad_1", mean(&DrawFigures::bad_1)},
+          {"mismatch", mean(&DrawFigures::mismatch)},
+          {"mismatch_interval_95", interval(&DrawFigures::mismatch)},
+          {"disparity_error_rms_px", mean(&DrawFigures::disparity_error_rms_px)}};
     }
     cells.push_back({{"psi_c", cell.psi_c},
                      {"rows_moved_px", cell.rows_px},
@@ -323,8 +335,8 @@ Json EvaluationUnderError::json() const {
                      {"pairs", cell.pairs},
                      {"repaired", cell.repaired},
                      {"not_physical", cell.not_physical},
-                     {"geometric_bias_rms_px", number(rms(cell.bias_rms_px))},
-                     {"rows_rms_px", number(rms(cell.rows_rms_px))},
+                     {"geometric_bias_rms_px", json_number(rms(cell.bias_rms_px))},
+                     {"rows_rms_px", json_number(rms(cell.rows_rms_px))},
                      {"matchers", matchers}});
   }
   return {{"draws", options_.draws}, {"seed", options_.seed}, {"rigs", rigs_}, {"cells", cells}};

@@ -94,8 +94,9 @@ EvaluationAtEqualDensity::EvaluationAtEqualDensity(const std::vector<Matcher>& m
 void EvaluationAtEqualDensity::add(const Scene& scene,
                                    const std::vector<Run>& runs,
                                    const EvaluationOptions& how) {
+  const std::vector<CurvePoint> own = by_confidence(scene, runs.front(), how);
   for (std::size_t p = 0; p < peers_.size(); ++p) {
-    SceneCurves curves{by_confidence(scene, runs.front(), how), {}};
+    SceneCurves curves{own, {}};
     for (const auto& sweep : peers_[p].sweeps) curves.peer.push_back(by_sweep(scene, sweep, how));
     if (peers_[p].sweeps.empty()) curves.peer.push_back(by_confidence(scene, runs[p + 1], how));
     const bool something =
@@ -114,7 +115,6 @@ Json EvaluationAtEqualDensity::json() const {
   for (const Peer& peer : peers_) {
     if (peer.scenes.empty()) continue;
     const EqualDensity e = at_equal_density(peer.scenes);
-    const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
     const bool cut = !peer.sweeps.empty() || states_confidence(peer.scenes);
     peers[peer.name] = {
         {"setting", cut ? peer.settings[e.setting] : "as it is: states no confidence"},
@@ -123,8 +123,8 @@ Json EvaluationAtEqualDensity::json() const {
         {"density", e.density},
         {"bad_1", e.own_bad_1},
         {"peer_bad_1", e.peer_bad_1},
-        {"ratio", number(e.ratio)},
-        {"ratio_interval_95", {number(e.interval.low), number(e.interval.high)}}};
+        {"ratio", json_number(e.ratio)},
+        {"ratio_interval_95", {json_number(e.interval.low), json_number(e.interval.high)}}};
   }
   return {{"matcher", matchers_.front().name}, {"against", peers}};
 }
@@ -145,12 +145,11 @@ Json EvaluationAtEqualDensity::curves() const {
   return curves;
 }
 
-std::string EvaluationAtEqualDensity::text() const {
-  const Json all = json();
+std::string EvaluationAtEqualDensity::text(const Json& json) {
   std::string text;
-  for (const auto& [name, e] : all.at("against").items()) {
+  for (const auto& [name, e] : json.at("against").items()) {
     text += fmt::format("at equal density {:.4f}: {} bad 1 {:.2f} %, {} ({}) {:.2f} %",
-                        e.at("density").get<double>(), matchers_.front().name,
+                        e.at("density").get<double>(), json.at("matcher").get<std::string>(),
                         100 * e.at("bad_1").get<double>(), name, e.at("setting").get<std::string>(),
                         100 * e.at("peer_bad_1").get<double>());
     if (e.at("ratio").is_number()) {

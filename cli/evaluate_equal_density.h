@@ -23,7 +23,8 @@ class EvaluationAtEqualDensity {
   Json json() const;
   /// Points (density, bad 1, mismatch) of each matcher's curve, means over the scenes.
   Json curves() const;
-  std::string text() const;
+  /// What json() says, in lines.
+  static std::string text(const Json& json);
 
  private:
   struct Peer {

@@ -13,6 +13,7 @@
 #include "cli/share_folder.h"
 #include "cli/spare_inputs.h"
 #include "cli/vertical_field_json.h"
+#include "stereo/matrix_of.h"
 #include "stereo/rectification_covariance.h"
 #include "stereo/rectified_images.h"
 #include "stereo/vertical_field.h"
@@ -130,10 +131,8 @@ void judge(const Rectified& rectified,
 }
 
 std::string png(const GreyLevels& image) {
-  const cv::Mat values(image.height_px, image.width_px, CV_32F,
-                       const_cast<float*>(image.values.data()));
   cv::Mat bytes;
-  values.convertTo(bytes, CV_8U);
+  matrix_of(image).convertTo(bytes, CV_8U);
   return png_of(bytes);
 }
 

@@ -97,6 +97,8 @@ CLI::App* add_verb(CLI::App& app,
   return verb;
 }
 
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
 std::pair<int, int> parse_size(const std::string& text, const std::string& option) {
   int a = 0, b = 0;
   const char* end = text.data() + text.size();

@@ -16,6 +16,9 @@ namespace vernier::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// A number, or null where it is not finite, which JSON cannot say.
+Json json_number(double value);
+
 /// Exit codes of the program (docs/conventions.md).
 enum class Exit { done = 0, internal_error = 1, bad_input = 2, doubtful = 3 };
 

@@ -40,8 +40,6 @@ Json value_json(const std::string& text) {
   return end != text.c_str() && *end == '\0' ? Json(value) : Json(text);
 }
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 }  // namespace
 
 Study load_study(const fs::path& file, Session& session) {
@@ -97,14 +95,15 @@ Json cell_json(const CellResult& cell) {
           {"node_success", s.node_success},
           {"recall_0_5m_5deg", s.recall_05},
           {"recall_0_25m_2deg", s.recall_025},
-          {"median_error_m", finite(s.median_error_m)},
-          {"median_heading_error_deg", finite(s.median_heading_error_rad * 180 / std::numbers::pi)},
+          {"median_error_m", json_number(s.median_error_m)},
+          {"median_heading_error_deg",
+           json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
           {"cpu_ms_mean", s.cpu_ms_mean},
-          {"cpu_ms_median", finite(s.cpu_ms_median)},
-          {"cpu_ms_p95", finite(s.cpu_ms_p95)},
+          {"cpu_ms_median", json_number(s.cpu_ms_median)},
+          {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
           {"wall_ms_mean", s.wall_ms_mean},
           {"protocol", name(cell.cell.experiment.protocol)},
-          {"world_ceiling", finite(cell.ceiling)}};
+          {"world_ceiling", json_number(cell.ceiling)}};
 }
 
 Json study_json(const Study& study, const StudyResults& results) {

@@ -7,8 +7,6 @@
 namespace vernier::cli {
 namespace {
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json distance(double distance_m) { return std::isinf(distance_m) ? Json("inf") : Json(distance_m); }
 
 /// Five significant digits, so that a page stays small.
@@ -19,7 +17,7 @@ Json matrix(const Matrix& m) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(finite(m(i, j)));
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(json_number(m(i, j)));
     rows.push_back(std::move(row));
   }
   return rows;
@@ -28,7 +26,7 @@ Json matrix(const Matrix& m) {
 template <typename Vector>
 Json vector(const Vector& v) {
   Json list = Json::array();
-  for (Eigen::Index i = 0; i < v.size(); ++i) list.push_back(finite(v[i]));
+  for (Eigen::Index i = 0; i < v.size(); ++i) list.push_back(json_number(v[i]));
   return list;
 }
 
@@ -82,17 +80,17 @@ Json projection_json(const ProjectionReport& report, GridDetail detail) {
             {"fixed_to", fixed_to_label(report.fixed_to)},
             {"distance_m",
              report.fixed_to == PointFixedTo::camera ? Json("any") : distance(report.distance_m)},
-            {"mean_sd_px", finite(report.mean_sd_px)},
-            {"worst_sd_px", finite(report.worst_sd_px)},
+            {"mean_sd_px", json_number(report.mean_sd_px)},
+            {"worst_sd_px", json_number(report.worst_sd_px)},
             {"worst_at_px", vector(report.worst_at_px)},
             {"points", Json::array()}};
   for (const ProjectionFigure& figure : report.figures) {
     json["points"].push_back(
         {{"where", figure.place.name},
          {"pixel_px", vector(figure.place.pixel_px)},
-         {"sd_linear_px", figure.linear ? finite(worst_sd(*figure.linear)) : Json(nullptr)},
+         {"sd_linear_px", figure.linear ? json_number(worst_sd(*figure.linear)) : Json(nullptr)},
          {"sd_sampled_px",
-          figure.linear ? finite(worst_sd(figure.sampled.covariance)) : Json(nullptr)},
+          figure.linear ? json_number(worst_sd(figure.sampled.covariance)) : Json(nullptr)},
          {"covariance_linear_px2", figure.linear ? matrix(*figure.linear) : Json(nullptr)},
          {"covariance_sampled_px2",
           figure.linear ? matrix(figure.sampled.covariance) : Json(nullptr)},
@@ -104,12 +102,13 @@ Json projection_json(const ProjectionReport& report, GridDetail detail) {
 }
 
 Json sampled_json(const SampledPoint& sampled) {
-  return {{"sd_m", deviations(sampled.covariance)},
-          {"covariance_m2", matrix(sampled.covariance)},
-          {"mean_shift_m", vector(sampled.mean_shift_m)},
-          {"depth_interval_95_m",
-           {finite(sampled.depth_interval_95_m[0]), finite(sampled.depth_interval_95_m[1])}},
-          {"non_physical_share", sampled.non_physical_share}};
+  return {
+      {"sd_m", deviations(sampled.covariance)},
+      {"covariance_m2", matrix(sampled.covariance)},
+      {"mean_shift_m", vector(sampled.mean_shift_m)},
+      {"depth_interval_95_m",
+       {json_number(sampled.depth_interval_95_m[0]), json_number(sampled.depth_interval_95_m[1])}},
+      {"non_physical_share", sampled.non_physical_share}};
 }
 
 Json triangulation_json(const TriangulationReport& report) {
@@ -135,18 +134,18 @@ Json disparity_json(const DisparityReport& report, GridDetail detail) {
   Json json{{"camera", report.camera},
             {"distance_m", distance(report.distance_m)},
             {"rectified_f_px", map.rectified_f_px},
-            {"rms_px", finite(map.rms_px)},
-            {"mean_sd_px", finite(map.mean_sd_px)},
-            {"rms_less_mean_px", finite(map.rms_less_mean_px)},
-            {"rms_less_affine_px", finite(map.rms_less_affine_px)},
-            {"worst_sd_px", finite(report.worst_sd_px)},
+            {"rms_px", json_number(map.rms_px)},
+            {"mean_sd_px", json_number(map.mean_sd_px)},
+            {"rms_less_mean_px", json_number(map.rms_less_mean_px)},
+            {"rms_less_affine_px", json_number(map.rms_less_affine_px)},
+            {"worst_sd_px", json_number(report.worst_sd_px)},
             {"points", Json::array()}};
   for (const DisparityFigure& figure : report.figures) {
     json["points"].push_back({{"where", figure.place.name},
                               {"pixel_px", vector(figure.place.pixel_px)},
                               {"sd_linear_px", figure.linear_sd_px},
-                              {"sd_sampled_px", finite(figure.sampled.sd_px)},
-                              {"mean_sampled_px", finite(figure.sampled.mean_px)},
+                              {"sd_sampled_px", json_number(figure.sampled.sd_px)},
+                              {"mean_sampled_px", json_number(figure.sampled.mean_px)},
                               {"non_physical_share", figure.sampled.non_physical_share}});
   }
   json["grid"] = {{"columns", map.columns},
@@ -164,9 +163,9 @@ Json depth_json(const DepthReport& report) {
   for (const DepthUncertainty& u : report.ranges) {
     json["ranges"].push_back(
         {{"range_m", u.range_m},
-         {"sd_linear_m", finite(u.sigma_linear_m)},
-         {"sd_sampled_m", finite(u.sigma_sampled_m)},
-         {"interval_95_m", {finite(u.interval_95_m[0]), finite(u.interval_95_m[1])}},
+         {"sd_linear_m", json_number(u.sigma_linear_m)},
+         {"sd_sampled_m", json_number(u.sigma_sampled_m)},
+         {"interval_95_m", {json_number(u.interval_95_m[0]), json_number(u.interval_95_m[1])}},
          {"non_physical_share", u.non_physical_share}});
   }
   return json;

@@ -10,8 +10,6 @@
 #include "stereo/matcher_evaluation.h"
 
 namespace vernier {
-namespace {}  // namespace
-
 std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const std::vector<EdgeDisparity>& found,
                                     const StereoTruth& truth,

@@ -9,18 +9,10 @@
 #include "stereo/map_window.h"
 #include "stereo/matcher_input.h"
 #include "stereo/matrix_of.h"
+#include "stereo/stretched_image.h"
 
 namespace vernier {
 namespace {
-
-GreyLevels mirrored(const GreyLevels& image) {
-  GreyLevels mirror = image;
-  for (int y = 0; y < image.height_px; ++y) {
-    const auto row = mirror.values.begin() + static_cast<long>(y) * image.width_px;
-    std::reverse(row, row + image.width_px);
-  }
-  return mirror;
-}
 
 DisparityMap mirrored(DisparityMap map) {
   for (int y = 0; y < map.height_px; ++y) {

@@ -14,8 +14,8 @@ constexpr double mismatch_px = 3;
 
 GeometricError geometric_error(const WarpedPair& warped,
                                const std::vector<EdgePoint>& edges,
+                               const std::vector<TruthAtEdge>& truth,
                                const EvaluationOptions& options) {
-  const std::vector<TruthAtEdge> truth = truth_at(warped, edges);
   double sum = 0, squares = 0, rows = 0;
   int count = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -34,9 +34,9 @@ GeometricError geometric_error(const WarpedPair& warped,
 
 WarpedScore evaluate(const WarpedPair& warped,
                      const std::vector<EdgePoint>& edges,
+                     const std::vector<TruthAtEdge>& truth,
                      const std::vector<EdgeDisparity>& found,
                      const EvaluationOptions& options) {
-  const std::vector<TruthAtEdge> truth = truth_at(warped, edges);
   const int width = warped.pair.left.width_px;
   WarpedScore result{evaluate(edges, found, truth, width, options), 0, 0};
   double squares = 0;

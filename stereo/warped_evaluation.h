@@ -27,13 +27,16 @@ struct WarpedScore {
   int right = 0;  ///< how many those are
 };
 
+/// `truth` is truth_at(warped, edges).
 GeometricError geometric_error(const WarpedPair& warped,
                                const std::vector<EdgePoint>& edges,
+                               const std::vector<TruthAtEdge>& truth,
                                const EvaluationOptions& options = {});
 
 /// Throws Error where edges and disparities are not of one number.
 WarpedScore evaluate(const WarpedPair& warped,
                      const std::vector<EdgePoint>& edges,
+                     const std::vector<TruthAtEdge>& truth,
                      const std::vector<EdgeDisparity>& found,
                      const EvaluationOptions& options = {});
 

@@ -14,12 +14,12 @@ namespace {
 constexpr double beyond_px = 3, beyond_corner_px = 9;  // ends from the last points shown
 
 /// A straight line through (s, d).
-struct DisparityLine {
+struct TruthLine {
   double at_zero = 0, slope = 0, rms = 0;
   double operator()(double s) const { return at_zero + slope * s; }
 };
 
-std::optional<DisparityLine> line_through(const std::vector<Eigen::Vector2d>& values) {
+std::optional<TruthLine> line_through(const std::vector<Eigen::Vector2d>& values) {
   if (values.size() < 4) return std::nullopt;
   const auto n = static_cast<double>(values.size());
   Eigen::Vector2d mean(0, 0);
@@ -32,7 +32,7 @@ std::optional<DisparityLine> line_through(const std::vector<Eigen::Vector2d>& va
     dd += e.y() * e.y();
   }
   if (!(ss > 0)) return std::nullopt;
-  DisparityLine line;
+  TruthLine line;
   line.slope = sd / ss;
   line.at_zero = mean.y() - line.slope * mean.x();
   line.rms = std::sqrt(std::max(0.0, dd - line.slope * sd) / (n - 2));

@@ -143,7 +143,15 @@ std::vector<Run> run_scene(const Scene& scene,
                            const std::vector<Matcher>& matchers,
                            const EvaluationOptions& how,
                            Report& report) {
-  Json json{{"name", scene.file.name}, {"edges", scene.edges.size()}, {"matchers", Json::object()}};
+  Json json{{"name", scene.file.name},
+            {"left", scene.file.left.string()},
+            {"truth", scene.file.truth.string()},
+            {"truth_scale", scene.file.truth_scale},
+            {"truth_kind", name(scene.file.truth_kind)},
+            {"least_px", scene.file.range.least_px},
+            {"most_px", scene.file.range.most_px},
+            {"edges", scene.edges.size()},
+            {"matchers", Json::object()}};
   std::vector<Run> runs;
   for (std::size_t m = 0; m < matchers.size(); ++m) {
     runs.push_back(run_matcher(matchers[m], scene, how));

@@ -81,6 +81,9 @@ class Evaluate(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         said = json.loads(done.stdout)
         self.assertEqual(list(said['matchers']), ['edge', 'bm', 'sgbm'])
+        scene, = said['scenes']
+        self.assertEqual((scene['left'], scene['truth'], scene['truth_scale'], scene['most_px']),
+                         ('left.pgm', 'truth.pgm', 4, 24))
         for name, score in said['matchers'].items():
             for key in ('density', 'bad_0_5', 'bad_1', 'bad_2', 'mismatch', 'rms_inlier_px',
                         'time_ms'):

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <tuple>
 
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
@@ -60,11 +63,16 @@ PlaneScore score(test::LeafPlane plane, int pairs) {
     result.worst_bin_px =
         std::max(result.worst_bin_px, std::sqrt(bin_squares[bin] / bin_count[bin]));
   }
-  testing::Test::RecordProperty("density", std::to_string(result.density));
-  testing::Test::RecordProperty("bad_1", std::to_string(result.bad_1));
-  testing::Test::RecordProperty("rms_px", std::to_string(result.rms_px));
-  testing::Test::RecordProperty("z", std::to_string(result.z));
-  testing::Test::RecordProperty("worst_bin_px", std::to_string(result.worst_bin_px));
+  char name[64];
+  std::snprintf(name, sizeof name, "by_x_%+.2f_by_y_%+.2f_", plane.by_x, plane.by_y);
+  const auto record = [&](const char* what, double value) {
+    testing::Test::RecordProperty(std::string(name) + what, std::to_string(value));
+  };
+  record("density", result.density);
+  record("bad_1", result.bad_1);
+  record("rms_px", result.rms_px);
+  record("z", result.z);
+  record("worst_bin_px", result.worst_bin_px);
   return result;
 }
 
@@ -101,6 +109,17 @@ TEST(EdgeMatcher, FollowsFloors) {
     const PlaneScore floor = score({.disparity_px = 110, .by_y = by_y}, 2);
     EXPECT_GT(floor.density, 0.92) << by_y;
     EXPECT_LT(floor.bad_1, 0.02) << by_y;
+  }
+}
+
+/// Disparity gradient 0.86 where the right image is the wider one, and where the plane leans: worse
+/// than is asked for (docs/results.md), and no worse than this.
+TEST(EdgeMatcher, FollowsTheSteepestPlanesLessWell) {
+  for (const auto& [disparity_px, by_x, by_y] :
+       {std::tuple{150.0, -1.5, 0.0}, {110.0, 0.0, 0.86}, {110.0, 0.0, -0.86}}) {
+    const PlaneScore s = score({.disparity_px = disparity_px, .by_x = by_x, .by_y = by_y}, 3);
+    EXPECT_GT(s.density, 0.92) << by_x << ' ' << by_y;
+    EXPECT_LT(s.bad_1, 0.06) << by_x << ' ' << by_y;
   }
 }
 

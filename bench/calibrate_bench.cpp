@@ -5,7 +5,9 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/opencv_models.h"
 #include "calib/simulated_board.h"
 #include "datasets/shipped.h"
 

@@ -35,7 +35,7 @@ inline Counted at_least(Counted a, Counted b) { return counted(std::fmax(a.value
 inline Counted sqrt(Counted a) { return counted(std::sqrt(a.value)); }
 inline Counted atan(Counted a) { return counted(std::atan(a.value)); }
 
-#include "calib/corner_formulas.h"
+#include "calib/camera/corner_formulas.inc"
 
 /// Operations of one corner's rows of the system.
 template <class Model>

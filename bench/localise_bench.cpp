@@ -6,15 +6,27 @@
 
 #include <cmath>
 
-#include "calib/random.h"
+#include "calib/base/instruction_set.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/random.h"
 #include "datasets/shipped.h"
 #include "localise/bhattacharyya.h"
-#include "localise/rank.h"
+#include "localise/localiser.h"
+#include "localise/pgh.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
 #include "sim/experiment.h"
+#include "sim/query_protocol.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 
 namespace {
 
 using namespace vernier;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::localise::internal;
+using namespace vernier::sim;
 
 /// 80 lines of a query against 80 of a node, 720 bins, as in the defaults.
 HistogramRows rows(std::uint64_t seed, int count) {
@@ -28,7 +40,7 @@ HistogramRows rows(std::uint64_t seed, int count) {
 void kernel(benchmark::State& state) {
   const HistogramRows Q = rows(1, 80), S = rows(2, 80);
   for (auto _ : state) benchmark::DoNotOptimize(best_matches(Q, S));
-  state.SetLabel(std::string(target_name()));
+  state.SetLabel(std::string(instruction_set()));
 }
 
 void eigen_product(benchmark::State& state) {

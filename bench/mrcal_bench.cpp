@@ -7,14 +7,15 @@
 #include <map>
 
 #include "bench/mrcal_problem_set.h"
-#include "calib/minimise_reprojection.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_solver.h"
-#include "calib/resolve.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/resolve.h"
 
 namespace {
 
 using namespace vernier;
+using namespace vernier::internal;
 
 const bench::StereoProblem& problem(int frames) {
   static std::map<int, bench::StereoProblem> problems;

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "bench/mrcal_problem_set.h"
-#include "calib/minimise_reprojection.h"
 #include "calib/mrcal/mrcal_solver.h"
-#include "calib/resolve.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/resolve.h"
 
 namespace {
 
@@ -27,6 +27,7 @@ double status_mib(const std::string& key) {
 
 int main(int argc, char** argv) {
   using namespace vernier;
+  using namespace vernier::internal;
   if (argc != 3) return 2;
   const std::string solver = argv[1];
   const bench::StereoProblem p = bench::stereo_problem(std::atoi(argv[2]));

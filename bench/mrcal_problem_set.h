@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "datasets/shipped.h"
 

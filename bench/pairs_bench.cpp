@@ -6,14 +6,21 @@
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
-#include "calib/epipolar_system.h"
-#include "calib/resolve_pairs.h"
-#include "calib/simulated_pairs.h"
+#include "calib/camera.h"
+#include "calib/estimate/simulated_pairs.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
 #include "tests/support/jet_sampson.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 RigPrior prior_of(const Rig& mean) {

@@ -6,10 +6,16 @@
 
 #include <memory>
 
-#include "calib/parameter_buffer.h"
-#include "calib/view_linearisation.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/solver/parameter_buffer.h"
 
 namespace vernier {
+
+using namespace internal;
 
 /// A calibration as a Ceres user writes it, one analytic block of all residuals a view, for
 /// ceres::Covariance.

@@ -13,17 +13,27 @@
 #include "bench/counted_operations.h"
 #include "bench/fma_peak.h"
 #include "bench/plain_problem.h"
-#include "calib/covariance.h"
+#include "calib/base/instruction_set.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_solver.h"
-#include "calib/packed_views.h"
-#include "calib/resolve.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/resolve.h"
+#include "calib/solver/view_kernel.h"
 #include "datasets/shipped.h"
 
 namespace {
 
 using namespace vernier;
+using namespace vernier::internal;
 
 struct Scene {
   SimulatedBoard board;
@@ -199,7 +209,7 @@ void corner_sums(benchmark::State& state) {
   state.counters["corners"] = benchmark::Counter(corners, benchmark::Counter::kIsRate);
   state.counters["flops"] =
       benchmark::Counter((rows + products) * corners, benchmark::Counter::kIsRate);
-  state.SetLabel(kernel_target_name());
+  state.SetLabel(std::string(instruction_set()));
 }
 
 void fma_peak(benchmark::State& state) {

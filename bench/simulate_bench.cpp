@@ -3,14 +3,23 @@
 // What a simulated look costs, in parts.
 #include <benchmark/benchmark.h>
 
+#include "calib/pose.h"
+#include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
-#include "sim/ceiling.h"
+#include "localise/place.h"
+#include "sim/look.h"
 #include "sim/route.h"
 #include "sim/sense.h"
+#include "sim/study/ceiling.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 
 namespace {
 
 using namespace vernier;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 const World& world() {
   static const World world = build_world(datasets::workshop());

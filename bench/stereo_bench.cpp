@@ -8,13 +8,19 @@
 #include <opencv2/core/utility.hpp>
 
 #include "stereo/canny_edges.h"
-#include "stereo/dense_matchers.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/stretch_correlation.h"
-#include "stereo/vertical_field.h"
+#include "stereo/edge_point.h"
+#include "stereo/matching/dense_matchers.h"
+#include "stereo/matching/stretch_correlation.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 RectifiedPair scene(int disparities) {

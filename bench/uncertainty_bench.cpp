@@ -9,16 +9,23 @@
 #include <cstdlib>
 #include <limits>
 
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/opencv_models.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "calib/sampled_propagation.h"
+#include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/uncertainty/sampled_propagation.h"
 #include "datasets/shipped.h"
 
 namespace {
 
 using namespace vernier;
+using namespace vernier::internal;
 
 const RigEstimate& estimate() {
   static const RigEstimate estimate = [] {

@@ -69,10 +69,10 @@ struct ImageDetections {
 };
 
 /// Observations from the images of one or more cameras, one pattern a camera: images of the same
-/// number are one frame (calib/frame_numbering.h). Frames whose board was found by some cameras
-/// only count for those. Throws Error where a camera has no frame number in common with those
-/// before it or one twice, sizes disagree, no board is found, or more images show a board of more
-/// corners than of those asked for.
+/// number are one frame (calib/base/frame_numbering.h). Frames whose board was found by some
+/// cameras only count for those. Throws Error where a camera has no frame number in common with
+/// those before it or one twice, sizes disagree, no board is found, or more images show a board of
+/// more corners than of those asked for.
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target);
 
 /// A corners file of all the images, with a line of dashes for each that was refused.

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "calib/board_target.h"
-
 namespace vernier {
 
 /// What one camera saw of the target in one frame.

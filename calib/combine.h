@@ -6,8 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "calib/covariance.h"
 #include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
 #include "calib/prior_agreement.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
 namespace vernier {
 

@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "calib/sampler.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
 namespace vernier {
 

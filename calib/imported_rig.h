@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 
 namespace vernier {

@@ -10,6 +10,7 @@
 #include "calib/observability.h"
 #include "calib/pair_observations.h"
 #include "calib/prior_agreement.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 
@@ -49,15 +50,15 @@ struct JointCalibration {
 ///     χ²(a) = Σ (a − a_0)ᵀ C_0⁻¹ (a − a_0) + Σ_boards r(a)ᵀ r(a) / σ² + Σ_pairs ρ(r_i(a) / s)
 ///
 /// by Ceres, from `start`; r the reprojection residuals of the boards and the Sampson residual of
-/// the pairs (calib/epipolar_formulas.h). Pairs count by Huber's loss first, then by Tukey's with
-/// limit 5, both by iterated weights and balanced against the quadratic terms (calib/loss.h); one
-/// whose weight is 0 in the end is an outlier, listed and not counted. Covariance: the sandwich A⁻¹
-/// (B + P) A⁻¹ of that minimum, A = P + m Σ J Jᵀ
-/// (calib/pair_equations.h), B the scatter of the scores clustered by
-/// frame and image pair; its small-sample form (calib/small_sample_covariance.h) below three
-/// clusters a parameter. Fewer than three image pairs and no board are split into cells of 4 x 4 of
-/// the left image, which takes noise of different cells for independent. `covariance_mvb` is the
-/// bound of the inliers.
+/// the pairs (calib/solver/epipolar_formulas.inc). Pairs count by Huber's loss first, then by Tukey's
+/// with limit 5, both by iterated weights and balanced against the quadratic terms
+/// (calib/solver/loss.h); one whose weight is 0 in the end is an outlier, listed and not counted.
+/// Covariance: the sandwich A⁻¹ (B + P) A⁻¹ of that minimum, A = P + m Σ J Jᵀ
+/// (calib/solver/pair_equations.h), B the scatter of the scores clustered by
+/// frame and image pair; its small-sample form (calib/calibration/small_sample_covariance.h) below
+/// three clusters a parameter. Fewer than three image pairs and no board are split into cells of 4
+/// x 4 of the left image, which takes noise of different cells for independent. `covariance_mvb` is
+/// the bound of the inliers.
 ///
 /// Throws Error where the terms leave a direction free (naming it), or do not belong to one rig.
 JointCalibration calibrate_jointly(const JointEvidence& evidence,

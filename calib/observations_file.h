@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "calib/board_observations.h"
+#include "calib/board_target.h"
 
 namespace vernier {
 
@@ -44,7 +46,7 @@ void write_corners(const BoardObservations& observations,
 /// How an image belongs to a rig by its name.
 struct ImageName {
   std::string camera;      ///< the name without its last number
-  std::int64_t frame = 0;  ///< the last number (calib/frame_numbering.h)
+  std::int64_t frame = 0;  ///< the last number (calib/base/frame_numbering.h)
 };
 
 /// Throws Error for a name without a number, or with one of more than 18 digits.

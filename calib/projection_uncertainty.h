@@ -6,7 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "calib/pose_covariance.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
 
 namespace vernier {
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/covariance.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
 namespace vernier {

@@ -2,16 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calib/board_observations.h"
 #include "calib/covariance.h"
-#include "calib/outliers.h"
 #include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
 
 namespace vernier {
+
+/// A corner left out of a calibration.
+struct CornerOutlier {
+  int frame = 0, camera = 0, id = 0;
+  std::string image;
+  Eigen::Vector2d pixel_px{0, 0};
+  double residual_px = 0;  ///< its distance from where the final calibration predicts it
+};
 
 /// A matched pair left out of a calibration.
 struct PairOutlier {
@@ -43,7 +55,7 @@ struct CalibrationEvidence {
   BoardObservations observations;
   std::vector<int> frames;           ///< ascending
   std::vector<Pose> T_first_board;   ///< one a frame
-  Eigen::Vector2d warp_m{0, 0};      ///< of the board (calib/board_warp.h)
+  Eigen::Vector2d warp_m{0, 0};      ///< of the board (calib/board/board_warp.h)
   PairObservations pairs;            ///< matched corners, outliers and all
   std::vector<RigKnowledge> priors;  ///< what was known before the rest
 };
@@ -66,11 +78,26 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
 /// Where the estimate has no covariance none is. A rig file lists the others.
 std::vector<bool> held_parameters(const RigEstimate& estimate);
 
-/// The covariance over the parameters that are not held. Throws Error(`place`) where there is none.
+/// The covariance over the parameters that are not held. Throws Error(`place`) where there is
+/// none.
 RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place);
 
-/// Names the cameras otherwise, one name a camera, wherever the estimate says them: the covariance
-/// and the held parameters too. Throws Error where they are too few or many, or not different.
+/// Names the cameras otherwise, one name a camera, wherever the estimate says them: the
+/// covariance and the held parameters too. Throws Error where they are too few or many, or not
+/// different.
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names);
+
+/// Which of an estimate's two covariances is meant: the honest one (what is sampled) or the
+/// minimum variance bound (what mrcal reports).
+enum class CovarianceChoice { honest, mvb };
+
+/// honest is the estimate's `covariance`, mvb its `covariance_mvb` (or the former where that is
+/// of kind mvb); nothing where it has no such.
+std::optional<Covariance> chosen_covariance(const RigEstimate& estimate, CovarianceChoice choice);
+
+/// The same; throws Error(`place`) where it has no such.
+Covariance required_covariance(const RigEstimate& estimate,
+                               CovarianceChoice choice,
+                               const std::string& place);
 
 }  // namespace vernier

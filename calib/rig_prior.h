@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "calib/covariance.h"
+#include "calib/rig.h"
 
 namespace vernier {
 

@@ -4,7 +4,10 @@
 
 #include <cstdint>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
+#include "calib/rig.h"
 
 namespace vernier {
 

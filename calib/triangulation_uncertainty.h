@@ -5,7 +5,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "calib/pose_covariance.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
 #include "calib/triangulation.h"
 
 namespace vernier {
@@ -32,7 +33,7 @@ struct TriangulatedPoint {
 ///     δx = J_a δa − (w × x + u)
 ///
 /// because a rig whose frame turns with its errors sees the room turn too: this is mrcal's
-/// stabilize_coords=True, through the six numbers of calib/pose_covariance.h.
+/// stabilize_coords=True, through the six numbers of calib/uncertainty/pose_covariance.h.
 class TriangulationUncertainty {
  public:
   TriangulationUncertainty(const RigAndBoards& joint, TriangulationFrame frame, int other = 1);

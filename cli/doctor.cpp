@@ -6,14 +6,17 @@
 
 #include <Eigen/Core>
 #include <cstdlib>
+#include <filesystem>
 #include <opencv2/core/version.hpp>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "calib/base/instruction_set.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_uncertainty.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "localise/bhattacharyya.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {
@@ -82,7 +85,7 @@ std::vector<Finding> findings() {
   return {
       {"vernier", VERNIER_VERSION},
       {"compiler", __VERSION__},
-      {"instruction set of kernels", std::string(target_name())},
+      {"instruction set of kernels", std::string(instruction_set())},
       {"processors", std::to_string(std::thread::hardware_concurrency())},
       {"Ceres", CERES_VERSION_STRING},
       {"Eigen",

@@ -6,9 +6,12 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "calib/error.h"
-#include "cli/session.h"
+#include "cli/program/session.h"
+#include "cli/verbs.h"
 
 namespace {
 

@@ -1,14 +1,15 @@
-# vernier_module(NAME HEADERS … SOURCES … DEPENDS … PRIVATE …)
-# One static (or shared) library vernier::NAME whose headers are included as "NAME/header.h", in
-# the tree and after installation alike. DEPENDS are the modules to its left; PRIVATE libraries
-# never appear in its headers.
+# vernier_module(NAME PUBLIC … ROOMS … SOURCES … DEPENDS … PRIVATE …)
+# One static (or shared) library vernier::NAME. PUBLIC headers are installed and included as
+# "NAME/header.h", in the tree and after installation alike. ROOMS are sub-folders that add their
+# sources and internal headers to the library. DEPENDS are the modules to its left; PRIVATE
+# libraries never appear in public headers.
 function(vernier_module name)
   set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized)
-  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;ROOMS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
   add_library(${name} ${ARG_SOURCES})
   add_library(vernier::${name} ALIAS ${name})
   target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
-                                FILES ${ARG_HEADERS})
+                                FILES ${ARG_PUBLIC})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_compile_features(${name} PUBLIC cxx_std_20)
   # Products and sums are rounded one by one, so that results do not depend on how a compiler
@@ -25,4 +26,14 @@ function(vernier_module name)
   foreach(library IN LISTS ARG_PRIVATE)
     target_link_libraries(${name} PRIVATE ${library})
   endforeach()
+  foreach(room IN LISTS ARG_ROOMS)
+    add_subdirectory(${room})
+  endforeach()
+endfunction()
+
+# vernier_simd_sources(NAME FILE …): sources that include themselves once for each instruction set
+# (Highway), which they cannot do as a part of a unity build.
+function(vernier_simd_sources name)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${name}
+                              PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder / "worlds");
     std::filesystem::create_directories(folder / "rigs");
-    vernier::write_world(vernier::datasets::workshop(), folder / "worlds" / "workshop.world.toml");
+    vernier::sim::write_world(vernier::datasets::workshop(),
+                              folder / "worlds" / "workshop.world.toml");
     vernier::write_rig(vernier::datasets::nominal(), folder / "rigs" / "nominal.rig.json");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_shipped: %s\n", error.what());

@@ -3,11 +3,19 @@
 #pragma once
 
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
-#include "sim/office.h"
+#include "sim/world.h"
+#include "sim/world/office.h"
 
 /// Recipes of the shipped world and rig.
 namespace vernier::datasets {
+
+using namespace sim;
+using namespace sim::internal;
 
 /// An office floor of the memo's size, seed 1.
 inline WorldDescription workshop() {

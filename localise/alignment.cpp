@@ -6,10 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <utility>
 #include <vector>
 
-namespace vernier {
+#include "localise/place.h"
+
+namespace vernier::localise::internal {
 namespace {
 
 /// Level lines whose heights differ by more are not the same.
@@ -290,4 +294,4 @@ Alignment align(const PlaceView& query_view,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

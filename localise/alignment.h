@@ -4,7 +4,7 @@
 
 #include "localise/place.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 struct AlignmentOptions {
   double max_turn_rad = 0.61;     ///< 35 degrees either way
@@ -29,4 +29,4 @@ Alignment align(const PlaceView& query,
                 const PlaceView& node,
                 const AlignmentOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-namespace vernier {
+#include "localise/localiser.h"
+#include "localise/pgh.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+
+namespace vernier::localise::internal {
 namespace {
 
 /// Bhattacharyya coefficient of two histograms stored as square roots, computed from the
@@ -71,4 +77,4 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
   return answer;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

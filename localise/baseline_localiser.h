@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "localise/localiser.h"
+#include <vector>
 
-namespace vernier {
+#include "localise/localiser.h"
+#include "localise/pgh.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+
+namespace vernier::localise::internal {
 
 /// The memo's way as far as it is known, kept plain on purpose. See make_localiser.
 class BaselineLocaliser : public Localiser {
@@ -19,4 +24,4 @@ class BaselineLocaliser : public Localiser {
   std::vector<Pgh> histograms_;  // of the nodes' image lines, not square-rooted back
 };
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -9,9 +9,10 @@
 #include <hwy/highway.h>
 
 #include "calib/error.h"
+#include "localise/pgh.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::localise::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -78,11 +79,11 @@ void best_matches(const float* queries,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::localise::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::localise::internal {
 
 HWY_EXPORT(best_matches);
 
@@ -112,11 +113,5 @@ BestMatches best_matches(const Eigen::Ref<const HistogramRows>& queries,
   return best;
 }
 
-std::string_view target_name() {
-  // The best target that was compiled in and that this processor has.
-  const std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(targets & -targets);
-}
-
-}  // namespace vernier
+}  // namespace vernier::localise::internal
 #endif

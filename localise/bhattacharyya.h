@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string_view>
-
 #include "localise/pgh.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 /// For every row of `queries` the largest dot product with a row of `stored`, and conversely: with
 /// square-rooted unit histograms, each line's best Bhattacharyya coefficient among the other
 /// view's lines. Both matrices need the same number of columns (else Error); an empty partner
-/// gives zeros. One pass over `stored`; SIMD chosen at run time (target_name()).
+/// gives zeros. One pass over `stored`; SIMD chosen at run time (calib/base/instruction_set.h).
 struct BestMatches {
   Eigen::VectorXf of_queries;
   Eigen::VectorXf of_stored;
@@ -19,8 +17,4 @@ struct BestMatches {
 BestMatches best_matches(const Eigen::Ref<const HistogramRows>& queries,
                          const Eigen::Ref<const HistogramRows>& stored);
 
-/// The instruction set that the kernel runs on here, such as "AVX3". Results on two machines are
-/// the same to the bit only where this is the same.
-std::string_view target_name();
-
-}  // namespace vernier
+}  // namespace vernier::localise::internal

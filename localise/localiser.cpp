@@ -5,8 +5,11 @@
 #include "calib/error.h"
 #include "localise/baseline_localiser.h"
 #include "localise/pgh_localiser.h"
+#include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise {
+
+using namespace internal;
 
 std::string_view name(LocalisationStatus status) {
   switch (status) {
@@ -33,4 +36,4 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
               "use pgh or pgh_baseline");
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise

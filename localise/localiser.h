@@ -7,9 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "localise/place.h"
 #include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise {
 
 enum class LocalisationStatus {
   answered,
@@ -54,4 +55,4 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
 
 std::vector<std::string> localiser_names();
 
-}  // namespace vernier
+}  // namespace vernier::localise

@@ -5,14 +5,21 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <numeric>
 #include <vector>
 
 #include "calib/error.h"
+#include "localise/place.h"
 #include "localise/smeared_ramp.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::localise {
+
+using namespace internal;
+using namespace stereo;
+
 namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
@@ -217,4 +224,4 @@ Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& opti
                [&](int i) { return lengths[i]; });
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise

@@ -6,8 +6,9 @@
 #include <span>
 
 #include "localise/place.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::localise {
 
 using HistogramRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -43,6 +44,6 @@ Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& optio
 PghOptions image_pgh_options();
 
 /// Histograms of lines in the image plane.
-Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& options);
+Pgh image_histograms(std::span<const stereo::ImageSegment> lines, const PghOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::localise

@@ -3,11 +3,17 @@
 #include "localise/pgh_localiser.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 #include "localise/alignment.h"
+#include "localise/localiser.h"
+#include "localise/pgh.h"
+#include "localise/place.h"
 #include "localise/rank.h"
+#include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   LocalisationAnswer answer;
@@ -46,4 +52,4 @@ LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   return answer;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "localise/localiser.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 /// Rank by histograms, verify and refine by rigid alignment. See make_localiser.
 class PghLocaliser : public Localiser {
@@ -19,4 +21,4 @@ class PghLocaliser : public Localiser {
   LocaliserOptions options_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::localise {
+
+using namespace stereo;
+
 namespace {
 
 /// Whether the ends' depths differ by no more than their error explains.
@@ -87,4 +93,4 @@ PlaceView place_view(std::span<const SpaceSegment> segments,
   return view;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise

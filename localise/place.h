@@ -9,7 +9,7 @@
 #include "calib/pose.h"
 #include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::localise {
 
 /// Where a robot stands on the floor: world frame, metres; heading from +x, counter-clockwise.
 struct PlanePose {
@@ -50,16 +50,16 @@ struct PlaceLineOptions {
 
 /// What a robot knows of one place from one look: lines in space, and the image lines.
 struct PlaceView {
-  std::vector<PlaceLine> lines;           ///< reliable ones only
-  std::vector<ImageSegment> image_lines;  ///< left image, all
+  std::vector<PlaceLine> lines;                   ///< reliable ones only
+  std::vector<stereo::ImageSegment> image_lines;  ///< left image, all
 };
 
 /// Brings triangulated segments into the robot's frame. A line that may be vertical (its image
 /// nearly so and the depths of its ends equal within their error) is made exactly vertical at its
 /// mean depth: in a building that is what it is, and its tilt would be noise.
-PlaceView place_view(std::span<const SpaceSegment> segments,
-                     std::span<const StereoSegment> images,
+PlaceView place_view(std::span<const stereo::SpaceSegment> segments,
+                     std::span<const stereo::StereoSegment> images,
                      const CameraMount& mount,
                      const PlaceLineOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::localise

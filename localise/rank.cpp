@@ -3,10 +3,13 @@
 #include "localise/rank.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "localise/bhattacharyya.h"
+#include "localise/pgh.h"
+#include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 std::vector<RankedNode> rank_nodes(const TopologicalMap& map, const Pgh& query) {
   std::vector<RankedNode> ranked;
@@ -29,4 +32,4 @@ std::vector<RankedNode> rank_nodes(const TopologicalMap& map, const Pgh& query) 
   return ranked;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -4,9 +4,10 @@
 
 #include <vector>
 
+#include "localise/pgh.h"
 #include "localise/topological_map.h"
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 /// How well a node explains a query.
 struct RankedNode {
@@ -19,4 +20,4 @@ struct RankedNode {
 /// the node's lines of theirs among the query's. Ties keep the map's order.
 std::vector<RankedNode> rank_nodes(const TopologicalMap& map, const Pgh& query);
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::localise::internal {
 namespace {
 
 /// Φ and its integral z Φ(z) + φ(z), tabulated over [-8, 8]; beyond, both are their limits to
@@ -81,4 +81,4 @@ void add_smeared_ramp(
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

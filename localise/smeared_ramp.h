@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace vernier {
+namespace vernier::localise::internal {
 
 /// Adds to `bins`, which divide [0, max) evenly, the mass of a uniform density over [low, high]
 /// blurred by a Gaussian of standard deviation sigma > 0: analytically, bin by bin. Mass beyond
@@ -17,4 +17,4 @@ void add_smeared_ramp(
 /// [Φ((x-low)/σ) - Φ((x-high)/σ)] / (high - low).
 double smeared_ramp_cdf(double x, double low, double high, double sigma);
 
-}  // namespace vernier
+}  // namespace vernier::localise::internal

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/topological_map.h"
 
-namespace vernier {
+#include <utility>
+
+#include "localise/pgh.h"
+
+namespace vernier::localise {
 
 TopologicalMap make_map(std::vector<MapNode> nodes, const PghOptions& options) {
   TopologicalMap map{std::move(nodes), options, {}};
@@ -13,4 +17,4 @@ TopologicalMap make_map(std::vector<MapNode> nodes, const PghOptions& options) {
   return map;
 }
 
-}  // namespace vernier
+}  // namespace vernier::localise

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "localise/pgh.h"
+#include "localise/place.h"
 
-namespace vernier {
+namespace vernier::localise {
 
 /// A place on the map: where it was recorded and what was seen from there.
 struct MapNode {
@@ -24,4 +25,4 @@ struct TopologicalMap {
 /// Computes every node's spatial histograms.
 TopologicalMap make_map(std::vector<MapNode> nodes, const PghOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::localise

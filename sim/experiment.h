@@ -2,16 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
 #include "localise/localiser.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "sim/look.h"
 #include "sim/query_protocol.h"
 #include "sim/sense.h"
+#include "sim/sources.h"
+#include "sim/visibility.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// Which rig the map's recorder was told.
 enum class MapRig {
@@ -21,7 +29,7 @@ enum class MapRig {
 
 struct ExperimentSettings {
   SourceSettings sources;
-  CameraMount mount;
+  localise::CameraMount mount;
   QueryProtocol protocol = QueryProtocol::path;
   MapRig map_rig = MapRig::recalibrated;
   double map_spacing_m = 0.5;
@@ -33,11 +41,11 @@ struct ExperimentSettings {
 /// One localisation trial: where the robot was, what was answered, and what that cost.
 struct TrialResult {
   std::uint32_t trial = 0;
-  PlanePose truth;
-  LocalisationStatus status = LocalisationStatus::too_few_lines;
-  PlanePose answer;    ///< refined pose
-  PlanePose node;      ///< the map's node
-  double error_m = 0;  ///< of the answer on the floor; NaN without one
+  localise::PlanePose truth;
+  localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
+  localise::PlanePose answer;  ///< refined pose
+  localise::PlanePose node;    ///< the map's node
+  double error_m = 0;          ///< of the answer on the floor; NaN without one
   double node_error_m = 0;
   double heading_error_rad = 0;
   int lines = 0;              ///< in space, as the localiser had them
@@ -46,7 +54,7 @@ struct TrialResult {
   double score = 0, runner_up = 0;
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 
-  bool answered() const { return status == LocalisationStatus::answered; }
+  bool answered() const { return status == localise::LocalisationStatus::answered; }
   bool success() const { return answered() && error_m <= 1.0; }
 };
 
@@ -76,14 +84,16 @@ class LocalisationExperiment {
                                      std::uint32_t count) const;
 
   /// The map as recorded in a block, told `rig`.
-  TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
+  localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
   /// What the estimator of a trial is told.
   Rig told_rig(std::uint32_t trial) const;
   Rig told_map_rig(std::uint32_t block) const;
 
  private:
-  TrialResult run_trial(std::uint32_t trial, const Rig& told, const Localiser& localiser) const;
+  TrialResult run_trial(std::uint32_t trial,
+                        const Rig& told,
+                        const localise::Localiser& localiser) const;
   Rig draw_rig(std::uint32_t trial, bool of_map) const;
 
   const Visibility& visibility_;
@@ -94,4 +104,4 @@ class LocalisationExperiment {
   std::unique_ptr<RigSampler> sampler_;  // none where calibration error is off
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim

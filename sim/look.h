@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/visibility.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// An edge that both eyes see, without any error: ends in the true left camera's frame.
 struct SeenEdge {
@@ -28,25 +29,25 @@ struct SeenCorner {
 
 /// What there is to see from one pose: the noise-free view that all sources act on.
 struct Look {
-  PlanePose pose;
+  localise::PlanePose pose;
   std::vector<SeenEdge> edges;
   std::vector<SeenCorner> corners;
 };
 
 struct LookOptions {
-  CameraMount mount;
+  localise::CameraMount mount;
   VisibilityOptions visibility;
   bool with_corners = false;
 };
 
 /// Pose of the left camera for a robot standing at `pose`.
-Pose T_left_world(const PlanePose& pose, const CameraMount& mount);
+Pose T_left_world(const localise::PlanePose& pose, const localise::CameraMount& mount);
 
 /// Edges in the stretches that both cameras of the true rig see, at least min_length_px long in
 /// the left image. Throws Error unless the rig is a pair.
 Look look(const Visibility& visibility,
           const Rig& rig,
-          const PlanePose& pose,
+          const localise::PlanePose& pose,
           const LookOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "calib/rig.h"
+#include "sim/look.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
 #include "sim/uncertainty_source.h"
+#include "stereo/rectification.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// What a pair of cameras hands to an estimator, with the truth beside it for scoring only.
 struct StereoSighting {
-  std::vector<StereoSegment> segments;
+  std::vector<stereo::StereoSegment> segments;
   std::vector<SeenEdge> true_edges;  ///< one a segment
   std::vector<SensedCorner> corners;
 };
@@ -32,8 +39,8 @@ class Sensor {
 
  private:
   Rig rig_;
-  Rectification rectification_;
+  stereo::Rectification rectification_;
   std::vector<std::unique_ptr<UncertaintySource>> sources_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim

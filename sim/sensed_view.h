@@ -3,13 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "calib/rig.h"
 #include "sim/look.h"
 #include "stereo/rectification.h"
 #include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// An edge on its way through the sources: its true ends, and by how much each end is displaced in
 /// each eye. Ends are projected only when asked for, so that a piece cut off an edge still has its
@@ -39,13 +41,13 @@ struct SensedView {
 /// The true rig, and where in the experiment a view stands: with it every draw has its place.
 struct SensingContext {
   const Rig& rig;
-  const Rectification& rectification;
+  const stereo::Rectification& rectification;
   std::uint64_t seed = 0;
   std::uint32_t trial = 0;
   std::uint32_t frame = 0;
 };
 
 /// The edge as an eye (0 left, 1 right) sees it, displacements included.
-ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye);
+stereo::ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye);
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::sim {
 
 /// Whether both eyes see an edge's boundary displaced alike.
 enum class ShiftMode { common, independent };
@@ -45,4 +45,4 @@ void check(const SourceSettings& settings, const std::string& place);
 /// Every source off; how far they reach when on stays at its default.
 SourceSettings no_sources();
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -9,7 +9,7 @@
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// One source of geometric error. Sources act in a fixed order on the noise-free view of the true
 /// rig; each draws from its own stream, keyed by what it acts on, so that switching one on or off
@@ -27,4 +27,4 @@ class UncertaintySource {
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px);
 
-}  // namespace vernier
+}  // namespace vernier::sim

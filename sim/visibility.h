@@ -9,7 +9,7 @@
 #include "calib/pose.h"
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 struct VisibilityOptions {
   double near_m = 0.1;          ///< nothing closer along the optical axis is seen
@@ -63,4 +63,4 @@ class Visibility {
   std::unique_ptr<Index> index_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim

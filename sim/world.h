@@ -5,9 +5,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-namespace vernier {
+namespace vernier::sim {
 
 /// A straight edge of the wire frame, in metres, z up. `object` says what it belongs to.
 struct WorldSegment {
@@ -91,4 +92,4 @@ struct WorldExtent {
 };
 WorldExtent extent(const World& world);
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -7,7 +7,7 @@
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
 
 /// Reads a .world.toml (format "vernier/world", version 1; see docs/file-formats.md). Throws Error
 /// with file, line and key for anything malformed: TOML syntax, an unknown key, a wrong type, a
@@ -24,4 +24,4 @@ std::string format_world(const WorldDescription& description);
 /// Writes that text; the file appears whole, by rename, or not at all.
 void write_world(const WorldDescription& description, const std::filesystem::path& file);
 
-}  // namespace vernier
+}  // namespace vernier::sim

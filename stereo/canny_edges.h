@@ -7,7 +7,7 @@
 #include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 struct CannyOptions {
   double scale_px = 1.0;   ///< σ of the Gaussian that the gradient is taken behind
@@ -37,4 +37,4 @@ struct CannyOptions {
 /// it and on options that name no edges; an image smaller than the filter has none.
 std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// A dense disparity map u_left − u_right of the left image, in pixels, row by row from the top;
 /// not a number where it is not known.
@@ -48,4 +48,4 @@ DisparityMap read_disparity(const std::filesystem::path& file,
 /// for other names and, PNG, for disparities below 0 or above 255.99 px.
 void write_disparity(const std::filesystem::path& file, const DisparityMap& map);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

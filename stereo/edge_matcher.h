@@ -4,9 +4,11 @@
 
 #include <vector>
 
+#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 struct EdgeMatcherOptions {
   double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
@@ -34,13 +36,15 @@ struct EdgeMatch {
 
 /// Vernier's own matcher, sparse from the start:
 ///
-///  1. costs of every left edge point at every disparity: census words (stereo/census.h), 3 x 3 of
+///  1. costs of every left edge point at every disparity: census words (stereo/matching/census.h),
+///  3 x 3 of
 ///     them;
-///  2. semi-global support between edge points (stereo/edge_support.h);
+///  2. semi-global support between edge points (stereo/matching/edge_support.h);
 ///  3. the same from the places found in the right image; a point is kept where both find the same
 ///     disparity but for one, its best is `least_margin` better than any other, and at least
 ///     `least_points` neighbours in a chain agree with it;
-///  4. least squares of gain, offset, shift, stretch and shear (stereo/disparity_refinement.h),
+///  4. least squares of gain, offset, shift, stretch and shear
+///  (stereo/matching/disparity_refinement.h),
 ///     then once more from the surfaces of neighbours at points where nothing was found.
 ///
 /// One for each of `left_edges`, which are in the order of canny_edges. Throws Error on images of
@@ -53,4 +57,4 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
 /// The same as a plug-in of the name `edge`.
 Matcher edge_matcher(const EdgeMatcherOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo

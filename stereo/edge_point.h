@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// A point of an edge in an image, one a pixel at most.
 struct EdgePoint {
@@ -17,4 +17,4 @@ struct EdgePoint {
   int string = 0;            ///< connected edge that it is part of
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo

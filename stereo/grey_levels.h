@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// A grey image in memory: grey levels from 0 to 255, row by row, between whole numbers too.
 struct GreyLevels {
@@ -25,4 +25,4 @@ struct GreyLevels {
 /// Error for what is no image or is cut off.
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

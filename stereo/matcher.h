@@ -8,19 +8,9 @@
 #include <vector>
 
 #include "stereo/edge_point.h"
-#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
-
-/// Two images of which every row shows the same epipolar plane.
-struct RectifiedPair {
-  GreyLevels left, right;
-};
-
-/// Disparities u_left − u_right that are searched, both ends included.
-struct DisparityRange {
-  int least_px = 0, most_px = 64;
-};
+namespace vernier::stereo {
 
 /// What a matcher says at a point of the left image.
 struct EdgeDisparity {
@@ -42,4 +32,4 @@ struct Matcher {
   bool of_edges = false;  ///< works on edges, so that finding them is part of its time
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -5,10 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// What counts as right within a pixel of a step of the truth.
 enum class OutlineRule {
@@ -83,4 +84,4 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
 /// bad_1 of a curve at a density, linearly between its points; that of the nearer end beyond them.
 double bad_1_at(const std::vector<CurvePoint>& curve, double density);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

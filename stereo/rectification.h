@@ -7,7 +7,7 @@
 #include "calib/rig.h"
 #include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// Rotations that turn both cameras of a pair to a common orientation in which every epipolar line
 /// is a row: x along the baseline from left to right, z as near as can be to the mean of both
@@ -27,4 +27,4 @@ double epipolar_angle_rad(const Rig& rig,
                           const Rectification& rectification,
                           const ImageSegment& left);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -5,10 +5,11 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "calib/camera.h"
 #include "calib/rig.h"
 #include "stereo/rectification.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 struct RectifiedGeometryOptions {
   Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: the left camera's
@@ -85,4 +86,4 @@ class RawPixels {
   double sure_radius_ = 0;  ///< of (x / z, y / z): within, no ray is beyond a fold
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "stereo/matcher.h"
+#include "calib/rig.h"
+#include "stereo/grey_levels.h"
 #include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// Which pixels of a rectified image have a source: the raw image reaches there.
 struct ValidPixels {
@@ -40,4 +42,4 @@ RectifiedImages rectified_images(const Rig& rig,
                                  const GreyLevels& right,
                                  int threads = 1);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// A straight edge in an image, end points in pixels.
 struct ImageSegment {
@@ -27,4 +27,4 @@ struct SpaceSegment {
   bool reliable = true;      ///< false where an end lies beyond the range asked for, or has no ray
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "stereo/disparity_file.h"
 #include "stereo/edge_point.h"
-#include "stereo/stereo_scenes.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 /// Ground truth at the pixels of the left image of a rectified pair.
 struct StereoTruth {
@@ -30,10 +30,6 @@ struct StereoTruth {
 /// Throws Error where the two maps have different sizes or nothing is known.
 StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right = nullptr);
 
-/// Reads a pair's ground truth. Throws Error naming the file, for its size too where that is not
-/// the images' one.
-StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px);
-
 /// Ground truth at an edge point of the left image.
 struct TruthAtEdge {
   /// Where the 3 x 3 pixels about the edge point hold a step, the foreground's, which is the
@@ -46,8 +42,9 @@ struct TruthAtEdge {
   bool discontinuity = false;  ///< a step in the 5 x 5 pixels, or something unknown in the 3 x 3
   float least_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   float most_px = std::numeric_limits<float>::quiet_NaN();   ///< of the 3 x 3 pixels
-  /// Where the right image's rows are wrong (stereo/warped_pair.h): how much more disparity the
-  /// edge has where it crosses the row there. All between the point's and the crossing's is right.
+  /// Where the right image's rows are wrong (stereo/evaluation/warped_pair.h): how much more
+  /// disparity the edge has where it crosses the row there. All between the point's and the
+  /// crossing's is right.
   float crossing_px = 0;
 };
 
@@ -57,4 +54,4 @@ struct TruthAtEdge {
 /// Error for edges outside the map.
 std::vector<TruthAtEdge> truth_at(const StereoTruth& truth, const std::vector<EdgePoint>& edges);
 
-}  // namespace vernier
+}  // namespace vernier::stereo

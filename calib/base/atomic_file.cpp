@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 
 #include <unistd.h>
 
@@ -12,7 +12,7 @@
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::string read_whole(const std::filesystem::path& file) {
   return std::move(content).str();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

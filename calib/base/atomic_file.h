@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Writes `content` to `file`, which appears whole, by rename, or not at all: an interrupted run
 /// leaves the old file as it was. Throws Error where the folder is missing or not writable.
@@ -22,4 +22,4 @@ void write_atomically(
 /// The whole content of a file. Throws Error where it cannot be read.
 std::string read_whole(const std::filesystem::path& file);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The number whose bytes stand at `at`, in either order.
 template <typename Value>
@@ -32,4 +33,4 @@ void append_number(std::string& bytes, Value value, bool big_endian) {
   bytes.append(own.data(), own.size());
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/frame_numbering.h"
+#include "calib/base/frame_numbering.h"
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
-namespace vernier {
+namespace vernier::internal {
 
 FrameNumbering::FrameNumbering(std::vector<std::int64_t> numbers) {
   std::sort(numbers.begin(), numbers.end());
@@ -20,4 +21,4 @@ int FrameNumbering::frame(std::int64_t number) const {
                           in_order_.begin());
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

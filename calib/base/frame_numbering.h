@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Frames of images by the numbers in their names: the numbers themselves where all of them are
 /// below 2147483648; else (time stamps in nanoseconds) their places, from 0, in ascending order of
@@ -21,4 +21,4 @@ class FrameNumbering {
   std::vector<std::int64_t> in_order_;  ///< empty where numbers are frames
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

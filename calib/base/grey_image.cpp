@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/grey_image.h"
+#include "calib/base/grey_image.h"
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "calib/image_file.h"
+#include "calib/base/image_file.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 cv::Mat read_grey_image(const std::filesystem::path& file) {
   const cv::Mat grey =
@@ -19,4 +19,4 @@ cv::Mat read_grey_image(const std::filesystem::path& file) {
   return scaled;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

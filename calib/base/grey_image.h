@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// An image file as 8-bit grey values; deeper ones are scaled from their own largest value. Throws
 /// Error for what is no image and for PNG, JPEG and Netpbm files that are cut off or, PNG, damaged:
 /// their decoders would fill in the rest or print to standard error.
 cv::Mat read_grey_image(const std::filesystem::path& file);
 
-}  // namespace vernier
+}  // namespace vernier::internal

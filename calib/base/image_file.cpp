@@ -1,19 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/image_file.h"
+#include "calib/base/image_file.h"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::string_view png_signature{"\x89PNG\r\n\x1a\n", 8};
@@ -151,4 +152,4 @@ int largest_grey_value(std::string_view bytes) {
   return 0;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

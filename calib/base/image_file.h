@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The bytes of an image file. Throws Error for PNG, JPEG and Netpbm files that are cut off or,
 /// PNG, damaged: their decoders would fill in the rest or print to standard error.
@@ -23,4 +23,4 @@ bool is_png(std::string_view bytes);
 /// none.
 int largest_grey_value(std::string_view bytes);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/numpy_array.h"
+#include "calib/base/numpy_array.h"
 
 #include <fmt/core.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
+#include "calib/base/byte_order.h"
+#include "calib/base/python_literal.h"
 #include "calib/error.h"
-#include "calib/python_literal.h"
-#include "stereo/byte_order.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::string_view magic{"\x93NUMPY", 6};
@@ -143,4 +144,4 @@ std::string numpy_bytes(const std::vector<float>& values, int rows, int columns)
   return bytes;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A NumPy array of two dimensions.
 struct NumpyArray {
@@ -24,4 +25,4 @@ NumpyArray parse_numpy(std::string_view bytes, const std::string& place);
 /// The bytes of a .npy file of float32, little-endian.
 std::string numpy_bytes(const std::vector<float>& values, int rows, int columns);
 
-}  // namespace vernier
+}  // namespace vernier::internal

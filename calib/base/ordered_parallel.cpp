@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/ordered_parallel.h"
+#include "calib/base/ordered_parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
   if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -43,4 +43,4 @@ void for_each_index(std::size_t count, int threads, const std::function<void(std
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Calls work(i) once for every i in [0, count) on at most `threads` threads (0: as many as the
 /// machine has), this one among them. Work on different i must be independent and write to its own
@@ -13,4 +13,4 @@ namespace vernier {
 /// here after all threads are done.
 void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
-}  // namespace vernier
+}  // namespace vernier::internal

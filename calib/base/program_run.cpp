@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/program_run.h"
+#include "calib/base/program_run.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -12,13 +12,14 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <thread>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 std::string read_text(const std::filesystem::path& file) {
@@ -114,4 +115,4 @@ ProgramRun run_program(const std::vector<std::string>& words, double time_limit_
   return run;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

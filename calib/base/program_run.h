@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A folder of its own below the system's temporary one, gone with the object.
 class TemporaryFolder {
@@ -39,4 +39,4 @@ struct ProgramRun {
 /// process group of its own, which the terminal's interrupt does not reach.
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s = 0);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/python_literal.h"
+#include "calib/base/python_literal.h"
 
 #include <cctype>
 #include <charconv>
+#include <cstddef>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 class Parser {
@@ -154,4 +155,4 @@ PythonLiteral parse_python_literal(std::string_view text, const std::string& pla
   return Parser(text, place).whole();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

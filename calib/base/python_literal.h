@@ -9,7 +9,7 @@
 
 /// What Python's ast.literal_eval reads, as far as the files of mrcal and NumPy use it. Not
 /// installed.
-namespace vernier {
+namespace vernier::internal {
 
 /// A number, text (bytes too), list (tuple too), dictionary, or None, True, False as a word.
 struct PythonLiteral {
@@ -28,4 +28,4 @@ struct PythonLiteral {
 /// Reads one literal; comments (#) may stand anywhere. Throws Error("place:line").
 PythonLiteral parse_python_literal(std::string_view text, const std::string& place);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/text_lines.h"
+#include "calib/base/text_lines.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 template <class Number>
@@ -62,4 +63,4 @@ int parse_whole(std::string_view field, const std::string& place, std::string_vi
   return parse<int>(field, place, what);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

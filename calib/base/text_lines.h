@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Lines of a text file with the number of each, for messages.
 class TextLines {
@@ -38,4 +39,4 @@ std::vector<std::string_view> split_fields(std::string_view line, std::string_vi
 double parse_real(std::string_view field, const std::string& place, std::string_view what);
 int parse_whole(std::string_view field, const std::string& place, std::string_view what);
 
-}  // namespace vernier
+}  // namespace vernier::internal

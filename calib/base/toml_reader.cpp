@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/toml_reader.h"
+#include "calib/base/toml_reader.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
@@ -129,4 +131,4 @@ std::int64_t TomlReader::integer(const toml::node& node, const std::string& what
   return node.as_integer()->get();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,13 +5,15 @@
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// Reading TOML with complaints that name file and line. Not installed.
-namespace vernier {
+namespace vernier::internal {
 
 /// Parses TOML; throws Error(place:line) for bad syntax.
 toml::table parse_toml(std::string_view text, const std::string& place);
@@ -68,4 +70,4 @@ class TomlReader {
   toml::source_index line_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

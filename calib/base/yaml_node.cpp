@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/yaml_node.h"
+#include "calib/base/yaml_node.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
@@ -180,4 +181,4 @@ std::string yaml_text(const std::string& text) {
   return out + '"';
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

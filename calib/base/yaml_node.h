@@ -5,12 +5,14 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Internal to calib/: YAML as other tools write it. Not installed.
-namespace vernier {
+namespace vernier::internal {
 
 /// A node of a YAML file with the place it stands in, so that every complaint names file, line and
 /// key. All members but has() throw Error.
@@ -57,4 +59,4 @@ std::string yaml_list(const Eigen::MatrixXd& row_by_row);
 /// A text in the quotes that YAML wants.
 std::string yaml_text(const std::string& text);
 
-}  // namespace vernier
+}  // namespace vernier::internal

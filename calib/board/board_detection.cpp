@@ -5,16 +5,25 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <set>
+#include <variant>
 
-#include "calib/chessboard_finder.h"
+#include "calib/base/frame_numbering.h"
+#include "calib/base/grey_image.h"
+#include "calib/board/chessboard_finder.h"
+#include "calib/board/marker_board.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/error.h"
-#include "calib/frame_numbering.h"
-#include "calib/grey_image.h"
-#include "calib/marker_board.h"
 #include "calib/observations_file.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 BoardView view_of(const BoardDetection& found) {
@@ -91,6 +100,31 @@ void check_found(const ImageDetections& found, const std::string& place, const s
 }
 
 }  // namespace
+
+std::string text_of(CornerRefusal refusal) {
+  switch (refusal) {
+    case CornerRefusal::at_border:
+      return "at the image's border";
+    case CornerRefusal::not_crossing:
+      return "covered or unlike a crossing of squares";
+    case CornerRefusal::moved_too_far:
+      return "moved out of its window by refinement";
+    case CornerRefusal::off_neighbours:
+      return "not where its neighbours put it";
+  }
+  return "";
+}
+
+std::string refused_corners_text(const BoardDetection& image) {
+  std::map<CornerRefusal, int> count;
+  for (const RefusedCorner& corner : image.refused_corners) ++count[corner.why];
+  std::string text;
+  for (const auto& [why, corners] : count) {
+    text += (text.empty() ? "" : ", ") + std::to_string(corners) +
+            (corners == 1 ? " corner " : " corners ") + text_of(why);
+  }
+  return text;
+}
 
 BoardDetection detect_board(const std::filesystem::path& image, const BoardTarget& target) {
   check_target(target);

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/board_homography.h"
+#include "calib/board/board_homography.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include "calib/board_observations.h"
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// x -> scale (x - centre): zero mean, mean distance √2.
@@ -119,4 +122,4 @@ std::optional<double> focal_length_px(const std::vector<BoardHomography>& views,
   return f;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -8,7 +8,7 @@
 
 #include "calib/board_observations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Throws Error for a target that is not flat: more extent in z than a tenth of that in x and y.
 void check_flat(const std::vector<Eigen::Vector3d>& target_m);
@@ -37,4 +37,4 @@ BoardHomography board_homography(const std::vector<Eigen::Vector3d>& target_m,
 std::optional<double> focal_length_px(const std::vector<BoardHomography>& views,
                                       const Eigen::Vector2i& size_px);
 
-}  // namespace vernier
+}  // namespace vernier::internal

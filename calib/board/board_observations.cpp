@@ -3,6 +3,8 @@
 #include "calib/board_observations.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "calib/error.h"
 

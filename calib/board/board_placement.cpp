@@ -1,17 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/board_placement.h"
+#include "calib/board/board_placement.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "calib/board_observations.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 struct Target {
@@ -163,4 +170,4 @@ std::string placement_in_words(const BoardPlacement& p, const Camera& left) {
       whole_degrees(p.tilt_rad), nearer_edge(p.tilt_rad, "upper", "lower"));
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A way to hold a board before a rig.
 struct BoardPlacement {
@@ -52,4 +55,4 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
 /// 35° about the vertical axis (right edge nearer), tilted 0°"
 std::string placement_in_words(const BoardPlacement& placement, const Camera& left);
 
-}  // namespace vernier
+}  // namespace vernier::internal

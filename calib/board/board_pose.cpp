@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/board_pose.h"
+#include "calib/board/board_pose.h"
 
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+#include <string>
+#include <vector>
 
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/view_linearisation.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -119,4 +127,4 @@ BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
   return fit;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

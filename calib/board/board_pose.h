@@ -3,11 +3,14 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Where a board stood by one view and a camera taken as known, T_camera_board: the plane's
 /// homography on the undistorted corners, refined in normalised coordinates (OpenCV's solvePnP).
@@ -30,4 +33,4 @@ BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
                             const Pose& start,
                             int max_iterations = 10);
 
-}  // namespace vernier
+}  // namespace vernier::internal

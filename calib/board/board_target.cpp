@@ -4,10 +4,13 @@
 
 #include <cmath>
 
+#include "calib/board/marker_dictionary.h"
 #include "calib/error.h"
-#include "calib/marker_dictionary.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string size_text(int columns, int rows) {

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
 
-namespace vernier {
+#include <cstddef>
+
+namespace vernier::internal {
 
 Eigen::Matrix<double, Eigen::Dynamic, 2> warp_shapes(const std::vector<Eigen::Vector3d>& target_m) {
   Eigen::Matrix<double, Eigen::Dynamic, 2> shapes(static_cast<Eigen::Index>(target_m.size()), 2);
@@ -32,4 +34,4 @@ std::vector<Eigen::Vector3d> warped_target(std::vector<Eigen::Vector3d> target_m
   return target_m;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

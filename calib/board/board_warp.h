@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The out-of-plane shape of a board that is not quite flat, as two parabolas (the model of mrcal
 /// 2.2's calobject_warp):
@@ -19,4 +19,4 @@ Eigen::Matrix<double, Eigen::Dynamic, 2> warp_shapes(const std::vector<Eigen::Ve
 std::vector<Eigen::Vector3d> warped_target(std::vector<Eigen::Vector3d> target_m,
                                            const Eigen::Vector2d& warp_m);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/chessboard_finder.h"
+#include "calib/board/chessboard_finder.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <opencv2/calib3d.hpp>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/corner_refinement.h"
-#include "calib/image_fault.h"
+#include "calib/board/corner_refinement.h"
+#include "calib/board/image_fault.h"
+#include "calib/board_detection.h"
+#include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Corners of a grid, row by row, as OpenCV's finders return them.
@@ -250,4 +257,4 @@ void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetect
   result.corners_px.clear();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

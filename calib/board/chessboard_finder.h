@@ -5,10 +5,11 @@
 #include <opencv2/core.hpp>
 
 #include "calib/board_detection.h"
+#include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Finds a chessboard in an image; see detect_board.
 void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetection& result);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/corner_difference.h"
+#include "calib/board/corner_difference.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 
-namespace vernier {
+#include "calib/board_observations.h"
+
+namespace vernier::internal {
 
 CornerDifference corner_difference(const BoardView& a, const BoardView& b, double most_px) {
   std::map<int, Eigen::Vector2d> pixels;
@@ -30,4 +33,4 @@ CornerDifference corner_difference(const BoardView& a, const BoardView& b, doubl
   return {largest, std::sqrt(sum / (2 * shared))};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,7 +6,7 @@
 
 #include "calib/board_observations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Difference of the corners that two views share, by id; infinite where these are fewer than four.
 struct CornerDifference {
@@ -17,4 +17,4 @@ struct CornerDifference {
 /// Infinite as well as soon as the sum of squares tells that rms_px would be above `most_px`.
 CornerDifference corner_difference(const BoardView& a, const BoardView& b, double most_px);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/corner_lines.h"
+#include "calib/board/corner_lines.h"
 
 #include <fmt/format.h>
 
+#include <cstddef>
+
+#include "calib/board_observations.h"
 #include "calib/error.h"
 
-namespace vernier::corner_lines {
+namespace vernier::internal::corner_lines {
 
 void check_pixel(const Eigen::Vector2d& pixel_px,
                  std::size_t camera,
@@ -40,4 +43,4 @@ BoardObservations finished(BoardObservations observations,
   return observations;
 }
 
-}  // namespace vernier::corner_lines
+}  // namespace vernier::internal::corner_lines

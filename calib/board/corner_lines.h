@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "calib/board_observations.h"
 
 /// Internal to calib/: what the readers of files with a corner a line share. Not installed.
-namespace vernier::corner_lines {
+namespace vernier::internal::corner_lines {
 
 /// Throws Error for a pixel that is not finite or, where their size is known, outside its camera's
 /// images; one size stands for all. `corner` names it in a person's words.
@@ -25,4 +26,4 @@ BoardObservations finished(BoardObservations observations,
                            std::size_t cameras,
                            const std::filesystem::path& file);
 
-}  // namespace vernier::corner_lines
+}  // namespace vernier::internal::corner_lines

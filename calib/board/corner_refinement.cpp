@@ -1,16 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/corner_refinement.h"
+#include "calib/board/corner_refinement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 
-#include "calib/plane_homography.h"
+#include "calib/board/plane_homography.h"
+#include "calib/board_detection.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr int least_half_window = 2;
@@ -143,31 +148,6 @@ void drop_strange_corners(std::vector<CornerGuess>& corners,
 
 }  // namespace
 
-std::string text_of(CornerRefusal refusal) {
-  switch (refusal) {
-    case CornerRefusal::at_border:
-      return "at the image's border";
-    case CornerRefusal::not_crossing:
-      return "covered or unlike a crossing of squares";
-    case CornerRefusal::moved_too_far:
-      return "moved out of its window by refinement";
-    case CornerRefusal::off_neighbours:
-      return "not where its neighbours put it";
-  }
-  return "";
-}
-
-std::string refused_corners_text(const BoardDetection& image) {
-  std::map<CornerRefusal, int> count;
-  for (const RefusedCorner& corner : image.refused_corners) ++count[corner.why];
-  std::string text;
-  for (const auto& [why, corners] : count) {
-    text += (text.empty() ? "" : ", ") + std::to_string(corners) +
-            (corners == 1 ? " corner " : " corners ") + text_of(why);
-  }
-  return text;
-}
-
 void refine_corners(const cv::Mat& grey,
                     std::vector<CornerGuess> guesses,
                     const std::vector<Eigen::Vector3d>& target_m,
@@ -191,4 +171,4 @@ void refine_corners(const cv::Mat& grey,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

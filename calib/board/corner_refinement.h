@@ -7,7 +7,7 @@
 
 #include "calib/board_detection.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Where a corner should be, and the half-size of the window that holds it and no other.
 struct CornerGuess {
@@ -29,4 +29,4 @@ void refine_corners(const cv::Mat& grey,
                     CornerKind kind,
                     BoardDetection& result);
 
-}  // namespace vernier
+}  // namespace vernier::internal

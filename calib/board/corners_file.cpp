@@ -4,17 +4,29 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
-#include "calib/corner_lines.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/frame_numbering.h"
+#include "calib/base/text_lines.h"
+#include "calib/board/corner_lines.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/error.h"
-#include "calib/frame_numbering.h"
 #include "calib/observations_file.h"
-#include "calib/text_lines.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using corner_lines::check_pixel;

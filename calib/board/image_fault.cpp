@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/image_fault.h"
+#include "calib/board/image_fault.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 std::array<int, 256> histogram(const cv::Mat& grey) {
@@ -66,4 +66,4 @@ std::string image_fault(const cv::Mat& grey) {
   return "";
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

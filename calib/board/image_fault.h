@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What is measurably wrong with a grey image for finding a board in it, with the measure; empty
 /// where nothing is:
@@ -16,4 +16,4 @@ namespace vernier {
 ///    for the contrast, as behind a Gaussian blur of σ > 3.5 px.
 std::string image_fault(const cv::Mat& grey);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/kalibr_target.h"
+#include "calib/board/kalibr_target.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <map>
+#include <string>
 #include <string_view>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/board_target.h"
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -159,4 +163,4 @@ BoardTarget read_kalibr_target(const std::filesystem::path& file) {
   return target;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

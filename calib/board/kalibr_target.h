@@ -6,7 +6,7 @@
 
 #include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Reads Kalibr's target file: flat YAML, `key: value` a line, `#` begins a comment. Known are
 ///
@@ -19,4 +19,4 @@ namespace vernier {
 /// keys that are unknown, missing or said twice.
 BoardTarget read_kalibr_target(const std::filesystem::path& file);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,21 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/marker_board.h"
+#include "calib/board/marker_board.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/corner_refinement.h"
-#include "calib/image_fault.h"
-#include "calib/marker_dictionary.h"
-#include "calib/marker_layout.h"
-#include "calib/plane_homography.h"
+#include "calib/board/corner_refinement.h"
+#include "calib/board/image_fault.h"
+#include "calib/board/marker_dictionary.h"
+#include "calib/board/marker_layout.h"
+#include "calib/board/plane_homography.h"
+#include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::size_t least_corners = 6;
@@ -237,4 +244,4 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
   judge(target_m, name, result);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,11 +5,12 @@
 #include <opencv2/core.hpp>
 
 #include "calib/board_detection.h"
+#include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Finds a board of markers in an image; see detect_board.
 void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDetection& result);
 void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDetection& result);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/marker_dictionary.h"
+#include "calib/board/marker_dictionary.h"
 
 #include <algorithm>
 #include <array>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 // In the order of OpenCV's enumeration.
@@ -31,4 +31,4 @@ cv::Ptr<cv::aruco::Dictionary> marker_dictionary(const std::string& name) {
   return cv::aruco::getPredefinedDictionary(static_cast<int>(at - names.begin()));
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

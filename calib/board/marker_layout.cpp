@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/marker_layout.h"
+#include "calib/board/marker_layout.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
-#include "calib/marker_dictionary.h"
-#include "calib/plane_homography.h"
+#include "calib/board/marker_dictionary.h"
+#include "calib/board/plane_homography.h"
+#include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double least_side_px = 10;  // below, no marker's pattern can be read
@@ -270,4 +274,4 @@ void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, SeenMar
             [](const SeenMarker& a, const SeenMarker& b) { return a.id < b.id; });
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

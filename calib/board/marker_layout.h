@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -10,7 +11,7 @@
 
 #include "calib/board_target.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The corners of a marker clockwise from the one that OpenCV's own drawing has in the upper left.
 using MarkerCorners = std::array<Eigen::Vector2d, 4>;
@@ -61,4 +62,4 @@ std::optional<Eigen::Matrix3d> homography_near(const std::vector<SeenMarker>& ma
                                                std::size_t count,
                                                double reach_m);
 
-}  // namespace vernier
+}  // namespace vernier::internal

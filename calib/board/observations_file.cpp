@@ -5,16 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <set>
+#include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
-#include "calib/atomic_file.h"
-#include "calib/corner_lines.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/text_lines.h"
+#include "calib/board/corner_lines.h"
+#include "calib/board_observations.h"
 #include "calib/error.h"
-#include "calib/text_lines.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using corner_lines::check_pixel;

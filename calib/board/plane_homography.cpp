@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/plane_homography.h"
+#include "calib/board/plane_homography.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Moves the mean to the origin and the mean distance from it to √2.
@@ -56,4 +57,4 @@ Eigen::Matrix2d map_derivative(const Eigen::Matrix3d& H, const Eigen::Vector2d& 
   return (H.block<2, 2>(0, 0) - u * H.block<1, 2>(2, 0)) / q.z();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

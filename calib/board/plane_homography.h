@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The homography that takes points of a plane to pixels, by the normalised direct linear transform
 /// (Hartley 1997). Nothing where there are fewer than four points or they determine none.
@@ -20,4 +20,4 @@ inline Eigen::Vector2d map_point(const Eigen::Matrix3d& H, const Eigen::Vector2d
 /// The derivative of map_point by the point.
 Eigen::Matrix2d map_derivative(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,13 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/simulated_board.h"
 
+#include <cstddef>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "calib/draw_sources.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr auto source = static_cast<std::uint32_t>(DrawSource::simulated_board);

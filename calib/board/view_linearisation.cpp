@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_linearisation.h"
+#include "calib/board/view_linearisation.h"
 
-namespace vernier {
+#include <vector>
+
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+
+namespace vernier::internal {
 
 void linearise_view(const Camera& camera,
                     const Pose& T_camera_first,
@@ -46,4 +52,4 @@ void linearise_view(const Camera& camera,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 
+#include <vector>
+
 #include "calib/board_observations.h"
 #include "calib/camera.h"
 #include "calib/pose.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Reprojection residuals r = project(T_camera_first T_first_board X) - q of one board view and
 /// their derivatives in the left tangents of both poses. Rows alternate u, v; pixels.
@@ -24,9 +26,10 @@ struct ViewLinearisation {
 enum class Linearise { residual_only, with_jacobian };
 
 /// Behind the normal equations, the refined minimum and the fit of a single board's pose, which
-/// want every row; the Ceres cost and the re-solver run the formulas of calib/corner_formulas.h on
-/// many views at once (calib/view_kernel.h) and keep their sums alone. `target_m` holds the board's
-/// warp already; `shapes` (calib/board_warp.h) asks for the derivative by it.
+/// want every row; the Ceres cost and the re-solver run the formulas of
+/// calib/camera/corner_formulas.inc on many views at once (calib/solver/view_kernel.h) and keep their
+/// sums alone. `target_m` holds the board's warp already; `shapes` (calib/board/board_warp.h) asks
+/// for the derivative by it.
 void linearise_view(const Camera& camera,
                     const Pose& T_camera_first,
                     const Pose& T_first_board,
@@ -36,4 +39,4 @@ void linearise_view(const Camera& camera,
                     ViewLinearisation& out,
                     const Eigen::Matrix<double, Eigen::Dynamic, 2>* shapes = nullptr);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/bent_plane.h"
+#include "calib/calibration/bent_plane.h"
 
 #include <Eigen/Dense>
 #include <opencv2/calib3d.hpp>
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using Parameters = Eigen::Matrix<double, 10, 1>;  // of H row by row without its last, c_l, c_r
@@ -73,4 +73,4 @@ double share_on_bent_plane(const std::vector<PointPair>& points, double limit) {
   return share(a, limit);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

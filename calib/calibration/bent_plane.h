@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The normalised points of one corner in two images.
 struct PointPair {
@@ -17,4 +17,4 @@ struct PointPair {
 /// then with the two c by least squares over what is near it. 0 where there is no homography.
 double share_on_bent_plane(const std::vector<PointPair>& points, double limit);
 
-}  // namespace vernier
+}  // namespace vernier::internal

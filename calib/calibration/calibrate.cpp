@@ -6,21 +6,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
 
-#include "calib/board_pose.h"
-#include "calib/board_warp.h"
+#include "calib/board/board_pose.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/calibration_problem.h"
+#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/honest_covariance.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/outliers.h"
+#include "calib/calibration/residual_diagnosis.h"
+#include "calib/calibration/result_checks.h"
+#include "calib/calibration/view_checks.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/honest_covariance.h"
-#include "calib/linearised_cost.h"
-#include "calib/minimise_reprojection.h"
-#include "calib/model_nesting.h"
-#include "calib/observation_checks.h"
-#include "calib/refined_minimum.h"
-#include "calib/residual_diagnosis.h"
-#include "calib/result_checks.h"
-#include "calib/view_checks.h"
+#include "calib/held_parameters.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/linearised_cost.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/refined_minimum.h"
+#include "calib/solver/reprojection_problem.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
@@ -309,17 +330,6 @@ void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimat
 }
 
 }  // namespace
-
-ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
-  ReprojectionProblem problem;
-  if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
-  problem.held = held_mask(rig, options.held);
-  problem.warp = options.warp;
-  problem.max_iterations = options.max_iterations;
-  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
-  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
-  return problem;
-}
 
 RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& options) {
   check_and_sort(observations);

@@ -7,14 +7,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <set>
+#include <utility>
 
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/pair_checks.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/pair_checks.h"
+#include "calib/held_parameters.h"
+#include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
+#include "calib/prior_agreement.h"
+#include "calib/rig.h"
 #include "calib/rig_difference.h"
-#include "calib/scaled_root.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 bool has_boards(const RigEstimate& estimate) {

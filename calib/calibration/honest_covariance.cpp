@@ -1,10 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/honest_covariance.h"
+#include "calib/calibration/honest_covariance.h"
 
-#include "calib/small_sample_covariance.h"
+#include <string>
+#include <vector>
 
-namespace vernier {
+#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/small_sample_covariance.h"
+#include "calib/covariance.h"
+#include "calib/solver/normal_equations.h"
+
+namespace vernier::internal {
 
 Covariance honest_covariance(const ReducedNormalEquations& equations,
                              const Eigen::MatrixXd& bound,
@@ -18,4 +24,4 @@ Covariance honest_covariance(const ReducedNormalEquations& equations,
   return {CovarianceKind::jackknife, names, small_sample_covariance(equations, bound).matrix};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

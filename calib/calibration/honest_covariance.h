@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/covariance.h"
+#include <string>
+#include <vector>
 
-namespace vernier {
+#include "calib/covariance.h"
+#include "calib/solver/normal_equations.h"
+
+namespace vernier::internal {
 
 /// The covariance that is true on real images, where residuals of one frame (or image pair) depend
 /// on each other: the clustered sandwich with at least three clusters a parameter, its small-sample
-/// form (calib/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the inverse of the
-/// equations' information. Throws Error below three clusters.
+/// form (calib/calibration/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the
+/// inverse of the equations' information. Throws Error below three clusters.
 Covariance honest_covariance(const ReducedNormalEquations& equations,
                              const Eigen::MatrixXd& bound,
                              const std::vector<std::string>& names);
 
-}  // namespace vernier
+}  // namespace vernier::internal

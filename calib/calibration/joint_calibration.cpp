@@ -8,17 +8,37 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "calib/chi_squared.h"
+#include "calib/board_state.h"
+#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/honest_covariance.h"
+#include "calib/calibration/joint_minimum.h"
+#include "calib/calibration/merged_boards.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/pair_checks.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/honest_covariance.h"
-#include "calib/joint_minimum.h"
-#include "calib/linearised_cost.h"
-#include "calib/pair_checks.h"
-#include "calib/pair_equations.h"
-#include "calib/scaled_root.h"
+#include "calib/held_parameters.h"
+#include "calib/observability.h"
+#include "calib/pair_observations.h"
+#include "calib/prior_agreement.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/linearised_cost.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/pair_equations.h"
+#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr int cells_a_side = 4;  // of an image pair as clusters

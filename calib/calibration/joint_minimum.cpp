@@ -1,17 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/joint_minimum.h"
+#include "calib/calibration/joint_minimum.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "calib/epipolar_system.h"
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/merged_boards.h"
 #include "calib/held_parameters.h"
-#include "calib/linearised_cost.h"
-#include "calib/pair_equations.h"
+#include "calib/joint_calibration.h"
+#include "calib/rig.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/linearised_cost.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/pair_equations.h"
+#include "calib/solver/resolve_pairs.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
@@ -40,9 +53,9 @@ void polish(JointMinimum& joint) {
     const EpipolarSystem system = epipolar_system(weighted, joint.state.rig, problem, E);
     const Eigen::VectorXd d = system.information.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = d.asDiagonal() * system.information * d.asDiagonal();
-    const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
-    if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-12)) return;
-    const Eigen::VectorXd z = factor.solve(d.cwiseProduct(system.gradient));
+    const Cholesky factor(scaled);
+    if (!factor.is_positive_definite() || !(factor.rcond() > 1e-12)) return;
+    const Eigen::VectorXd z = factor.solve(Eigen::VectorXd(d.cwiseProduct(system.gradient)));
     constexpr double near = 0.01;  // standard deviations: elsewhere Ceres was not done
     if (!(z.dot(scaled * z) < near * near)) return;
     joint.state.rig = retract(joint.state.rig, E * (-d.cwiseProduct(z)));
@@ -90,7 +103,7 @@ double determined_by_pairs(const JointMinimum& joint) {
   const Eigen::VectorXd d = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = d.asDiagonal() * all * d.asDiagonal();
   const Eigen::MatrixXd scaled_H = d.asDiagonal() * H * d.asDiagonal();
-  return scaled.ldlt().solve(scaled_H).trace();
+  return solve_symmetric(scaled, scaled_H).trace();
 }
 
 }  // namespace
@@ -167,4 +180,4 @@ bool is_outlier(const JointMinimum& joint, std::size_t row) {
          std::abs(joint.residuals[row]) >= joint.loss.limit * joint.cost.pair_sigma_scale;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "calib/merged_boards.h"
-#include "calib/minimise_reprojection.h"
-#include "calib/packed_pairs.h"
+#include "calib/board_state.h"
+#include "calib/calibration/merged_boards.h"
+#include "calib/joint_calibration.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The minimum of the joint cost of boards, pairs and priors (calib/joint_calibration.h), and while
 /// it is sought the state of the search.
@@ -36,4 +41,4 @@ ReducedNormalEquations board_equations(const JointMinimum& joint);
 /// Whether a pair does not count at the minimum.
 bool is_outlier(const JointMinimum& joint, std::size_t row);
 
-}  // namespace vernier
+}  // namespace vernier::internal

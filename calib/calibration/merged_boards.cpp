@@ -1,16 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/merged_boards.h"
+#include "calib/calibration/merged_boards.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/joint_calibration.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 void check_sizes(const BoardObservations& observations, const Rig& rig) {
@@ -113,4 +123,4 @@ CalibrationEvidence merged_evidence(const MergedBoards& boards, const BoardState
   return evidence;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,9 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/joint_calibration.h"
+#include <cstddef>
+#include <vector>
 
-namespace vernier {
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/joint_calibration.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier::internal {
 
 /// Board views of several calibrations as those of one: their targets side by side, their frames
 /// numbered on, and the noise of each as weights. Where all are of one target they are of one
@@ -35,4 +42,4 @@ BoardState state_of(const MergedBoards& boards,
 /// The views as evidence of the joint calibration, with the poses of `state`.
 CalibrationEvidence merged_evidence(const MergedBoards& boards, const BoardState& state);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,20 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/observation_checks.h"
+#include "calib/calibration/observation_checks.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
-#include "calib/board_homography.h"
-#include "calib/corner_difference.h"
+#include "calib/board/board_homography.h"
+#include "calib/board/corner_difference.h"
+#include "calib/board_observations.h"
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double same_image_px = 1e-3;    // of one camera: a copy
@@ -239,4 +242,4 @@ ObservationDiagnosis check_observations(const BoardObservations& observations) {
   return diagnosis;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -8,7 +8,7 @@
 
 #include "calib/board_observations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What a check of observations has to say that is no proof against them.
 struct ObservationDiagnosis {
@@ -38,4 +38,4 @@ std::string place_of(const BoardView& view);
 /// "3, 5 and 9"; of many the first few and how many more.
 std::string list_of(const std::vector<std::string>& names);
 
-}  // namespace vernier
+}  // namespace vernier::internal

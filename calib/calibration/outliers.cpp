@@ -1,21 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/outliers.h"
+#include "calib/calibration/outliers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <set>
+#include <utility>
 
-#include "calib/board_warp.h"
-#include "calib/loss.h"
-#include "calib/median.h"
-#include "calib/observation_checks.h"
-#include "calib/view_linearisation.h"
+#include "calib/board/board_warp.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/statistics/median.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
@@ -257,4 +267,4 @@ void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,17 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "calib/minimise_reprojection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
-
-/// A corner left out of a calibration.
-struct CornerOutlier {
-  int frame = 0, camera = 0, id = 0;
-  std::string image;
-  Eigen::Vector2d pixel_px{0, 0};
-  double residual_px = 0;  ///< its distance from where the final calibration predicts it
-};
+namespace vernier::internal {
 
 /// What remains when corners that no corner noise explains are left out.
 struct RobustFit {
@@ -67,4 +63,4 @@ void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
                       const BoardState& state,
                       std::vector<CornerOutlier>& outliers);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/pair_checks.h"
+#include "calib/calibration/pair_checks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,12 +8,21 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/bent_plane.h"
+#include "calib/calibration/bent_plane.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Most pairs of an image pair that are looked at.
@@ -197,4 +206,4 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
   return said;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/observation_checks.h"
-#include "calib/pair_observations.h"
+#include <string>
 
-namespace vernier {
+#include "calib/calibration/observation_checks.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+
+namespace vernier::internal {
 
 /// Looks at matched pairs with a rough rig in hand before they are solved; `covariance` says how
 /// rough, over all parameters of the rig (calib/rig.h). Throws Error where a quarter of an image
@@ -26,4 +29,4 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
                                  const Rig& rig,
                                  double sigma_scale = 1);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,23 +1,37 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/residual_diagnosis.h"
+#include "calib/calibration/residual_diagnosis.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/outliers.h"
+#include "calib/calibration/view_pair.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
 #include "calib/error.h"
-#include "calib/median.h"
-#include "calib/model_nesting.h"
-#include "calib/observation_checks.h"
-#include "calib/view_pair.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/statistics/median.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// A solution and the squares it leaves.
@@ -337,4 +351,4 @@ std::vector<ResidualFinding> diagnose_residuals(const BoardObservations& observa
   return Diagnosis(observations, state, problem, options).run();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "calib/minimise_reprojection.h"
-#include "calib/outliers.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// One thing found where residuals are larger than corner noise.
 struct ResidualFinding {
@@ -26,7 +28,7 @@ struct ResidualDiagnosisOptions {
 ///
 ///  - the lens: the same views solved with opencv5, opencv8 and fisheye4 (share 1 − Σr²/Σr₀²), with
 ///    the mean residual along the radius at the image's edge, which shows a wrong radial model;
-///  - the board: solved with its warp free (calib/board_warp.h);
+///  - the board: solved with its warp free (calib/board/board_warp.h);
 ///  - time: two images of a frame that fit alone but not with one pose of the board;
 ///  - images, and cameras, that leave much more than the others;
 ///  - pixels or squares that are not square, images without a board, whole images left out.
@@ -38,4 +40,4 @@ std::vector<ResidualFinding> diagnose_residuals(const BoardObservations& observa
                                                 const ReprojectionProblem& problem,
                                                 const ResidualDiagnosisOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,17 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/result_checks.h"
+#include "calib/calibration/result_checks.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <variant>
+#include <vector>
 
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/opencv_models.h"
 #include "calib/prior_agreement.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 std::optional<std::string> doubt_of_condition(const Covariance& bound, const Rig& rig) {
   if (bound.matrix.rows() == 0) return {};
@@ -66,4 +73,4 @@ std::optional<std::string> doubt_of_prior(const RigPrior& prior,
       names[most], sigmas, agreement.p_value, agreement.dof, agreement.dof == 1 ? "" : "s");
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

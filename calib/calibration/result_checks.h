@@ -6,9 +6,10 @@
 #include <string>
 
 #include "calib/covariance.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Doubts about a calibration that its own result raises; nothing where there is none.
 
@@ -29,4 +30,4 @@ std::optional<std::string> doubt_of_prior(const RigPrior& prior,
                                           const Eigen::MatrixXd& honest,
                                           int clusters);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,21 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/small_sample_covariance.h"
+#include "calib/calibration/small_sample_covariance.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "calib/base/decompositions.h"
 #include "calib/error.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// (I − H)^(-1/2) x for a symmetric H with eigenvalues in [0, 1). A view that alone decides a
 /// direction (eigenvalue 1) has no residual along it; it is held just below.
 Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (H + H.transpose()));
+  const SymmetricEigen eigen(0.5 * (H + H.transpose()));
   const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(0.999);
   const Eigen::MatrixXd& V = eigen.eigenvectors();
   return V * ((1 - h).rsqrt() * (V.transpose() * x).array()).matrix();
@@ -44,7 +45,7 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
   if (frames < 3) {
     throw Error("small-sample covariance", "fewer than three frames", "give more views");
   }
-  const Eigen::MatrixXd L = Eigen::LLT<Eigen::MatrixXd>(bound).matrixL();
+  const Eigen::MatrixXd L = Cholesky(bound).lower();
   Eigen::MatrixXd pulls(p, frames);
   for (Eigen::Index f = 0; f < frames; ++f) {
     const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
@@ -68,4 +69,4 @@ SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equa
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

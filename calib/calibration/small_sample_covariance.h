@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "calib/normal_equations.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A covariance for few views whose residuals depend on each other within a view.
 struct SmallSampleCovariance {
@@ -30,4 +30,4 @@ struct SmallSampleCovariance {
 SmallSampleCovariance small_sample_covariance(const ReducedNormalEquations& equations,
                                               const Eigen::MatrixXd& bound);
 
-}  // namespace vernier
+}  // namespace vernier::internal

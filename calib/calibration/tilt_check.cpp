@@ -1,20 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/tilt_check.h"
+#include "calib/calibration/tilt_check.h"
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 
-#include "calib/board_pose.h"
+#include "calib/base/decompositions.h"
+#include "calib/board/board_pose.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/normal_equations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double parallel_rad = 0.07, undetermined = 0.2, doubtful = 0.05;
@@ -65,10 +74,10 @@ std::vector<double> focal_sd(const BoardObservations& observations, const BoardS
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
   S = scale.asDiagonal() * S * scale.asDiagonal();
   S.diagonal().array() += 1e-13;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(S);
   for (std::size_t c = 0; c < sd.size(); ++c) {
     const int f = intrinsics_index(rig, static_cast<int>(c));
-    const double variance = factor.solve(Eigen::VectorXd::Unit(S.rows(), f))[f];
+    const double variance =
+        solve_symmetric(S, Eigen::VectorXd(Eigen::VectorXd::Unit(S.rows(), f)))[f];
     if (variance > 0) sd[c] = scale[f] * std::sqrt(variance) / rig.cameras[c].f_px();
   }
   return sd;
@@ -125,4 +134,4 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
   return diagnosis;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

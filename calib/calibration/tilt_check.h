@@ -5,10 +5,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/initial_rig.h"
-#include "calib/observation_checks.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The unit normals counted as distinct: one is new where it stands at least `apart_rad` from all
 /// counted before it.
@@ -24,4 +25,4 @@ int distinct_tilts(const std::vector<Eigen::Vector3d>& normals, double apart_rad
 /// doubt where it would be known to 5 % at best.
 ObservationDiagnosis check_tilts(const BoardObservations& observations, const BoardState& start);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,19 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_checks.h"
+#include "calib/calibration/view_checks.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <string>
+#include <vector>
 
-#include "calib/board_pose.h"
+#include "calib/board/board_pose.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/tilt_check.h"
+#include "calib/calibration/view_pair.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/tilt_check.h"
-#include "calib/view_pair.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Which frames of two cameras fit one pose between them.
@@ -261,4 +270,4 @@ ObservationDiagnosis check_views(const BoardObservations& observations,
   return diagnosis;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/initial_rig.h"
-#include "calib/observation_checks.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What may be asked of the views.
 struct ViewCheckOptions {
@@ -16,9 +17,9 @@ struct ViewCheckOptions {
 
 /// Looks at the views with a start in hand (initial_state) before it is improved: do all frames
 /// agree on where the cameras stand to each other? A frame fits where one board pose explains both
-/// its images (PairConsensus::fits, calib/view_pair.h); the pose between the cameras is the
-/// consensus of the frames. A frame that does not fit is tried with one image's corners numbered
-/// from the other end, and with its images exchanged.
+/// its images (PairConsensus::fits, calib/calibration/view_pair.h); the pose between the cameras is
+/// the consensus of the frames. A frame that does not fit is tried with one image's corners
+/// numbered from the other end, and with its images exchanged.
 ///
 /// Throws Error, naming frames, camera and images, where a repair proves the fault:
 ///
@@ -26,7 +27,8 @@ struct ViewCheckOptions {
 ///  - left and right exchanged in some frames;
 ///  - images paired wrongly throughout: they fit when one camera's are shifted by some frames;
 ///  - most frames agree on no pose at all (not simultaneous, or the cameras moved);
-///  - boards whose tilts leave the intrinsics undetermined (check_tilts, calib/tilt_check.h).
+///  - boards whose tilts leave the intrinsics undetermined (check_tilts,
+///  calib/calibration/tilt_check.h).
 ///
 /// Doubts: frames that are grossly off (1.5 % of the image) whichever way; in a pair, the second
 /// camera standing to the left of the first, or both at one place.
@@ -34,4 +36,4 @@ ObservationDiagnosis check_views(const BoardObservations& observations,
                                  const BoardState& start,
                                  const ViewCheckOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

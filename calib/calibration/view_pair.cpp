@@ -1,18 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_pair.h"
+#include "calib/calibration/view_pair.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <map>
+#include <span>
+#include <utility>
 
-#include "calib/board_pose.h"
+#include "calib/base/decompositions.h"
+#include "calib/board/board_pose.h"
+#include "calib/board_observations.h"
 #include "calib/error.h"
-#include "calib/normal_equations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double sound_times_alone = 4;
@@ -153,7 +161,7 @@ std::optional<Rig> PairConsensus::improved(const Half& half, const std::vector<i
     const Eigen::MatrixXd S = equations.information(free, free);
     const Eigen::VectorXd score = equations.scores.rowwise().sum();
     Eigen::VectorXd delta = Eigen::VectorXd::Zero(score.size());
-    delta(free) = -S.ldlt().solve(Eigen::VectorXd(score(free)));
+    delta(free) = -solve_symmetric(S, Eigen::VectorXd(score(free)));
     if (delta.allFinite()) return retract(half.state.rig, delta);
   } catch (const Error&) {  // a wrong reading may leave no pose of a board that is determined
   }
@@ -183,4 +191,4 @@ Rig PairConsensus::agreed_rig(PairReading reading) const {
   return rig;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

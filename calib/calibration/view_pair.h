@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "calib/board_pose.h"
-#include "calib/initial_rig.h"
+#include "calib/board/board_pose.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Residual, as a share of the image's longer side, that a sound frame may leave at a rough start.
 inline constexpr double sound_share = 0.006;
@@ -70,4 +75,4 @@ class PairConsensus {
   Pose T_board_turned_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
 
 namespace vernier {
 namespace {
@@ -15,7 +17,7 @@ double mul_add(double a, double b, double c) { return a * b + c; }
 
 double at_least(double a, double b) { return a < b ? b : a; }
 
-#include "calib/corner_formulas.h"
+#include "calib/camera/corner_formulas.inc"
 
 template <class Model>
 auto distorted_point(Model model, const Eigen::Vector2d& x, const double* k) {

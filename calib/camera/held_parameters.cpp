@@ -8,8 +8,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier {
 namespace {

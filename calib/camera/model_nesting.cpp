@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/model_nesting.h"
+#include "calib/camera/model_nesting.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <string>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 std::vector<CameraModel> richer_models(const CameraModel& model) {
   const std::array<CameraModel, 5> chain{Pinhole{}, Radial1{}, OpenCv4{}, OpenCv5{}, OpenCv8{}};
@@ -48,4 +54,4 @@ std::vector<CameraModel> models_of(const Rig& rig) {
   return models;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,9 +4,10 @@
 
 #include <vector>
 
+#include "calib/camera.h"
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The models that contain `model` as the case where further coefficients are zero, nearest first:
 /// pinhole ⊂ radial1 ⊂ opencv4 ⊂ opencv5 ⊂ opencv8. Nothing for opencv8 and fisheye4.
@@ -19,4 +20,4 @@ Rig in_models(const Rig& rig, const std::vector<CameraModel>& models);
 /// The models of a rig's cameras.
 std::vector<CameraModel> models_of(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

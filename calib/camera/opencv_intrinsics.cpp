@@ -1,16 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/opencv_intrinsics.h"
+#include "calib/camera/opencv_intrinsics.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <variant>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::array<const char*, 14> opencv_order{"k1", "k2", "p1", "p2", "k3", "k4", "k5",
@@ -146,4 +152,4 @@ Camera camera_from_opencv(const OpenCvIntrinsics& intrinsics,
   return camera;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

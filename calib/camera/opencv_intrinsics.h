@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/camera.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A camera as OpenCV writes it, and after it most tools:
 ///
@@ -48,4 +49,4 @@ Camera camera_from_opencv(const OpenCvIntrinsics& intrinsics,
                           const std::string& place,
                           const std::optional<CameraModel>& wanted = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

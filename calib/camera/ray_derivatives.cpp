@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/ray_derivatives.h"
+#include "calib/camera/ray_derivatives.h"
 
 #include <Eigen/LU>
 
-namespace vernier {
+#include "calib/camera.h"
+
+namespace vernier::internal {
 
 RayDerivatives derivatives_of_ray(const Camera& camera, const Eigen::Vector3d& ray) {
   ProjectionJacobian J;
@@ -15,4 +17,4 @@ RayDerivatives derivatives_of_ray(const Camera& camera, const Eigen::Vector3d& r
   return d;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

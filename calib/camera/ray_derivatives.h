@@ -6,7 +6,7 @@
 
 #include "calib/camera.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Derivatives of the ray (x, y, 1) with project(ray; a) = pixel, by the implicit function: with
 /// P = ∂project / ∂(x, y),
@@ -21,4 +21,4 @@ struct RayDerivatives {
 
 RayDerivatives derivatives_of_ray(const Camera& camera, const Eigen::Vector3d& ray);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig.h"
 
+#include <cstddef>
+
+#include "calib/camera.h"
+#include "calib/pose.h"
+
 namespace vernier {
 
 int intrinsics_index(const Rig& rig, int camera) {

@@ -6,10 +6,16 @@
 #include <algorithm>
 #include <string>
 
+#include "calib/camera.h"
+#include "calib/camera/ray_derivatives.h"
 #include "calib/error.h"
-#include "calib/ray_derivatives.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using Eigen::Matrix3d;

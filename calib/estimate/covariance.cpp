@@ -4,16 +4,23 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <utility>
 
+#include "calib/base/decompositions.h"
 #include "calib/error.h"
-#include "calib/scaled_root.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr std::pair<CovarianceKind, std::string_view> kinds[] = {
@@ -58,54 +65,6 @@ CovarianceKind covariance_kind(std::string_view name) {
   }
   throw Error(fmt::format("covariance kind \"{}\"", name), "there is no such kind",
               "use mvb, clustered, jackknife, prior or combined");
-}
-
-Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
-                                       const std::vector<std::string>& names) {
-  // Scaled by what the views would say were the board's poses known: a direction that the poses
-  // can imitate then shows as a small eigenvalue, however its parameters are measured.
-  const Eigen::VectorXd& diagonal = equations.held_poses_diagonal;
-  for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-    if (!(diagonal[i] > 0)) {
-      throw Error(names[i], "the observations say nothing about it", "use views that move it");
-    }
-  }
-  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * equations.information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  if (!(eigen.eigenvalues()[0] > 1e-13 * eigen.eigenvalues()[diagonal.size() - 1])) {
-    throw Error("calibration",
-                "the views leave a direction free: " +
-                    describe_direction(eigen.eigenvectors().col(0), names),
-                "add views at other tilts and distances, or use a model with fewer parameters");
-  }
-  const auto n = diagonal.size();
-  const Eigen::MatrixXd inverse =
-      Eigen::LLT<Eigen::MatrixXd>(scaled).solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::MatrixXd C = scale.asDiagonal() * inverse * scale.asDiagonal();
-  return 0.5 * (C + C.transpose());
-}
-
-Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
-                                   const Eigen::MatrixXd& bound,
-                                   double frames_per_parameter) {
-  const auto frames = static_cast<double>(equations.scores.cols());
-  const auto parameters = static_cast<double>(bound.rows());
-  if (frames < frames_per_parameter * parameters) {
-    throw Error("clustered covariance",
-                fmt::format("{} frames are too few for {} parameters", frames, parameters),
-                fmt::format("give at least {}", std::ceil(frames_per_parameter * parameters)));
-  }
-  if (equations.prior_information.size() == 0) {
-    const Eigen::MatrixXd influence = bound * equations.scores;
-    return frames / (frames - 1) * influence * influence.transpose();
-  }
-  // With a prior the scores sum to its pull, which is no scatter, and it adds its own information.
-  const Eigen::MatrixXd centred =
-      equations.scores.colwise() - equations.scores.rowwise().mean().eval();
-  const Eigen::MatrixXd influence = bound * centred;
-  return frames / (frames - 1) * influence * influence.transpose() +
-         bound * equations.prior_information * bound;
 }
 
 std::string describe_direction(const Eigen::VectorXd& direction,
@@ -162,7 +121,7 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
   }
   factor_ = sd.asDiagonal() * U * s.cwiseSqrt().asDiagonal();
   scaled_condition_ = condition(s);
-  raw_condition_ = condition(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C).eigenvalues());
+  raw_condition_ = condition(SymmetricEigen(C).eigenvalues());
 }
 
 }  // namespace vernier

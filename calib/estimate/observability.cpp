@@ -2,12 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/observability.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <variant>
 
+#include "calib/base/decompositions.h"
+#include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/fisheye4.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier {
 namespace {
@@ -100,8 +110,7 @@ Eigen::MatrixXd unseen_directions(const Rig& rig, const std::optional<Eigen::Vec
     const Eigen::Matrix3d E = hat(T.t) * T.R;
     same.col(0) = as_vector(E);
   }
-  const Eigen::MatrixXd Q =
-      same.householderQr().householderQ() * Eigen::MatrixXd::Identity(9, same.cols());
+  const Eigen::MatrixXd Q = orthonormal_basis(same);
   const std::vector<Move> moves = essential_moves(rig);
   const auto n = static_cast<Eigen::Index>(moves.size());
   Eigen::MatrixXd D(9, n), parameters(parameter_count(rig), n);
@@ -128,16 +137,16 @@ Observability observability(const Rig& rig,
   const Eigen::VectorXd inverse_sd = sd.cwiseInverse();
   const Eigen::MatrixXd R0 = inverse_sd.asDiagonal() * before * inverse_sd.asDiagonal();
   const Eigen::MatrixXd R1 = inverse_sd.asDiagonal() * after * inverse_sd.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> prior(0.5 * (R0 + R0.transpose()));
+  const SymmetricEigen prior(0.5 * (R0 + R0.transpose()));
   if (!(prior.eigenvalues()[0] > 1e-13 * prior.eigenvalues()[R0.rows() - 1])) {
     throw Error("prior",
                 "its covariance is singular along " +
                     describe_direction(prior.eigenvectors().col(0), names),
                 "hold what is known exactly");
   }
-  const Eigen::MatrixXd root = prior.operatorSqrt(), inverse_root = prior.operatorInverseSqrt();
+  const Eigen::MatrixXd root = prior.root(), inverse_root = prior.inverse_root();
   const Eigen::MatrixXd ratio = inverse_root * R1 * inverse_root;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (ratio + ratio.transpose()));
+  const SymmetricEigen eigen(0.5 * (ratio + ratio.transpose()));
   Observability o;
   for (Eigen::Index i = 0; i < ratio.rows(); ++i) {
     ObservedDirection direction;
@@ -162,7 +171,7 @@ Observability observability(const Rig& rig,
   o.baseline_sd_after_m = std::sqrt(n.dot(after * n)) / T.norm();
   const auto information = [&](const Eigen::MatrixXd& scaled) {
     const Eigen::VectorXd m = inverse_sd.cwiseProduct(n);
-    return m.dot(Eigen::LDLT<Eigen::MatrixXd>(scaled).solve(m));
+    return m.dot(solve_symmetric(scaled, m));
   };
   if (!n.isZero(0)) o.scale_information_ratio = information(R1) / information(R0);
   return o;

@@ -9,7 +9,9 @@
 #include <numeric>
 #include <set>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/rig.h"
 
 namespace vernier {
 namespace {

@@ -2,14 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/prior_agreement.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
-#include "calib/chi_squared.h"
+#include "calib/base/decompositions.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/statistics/chi_squared.h"
 
 namespace vernier {
+
+using namespace internal;
 
 PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                                const std::vector<std::string>& names,
@@ -24,7 +27,7 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
     const Eigen::MatrixXd R = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
     return 0.5 * (R + R.transpose());
   };
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> before(scaled(prior));
+  const SymmetricEigen before(scaled(prior));
   const auto n = offset.size();
   if (!(before.eigenvalues()[0] > 1e-13 * before.eigenvalues()[n - 1])) {
     throw Error("prior",
@@ -33,14 +36,14 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
                 "hold what is known exactly");
   }
   // In the prior's own standard deviations, where C_0 = I.
-  const Eigen::MatrixXd root = before.operatorSqrt(), inverse_root = before.operatorInverseSqrt();
+  const Eigen::MatrixXd root = before.root(), inverse_root = before.inverse_root();
   const Eigen::MatrixXd C = inverse_root * scaled(bound) * inverse_root;
   const double p = 1 / (looseness * looseness);  // information of the prior that was used
   const Eigen::MatrixXd noise = inverse_root * scaled(honest) * inverse_root - p * C * C;
   const Eigen::MatrixXd moved = Eigen::MatrixXd::Identity(n, n) - p * C;  // C H
   const Eigen::MatrixXd D = noise + moved * moved.transpose();
   const Eigen::VectorXd delta = inverse_root * sd.cwiseInverse().asDiagonal() * offset;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (D + D.transpose()));
+  const SymmetricEigen eigen(0.5 * (D + D.transpose()));
   PriorAgreement agreement;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double variance = eigen.eigenvalues()[i];

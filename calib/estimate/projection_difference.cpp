@@ -1,16 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/projection_difference.h"
+#include "calib/estimate/projection_difference.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <utility>
 
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "calib/rig_difference.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// A point as a sees it, homogeneous: w = 0 at infinity, where translations do nothing.
@@ -318,4 +324,4 @@ ProjectionDifference projection_difference(const Rig& a,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

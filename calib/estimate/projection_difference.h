@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "calib/covariance.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct ProjectionDifferenceOptions {
   std::vector<double> distances_m{1, 3, 10, std::numeric_limits<double>::infinity()};
@@ -64,4 +65,4 @@ ProjectionDifference projection_difference(const Rig& a,
                                            const Covariance* covariance_a = nullptr,
                                            const Covariance* covariance_b = nullptr);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/resized_rig.h"
+#include "calib/estimate/resized_rig.h"
 
 #include <fmt/format.h>
 
-#include "calib/error.h"
+#include <cstddef>
 
-namespace vernier {
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier::internal {
 namespace {
 
 double width_ratio(const Camera& camera, const Eigen::Vector2i& size_px) {
@@ -48,4 +53,4 @@ RigEstimate resized(const RigEstimate& estimate, const Eigen::Vector2i& size_px)
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

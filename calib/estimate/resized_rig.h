@@ -6,7 +6,7 @@
 
 #include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The same lenses before images of another size: every camera's picture enlarged by the ratio s of
 /// the widths and, in height, cut or extended evenly above and below. Parameters in pixels scale,
@@ -17,4 +17,4 @@ namespace vernier {
 /// computed from is left out. Throws Error for a size that is not positive.
 RigEstimate resized(const RigEstimate& estimate, const Eigen::Vector2i& size_px);
 
-}  // namespace vernier
+}  // namespace vernier::internal

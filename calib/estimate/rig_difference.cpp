@@ -6,16 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <set>
+#include <utility>
+#include <variant>
 
-#include "calib/chi_squared.h"
-#include "calib/corner_difference.h"
+#include "calib/board/corner_difference.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/fisheye4.h"
 #include "calib/held_parameters.h"
-#include "calib/scaled_root.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/scaled_root.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double null_direction = 1e-12;  // of the largest scaled variance

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <set>
 
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
+
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.covariance) {
     throw Error(place, "the rig has no covariance, so there is nothing to sample from",
@@ -16,6 +21,28 @@ const Covariance& required_covariance(const RigEstimate& estimate, const std::st
                 "covariance by hand");
   }
   return *estimate.covariance;
+}
+
+std::optional<Covariance> chosen_covariance(const RigEstimate& estimate, CovarianceChoice choice) {
+  if (choice == CovarianceChoice::honest) return estimate.covariance;
+  if (estimate.covariance_mvb) {
+    return Covariance{CovarianceKind::mvb, parameter_names(estimate.rig), *estimate.covariance_mvb};
+  }
+  if (estimate.covariance && estimate.covariance->kind == CovarianceKind::mvb) {
+    return estimate.covariance;
+  }
+  return std::nullopt;
+}
+
+Covariance required_covariance(const RigEstimate& estimate,
+                               CovarianceChoice choice,
+                               const std::string& place) {
+  if (choice == CovarianceChoice::honest) return required_covariance(estimate, place);
+  const std::optional<Covariance> chosen = chosen_covariance(estimate, choice);
+  if (!chosen) {
+    throw Error(place, "it has no minimum variance bound", "use the covariance it has");
+  }
+  return *chosen;
 }
 
 std::vector<bool> held_parameters(const RigEstimate& estimate) {

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/rig_pair.h"
+#include "calib/estimate/rig_pair.h"
 
 #include <string>
+#include <vector>
 
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 RigEstimate pair_of(const RigEstimate& estimate, int other) {
   const Rig& rig = estimate.rig;
@@ -35,4 +40,4 @@ RigEstimate pair_of(const RigEstimate& estimate, int other) {
   return pair;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,7 +4,7 @@
 
 #include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The pair of a rig's first camera and another, with the part of both covariances that is theirs:
 /// what the functions of a pair need from a rig of many. The other cameras' errors are averaged
@@ -12,4 +12,4 @@ namespace vernier {
 /// `other` is a camera of the rig and not its first.
 RigEstimate pair_of(const RigEstimate& estimate, int other);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,13 +4,21 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "calib/base/decompositions.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier {
 namespace {
@@ -56,9 +64,7 @@ Eigen::MatrixXd inverse_of(const Covariance& covariance) {
   }
   const Eigen::MatrixXd R =
       sd.cwiseInverse().asDiagonal() * covariance.matrix * sd.cwiseInverse().asDiagonal();
-  const auto n = R.rows();
-  const Eigen::MatrixXd inverse =
-      Eigen::LLT<Eigen::MatrixXd>(0.5 * (R + R.transpose())).solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd inverse = Cholesky(0.5 * (R + R.transpose())).inverse();
   return sd.cwiseInverse().asDiagonal() * inverse * sd.cwiseInverse().asDiagonal();
 }
 

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/simulated_pairs.h"
+#include "calib/estimate/simulated_pairs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "calib/draw_sources.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr auto source = static_cast<std::uint32_t>(DrawSource::simulated_pairs);
@@ -99,4 +102,4 @@ PairObservations simulate_pairs(const Rig& rig,
   return pairs;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,8 +5,9 @@
 #include <cstdint>
 
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 enum class SimulatedScene {
   volume,  ///< points anywhere in view between the two depths
@@ -31,4 +32,4 @@ PairObservations simulate_pairs(const Rig& rig,
                                 std::uint32_t trial = 0,
                                 const SimulatedPairsOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/colmap_cameras.h"
+#include "calib/formats/colmap_cameras.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,15 +8,23 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <map>
+#include <string>
+#include <utility>
+#include <variant>
 
-#include "calib/atomic_file.h"
-#include "calib/colmap_poses.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/opencv_intrinsics.h"
-#include "calib/rig_json.h"
+#include "calib/formats/colmap_poses.h"
+#include "calib/formats/rig_json.h"
+#include "calib/imported_rig.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using colmap::Line;
@@ -162,4 +170,4 @@ std::vector<ForeignFile> colmap_cameras(const Rig& rig) {
           {"rig_config.json", "[\n  {\n    \"cameras\": [\n" + config + "\n    ]\n  }\n]\n"}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

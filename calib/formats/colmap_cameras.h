@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "calib/imported_rig.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// COLMAP's cameras.txt (CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]) and, beside it, the poses.
 ///
@@ -36,4 +37,4 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
 /// `colmap rig_configurator` of 3.12 and later.
 std::vector<ForeignFile> colmap_cameras(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

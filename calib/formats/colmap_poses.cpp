@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/colmap_poses.h"
+#include "calib/formats/colmap_poses.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "calib/rig_json.h"
+#include "calib/formats/rig_json.h"
+#include "calib/pose.h"
 
-namespace vernier::colmap {
+namespace vernier::internal::colmap {
 namespace {
 
 using rig_json::Json;
@@ -292,4 +295,4 @@ std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
   return placed;
 }
 
-}  // namespace vernier::colmap
+}  // namespace vernier::internal::colmap

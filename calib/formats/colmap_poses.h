@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "calib/pose.h"
 
 /// Internal to calib/: COLMAP's text files and where they say the cameras are. Not installed.
-namespace vernier::colmap {
+namespace vernier::internal::colmap {
 
 /// The words of a line, with its place for complaints. All members throw Error.
 class Line {
@@ -47,4 +48,4 @@ std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
                                  double unit_m,
                                  std::vector<std::string>& notes);
 
-}  // namespace vernier::colmap
+}  // namespace vernier::internal::colmap

@@ -5,9 +5,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
+#include <cstddef>
 #include <set>
+#include <utility>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
 namespace vernier {
 

@@ -1,18 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/kalibr_camchain.h"
+#include "calib/formats/kalibr_camchain.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <string>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/yaml_node.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/opencv_intrinsics.h"
-#include "calib/yaml_node.h"
+#include "calib/imported_rig.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// The part of a topic before the last: left of /stereo/left/image_raw.
@@ -121,4 +128,4 @@ std::vector<ForeignFile> kalibr_camchain(const Rig& rig) {
   return {{"camchain.yaml", text}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

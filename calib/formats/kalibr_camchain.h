@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "calib/imported_rig.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Kalibr's camchain.yaml: cameras cam0, cam1 … with
 ///
@@ -26,4 +27,4 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file,
 /// camchain.yaml. Throws Error for a coefficient beyond p2 that is not zero, which radtan lacks.
 std::vector<ForeignFile> kalibr_camchain(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,18 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/mrcal_cameramodel.h"
+#include "calib/formats/mrcal_cameramodel.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/python_literal.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/opencv_intrinsics.h"
-#include "calib/python_literal.h"
+#include "calib/imported_rig.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using Kind = PythonLiteral::Kind;
@@ -173,4 +179,4 @@ std::vector<ForeignFile> mrcal_cameramodels(const Rig& rig) {
   return files;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

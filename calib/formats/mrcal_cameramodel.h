@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "calib/imported_rig.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// mrcal's .cameramodel: one camera a file, a Python dictionary with lensmodel, intrinsics
 /// (fx fy cx cy, then the distortion in OpenCV's order), imagersize, and the pose
@@ -36,4 +37,4 @@ PlacedCamera parse_mrcal_cameramodel(const std::string& text,
 /// the pose are written, numbers in the shortest form that reads back equal.
 std::vector<ForeignFile> mrcal_cameramodels(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,18 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/opencv_calibration_file.h"
+#include "calib/formats/opencv_calibration_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/yaml_node.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/opencv_intrinsics.h"
-#include "calib/yaml_node.h"
+#include "calib/fisheye4.h"
+#include "calib/imported_rig.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::size_t most_cameras = 9;
@@ -219,4 +229,4 @@ std::vector<ForeignFile> opencv_calibration(const Rig& rig) {
   return {whole};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

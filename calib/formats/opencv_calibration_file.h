@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "calib/imported_rig.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Calibrations as OpenCV's samples keep them in YAML (cv::FileStorage): K, D of each camera and
 /// cv::stereoCalibrate's R, T of the second, x_2 = R x_1 + T, which is our T_right_left.
@@ -37,4 +38,4 @@ std::vector<ForeignFile> opencv_calibration(const Rig& rig);
 /// One camera is one file.
 std::vector<ForeignFile> opencv_intrinsics_and_extrinsics(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,18 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/pairs_file.h"
+#include "calib/formats/pairs_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <set>
+#include <string_view>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
-#include "calib/text_lines.h"
+#include "calib/pair_observations.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::string_view header = "pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px";
@@ -82,4 +86,4 @@ void write_pairs(const PairObservations& pairs, const std::filesystem::path& fil
   write_atomically(file, {text.data(), text.size()});
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

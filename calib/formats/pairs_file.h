@@ -6,7 +6,7 @@
 
 #include "calib/pair_observations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Reads `pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px`: one match a line under that
 /// header, those of one image pair together. Throws Error with file and line for anything that is
@@ -17,4 +17,4 @@ PairObservations read_pairs(const std::filesystem::path& file);
 /// Writes the same; numbers are exact (shortest form that reads back equal).
 void write_pairs(const PairObservations& pairs, const std::filesystem::path& file);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -7,16 +7,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <set>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/formats/rig_json.h"
 #include "calib/held_parameters.h"
-#include "calib/rig_json.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using rig_json::Json;

@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/rig_json.h"
+#include "calib/formats/rig_json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include "calib/board_observations.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
-namespace vernier::rig_json {
+namespace vernier::internal::rig_json {
 namespace {
 
 int line_of(const std::string& text, std::size_t byte) {
@@ -277,4 +285,4 @@ CalibrationEvidence parse_evidence(const Node& node, const Rig& rig) {
   return evidence;
 }
 
-}  // namespace vernier::rig_json
+}  // namespace vernier::internal::rig_json

@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/error.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
 /// Internal to calib/: JSON of the parts of a rig file. Not installed.
-namespace vernier::rig_json {
+namespace vernier::internal::rig_json {
 
 using Json = nlohmann::ordered_json;
 
@@ -57,8 +61,8 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig);
 Json to_json(const PairOutlier& outlier);
 PairOutlier parse_pair_outlier(const Node& node);
 
-/// Boards and pairs; priors are rig files in themselves (calib/rig_file.cpp).
+/// Boards and pairs; priors are rig files in themselves (calib/formats/rig_file.cpp).
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig);
 CalibrationEvidence parse_evidence(const Node& node, const Rig& rig);
 
-}  // namespace vernier::rig_json
+}  // namespace vernier::internal::rig_json

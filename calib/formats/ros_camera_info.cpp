@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/ros_camera_info.h"
+#include "calib/formats/ros_camera_info.h"
 
 #include <fmt/format.h>
 
-#include "calib/atomic_file.h"
-#include "calib/error.h"
-#include "calib/opencv_intrinsics.h"
-#include "calib/yaml_node.h"
+#include <cstddef>
+#include <utility>
 
-namespace vernier {
+#include "calib/base/atomic_file.h"
+#include "calib/base/yaml_node.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
+#include "calib/error.h"
+#include "calib/imported_rig.h"
+#include "calib/pose.h"
+
+namespace vernier::internal {
 namespace {
 
 struct DistortionModel {
@@ -135,4 +141,4 @@ ForeignFile format_ros_camera_info(const RosCameraInfo& info) {
               array_text("projection_matrix", 3, 4, yaml_list(Eigen::MatrixXd(info.P)))};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

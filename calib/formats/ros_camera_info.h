@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/camera.h"
 #include "calib/imported_rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// ROS's sensor_msgs/CameraInfo, as YAML: what camera_calibration_parsers keeps (image_width,
 /// camera_matrix, …) or the message itself (width, K, D, R, P; k, d, r, p in ROS 2).
@@ -42,7 +43,7 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
                                  const ImportOptions& options = {});
 
 /// NAME.yaml in the layout of camera_calibration_parsers. For a pair,
-/// stereo/rectified_camera_info.h has the infos.
+/// stereo/rectification/rectified_camera_info.h has the infos.
 ForeignFile format_ros_camera_info(const RosCameraInfo& info);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "calib/error.h"
-#include "calib/rig_json.h"
+#include "calib/formats/rig_json.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 
-namespace vernier::rig_json {
+namespace vernier::internal::rig_json {
 
 std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
   std::vector<std::string> texts;
@@ -101,4 +106,4 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
   return json;
 }
 
-}  // namespace vernier::rig_json
+}  // namespace vernier::internal::rig_json

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Points of a file have at least this many digits.
@@ -74,4 +75,4 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
   return grid;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

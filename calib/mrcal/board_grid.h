@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A target as mrcal has it: the points (column, row, 0) · spacing of a full rectangular grid.
 struct BoardGrid {
@@ -22,4 +22,4 @@ struct BoardGrid {
 /// the points are not on a flat, square grid along the target's axes, at least 2 x 2.
 BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m);
 
-}  // namespace vernier
+}  // namespace vernier::internal

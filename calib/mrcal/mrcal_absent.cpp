@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 // What stands in for calib/mrcal/mrcal_problem.cpp where libmrcal was not found.
+#include <vector>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/mrcal/mrcal_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct MrcalProblem::Layout {
   Eigen::VectorXd state;
@@ -30,4 +34,4 @@ BoardState MrcalProblem::board_state(const BoardState& like) const { return like
 bool mrcal_available() { return false; }
 const char* mrcal_version() { return ""; }
 
-}  // namespace vernier
+}  // namespace vernier::internal

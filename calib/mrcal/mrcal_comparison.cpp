@@ -2,14 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/mrcal/mrcal_comparison.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/mrcal_solver.h"
+#include "calib/rig.h"
+#include "calib/solver/refined_minimum.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Relative; the costs of one minimum agree to about 1e-13.
@@ -19,8 +27,7 @@ constexpr double same_minimum = 1e-9;
 BoardState beside(const RefinedMinimum& ours, double pixel_sigma_px) {
   const Eigen::VectorXd sd = ours.unit_bound.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (sd.array() > 0).select(sd.cwiseInverse(), 0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> scaled(
-      inverse.asDiagonal() * ours.unit_bound * inverse.asDiagonal());
+  const SymmetricEigen scaled(inverse.asDiagonal() * ours.unit_bound * inverse.asDiagonal());
   const Eigen::VectorXd lengths = scaled.eigenvalues().cwiseMax(0).cwiseSqrt();
   BoardState state = ours.state;
   state.rig =
@@ -94,4 +101,4 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
   return check;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

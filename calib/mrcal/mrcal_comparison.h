@@ -5,11 +5,15 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/mrcal/mrcal_solver.h"
-#include "calib/refined_minimum.h"
+#include "calib/rig.h"
+#include "calib/solver/refined_minimum.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Whether a difference is worse than the worst so far: one that is not a number is the worst of
 /// all, and stays.
@@ -63,4 +67,4 @@ struct CovarianceDifference {
 };
 CovarianceDifference normalised_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -3,11 +3,18 @@
 #include "calib/mrcal/mrcal_parameters.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
+#include <utility>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// One free column that moves the states `rows` by `by`.
@@ -147,4 +154,4 @@ MrcalLens mrcal_lens(const Rig& rig) {
   return largest;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -8,7 +8,7 @@
 
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The rig's parameters as mrcal counts them, in the order of calib/rig.h:
 ///
@@ -54,4 +54,4 @@ struct MrcalLens {
 /// Throws Error for fisheye4, which mrcal does not have.
 MrcalLens mrcal_lens(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -3,17 +3,23 @@
 #include "calib/mrcal/mrcal_problem.h"
 
 #include <algorithm>
+#include <cstddef>
 
 extern "C" {  // mrcal 2.2's header says nothing of C++
 #include <mrcal/mrcal.h>
 }
 #include <cholmod.h>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_parameters.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct MrcalProblem::Layout {
   BoardGrid grid;
@@ -199,4 +205,4 @@ bool mrcal_available() { return true; }
 
 const char* mrcal_version() { return VERNIER_MRCAL_VERSION; }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,9 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Residuals of a problem of mrcal's and their sparse Jacobian, one row a measurement, in full
 /// units (pixels by pixels, radians, metres). Rows of corners that were not seen are zero.
@@ -52,4 +53,4 @@ class MrcalProblem {
 bool mrcal_available();
 const char* mrcal_version();
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <ctime>
+#include <utility>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
-#include "calib/square_root_system.h"
+#include "calib/solver/square_root_system.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Milliseconds since it was made.
@@ -203,4 +207,4 @@ double mrcal_optimise_only(const BoardObservations& observations, const BoardSta
   return problem.evaluate().residual_px.squaredNorm();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A calibration solved by mrcal.
 struct MrcalSolution {
@@ -40,4 +41,4 @@ MrcalSolution mrcal_solve(const BoardObservations& observations,
 /// mrcal_optimize alone, as a benchmark wants it. Returns Σ r² where it stopped.
 double mrcal_optimise_only(const BoardObservations& observations, const BoardState& start);
 
-}  // namespace vernier
+}  // namespace vernier::internal

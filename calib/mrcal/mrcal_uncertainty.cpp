@@ -2,16 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/mrcal/mrcal_uncertainty.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "calib/base/program_run.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_parameters.h"
-#include "calib/program_run.h"
+#include "calib/pose.h"
+#include "calib/triangulation.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using Json = nlohmann::json;
@@ -210,4 +218,4 @@ std::string mrcal_python_version(const fs::path& script) {
   return run.output.substr(0, run.output.find('\n'));
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

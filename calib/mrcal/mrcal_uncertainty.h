@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/triangulation.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Points (of the camera's frame, metres; directions at infinity) whose pixel's covariance is asked
 /// for.
@@ -63,4 +64,4 @@ MrcalUncertaintyAnswer ask_mrcal(const std::filesystem::path& script,
 /// What version of mrcal a Python here has; empty where none has it.
 std::string mrcal_python_version(const std::filesystem::path& script);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,17 +4,28 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
+#include <utility>
 
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_uncertainty.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/solver/refined_minimum.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/joint_information.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double distances_m[] = {0.5, 1, 5, 20, std::numeric_limits<double>::infinity()};
@@ -73,8 +84,7 @@ std::optional<Eigen::MatrixXd> basis_of(const RefinedMinimum& ours, const std::v
   const Eigen::MatrixXd C = G * ours.unit_bound * G.transpose();
   const Eigen::VectorXd sd = C.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (sd.array() > 0).select(sd.cwiseInverse(), 0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> scaled(inverse.asDiagonal() * C *
-                                                              inverse.asDiagonal());
+  const SymmetricEigen scaled(inverse.asDiagonal() * C * inverse.asDiagonal());
   const Eigen::VectorXd s = scaled.eigenvalues().tail(free);  // ascending; the held ones are zero
   if (s[0] > 0 && s[free - 1] < greatest_condition * s[0]) {
     return lift.native ? std::nullopt : std::optional(lift.L);
@@ -168,4 +178,4 @@ UncertaintyComparison compare_uncertainty(const std::filesystem::path& script,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "calib/board_observations.h"
-#include "calib/refined_minimum.h"
+#include "calib/solver/refined_minimum.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// How far our propagated covariances are from mrcal's, over a grid of pixels of every camera at
 /// several distances and at infinity, and over points seen by the first camera and each other:
@@ -32,4 +32,4 @@ UncertaintyComparison compare_uncertainty(const std::filesystem::path& script,
                                           double pixel_sigma_px,
                                           const std::vector<bool>& held = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

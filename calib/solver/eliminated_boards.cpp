@@ -1,13 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/eliminated_boards.h"
+#include "calib/solver/eliminated_boards.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
+#include "calib/base/ordered_parallel.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/held_parameters.h"
-#include "calib/ordered_parallel.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/view_kernel.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::size_t chunk_groups = 16;  // whose sums are taken together: 128 frames
@@ -160,4 +172,4 @@ BoardState EliminatedBoards::moved(const BoardState& state, const Eigen::VectorX
   return next;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,9 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/packed_views.h"
+#include <cstddef>
+#include <vector>
 
-namespace vernier {
+#include "calib/board_state.h"
+#include "calib/rig.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/reprojection_problem.h"
+
+namespace vernier::internal {
 
 /// The reduced system in the tangent of (rig, warp where that is free).
 struct ReducedSystem {
@@ -47,4 +54,4 @@ class EliminatedBoards {
 /// The free directions E of (rig, warp), a column each; empty where all are free.
 Eigen::MatrixXd directions(const Rig& rig, const std::vector<bool>& held, int parameters);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,11 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/epipolar_kernel.h"
+#include "calib/solver/epipolar_kernel.h"
+
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/view_kernel.h"
 
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "calib/epipolar_kernel.cpp"
+#define HWY_TARGET_INCLUDE "calib/solver/epipolar_kernel.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/contrib/math/math-inl.h>
@@ -18,14 +25,14 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#include "calib/corner_formulas.h"
-#include "calib/dual_number.h"
-#include "calib/epipolar_formulas.h"
-#include "calib/pack.h"
+#include "calib/camera/corner_formulas.inc"
+#include "calib/solver/dual_number.inc"
+#include "calib/solver/epipolar_formulas.inc"
+#include "calib/solver/pack.inc"
 
 using Constants = CameraConstants<Pack>;
 using Look = void (*)(const Constants&, Pack, Pack, Sight<Pack>&);
@@ -202,11 +209,11 @@ void pair_residuals(const EpipolarView& view,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::internal {
 
 HWY_EXPORT(sum_pairs);
 HWY_EXPORT(pair_residuals);
@@ -242,5 +249,5 @@ void pair_residuals(const EpipolarView& view,
   HWY_DYNAMIC_DISPATCH(pair_residuals)(view, packed, eights, residuals);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal
 #endif  // HWY_ONCE

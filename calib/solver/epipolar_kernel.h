@@ -4,11 +4,12 @@
 
 #include <cstddef>
 
-#include "calib/frame_kernel.h"
-#include "calib/loss.h"
+#include "calib/camera.h"
 #include "calib/rig.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/loss.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Lanes of eight packed pairs: u_left v_left u_right v_right 1/σ; 1/σ = 0 pads.
 inline constexpr int packed_pair_lanes = 5;
@@ -43,4 +44,4 @@ void pair_residuals(const EpipolarView& view,
                     std::size_t eights,
                     double* residuals);
 
-}  // namespace vernier
+}  // namespace vernier::internal

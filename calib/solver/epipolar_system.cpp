@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/epipolar_system.h"
+#include "calib/solver/epipolar_system.h"
 
-namespace vernier {
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
+
+namespace vernier::internal {
 
 EpipolarSums scaled_sums(const PackedPairs& packed,
                          const PackedPairs::Group* group,
@@ -39,4 +45,4 @@ EpipolarSystem epipolar_system(const PackedPairs& packed,
   return system;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

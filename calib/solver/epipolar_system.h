@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/packed_pairs.h"
-#include "calib/resolve_pairs.h"
+#include "calib/rig.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Σ over pairs and priors in the free directions E: their information, and half the gradient.
 struct EpipolarSystem {
@@ -25,4 +27,4 @@ EpipolarSums scaled_sums(const PackedPairs& packed,
                          Loss loss,
                          double scale);
 
-}  // namespace vernier
+}  // namespace vernier::internal

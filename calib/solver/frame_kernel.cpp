@@ -1,25 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/frame_kernel.h"
+#include "calib/solver/frame_kernel.h"
 
-#include "calib/pose_factor.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/pose_factor.h"
+#include "calib/solver/view_kernel.h"
 
 // As in view_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "calib/frame_kernel.cpp"
+#define HWY_TARGET_INCLUDE "calib/solver/frame_kernel.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#include "calib/pack.h"
+#include "calib/solver/pack.inc"
 
 HWY_INLINE Pack get(const Lanes& from, int lane) { return load(from.of + lane); }
 HWY_INLINE void set(Lanes& to, int lane, Pack a) { store(a, to.of + lane); }
@@ -174,11 +177,11 @@ void eliminate_frames(const std::vector<CameraPlace>& places,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::internal {
 
 HWY_EXPORT(eliminate_frames);
 
@@ -231,5 +234,5 @@ void frame_steps(const Lanes* factor, const Eigen::VectorXd& step, Lanes (&twist
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal
 #endif

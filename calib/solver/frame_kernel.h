@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "calib/rig.h"
-#include "calib/view_kernel.h"
+#include "calib/solver/view_kernel.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// One double a lane, aligned as the widest registers like it.
 struct alignas(64) Lanes {
@@ -62,4 +63,4 @@ void eliminate_frames(const std::vector<CameraPlace>& places,
 /// parameters.
 void frame_steps(const Lanes* factor, const Eigen::VectorXd& step, Lanes (&twists)[6]);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,21 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/initial_camera.h"
+#include "calib/solver/initial_camera.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 
-#include "calib/board_homography.h"
-#include "calib/board_pose.h"
+#include "calib/base/decompositions.h"
+#include "calib/board/board_homography.h"
+#include "calib/board/board_pose.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/normal_equations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -116,8 +125,9 @@ class OneCamera {
     const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
     S = scale.asDiagonal() * S * scale.asDiagonal();
     S.diagonal().array() += 1e-6;
-    return -(scale.asDiagonal() *
-             S.ldlt().solve(scale.asDiagonal() * Eigen::VectorXd(score(free))));
+    return -(
+        scale.asDiagonal() *
+        solve_symmetric(S, Eigen::VectorXd(scale.asDiagonal() * Eigen::VectorXd(score(free)))));
   }
 
   const std::vector<Eigen::Vector3d>& target_m_;
@@ -189,4 +199,4 @@ InitialCamera initial_camera(const BoardObservations& observations,
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

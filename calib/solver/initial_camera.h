@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/board_observations.h"
-#include "calib/rig.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A first guess of one camera and of where the board stood in its views.
 struct InitialCamera {
@@ -17,8 +19,8 @@ struct InitialCamera {
 };
 
 /// A start for one camera from its views of a flat target alone. The focal length comes from the
-/// homographies (calib/board_homography.h) with the centre in the middle of the image, and in a
-/// second start is 0.8 image widths; poses follow by PnP; then f and k1, with ax and k2, then all
+/// homographies (calib/board/board_homography.h) with the centre in the middle of the image, and in
+/// a second start is 0.8 image widths; poses follow by PnP; then f and k1, with ax and k2, then all
 /// parameters are improved by Gauss and Newton's method on the typical views (residual below five
 /// times that of most), the poses following. Where the better start leaves more than 0.2 % of the
 /// image (a wide-angle or fisheye lens, whose views are no homographies), starts from 0.25 to 3
@@ -29,4 +31,4 @@ InitialCamera initial_camera(const BoardObservations& observations,
                              const CameraModel& model,
                              const std::string& place);
 
-}  // namespace vernier
+}  // namespace vernier::internal

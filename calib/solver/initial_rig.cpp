@@ -1,17 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/initial_rig.h"
+#include "calib/solver/initial_rig.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/initial_camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/initial_camera.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using PoseOfView = std::map<std::pair<int, int>, Pose>;  // T_camera_board by (camera, frame)
@@ -80,18 +88,6 @@ Pose consensus_pose(const std::vector<Pose>& candidates) {
   return retract(centre, delta);
 }
 
-BoardState at_frames(const BoardState& state, const std::vector<int>& frames) {
-  BoardState part = state;
-  part.frames.clear();
-  part.T_first_board.clear();
-  for (std::size_t f = 0; f < state.frames.size(); ++f) {
-    if (!std::binary_search(frames.begin(), frames.end(), state.frames[f])) continue;
-    part.frames.push_back(state.frames[f]);
-    part.T_first_board.push_back(state.T_first_board[f]);
-  }
-  return part;
-}
-
 BoardState initial_state(const BoardObservations& observations,
                          const std::vector<CameraModel>& models) {
   BoardState state;
@@ -125,4 +121,4 @@ BoardState initial_state(const BoardObservations& observations,
   return state;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,27 +5,18 @@
 #include <vector>
 
 #include "calib/board_observations.h"
-#include "calib/rig.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
 
-namespace vernier {
+namespace vernier::internal {
 
-/// A state of a board calibration: the rig and where the board stood in every frame.
-struct BoardState {
-  Rig rig;
-  std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
-  Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board_warp.h)
-};
-
-/// The state at some of its frames, ascending; frames it does not have are left out.
-BoardState at_frames(const BoardState& state, const std::vector<int>& frames);
-
-/// A start from the corners alone: every camera by itself (calib/initial_camera.h), then the
+/// A start from the corners alone: every camera by itself (calib/solver/initial_camera.h), then the
 /// cameras chained by their common frames. The pose between two cameras is the median of those
 /// frames that agree with the candidate that the others agree with best, so views that are turned,
 /// swapped or not simultaneous do no harm while they are the smaller part; see check_views
-/// (calib/view_checks.h) for finding them. Throws Error where a camera has fewer than three views
-/// or shares no frame with those before it.
+/// (calib/calibration/view_checks.h) for finding them. Throws Error where a camera has fewer than
+/// three views or shares no frame with those before it.
 BoardState initial_state(const BoardObservations& observations,
                          const std::vector<CameraModel>& models);
 
@@ -34,4 +25,4 @@ BoardState initial_state(const BoardObservations& observations,
 /// candidates it is the identity.
 Pose consensus_pose(const std::vector<Pose>& candidates);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,11 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/linearised_cost.h"
+#include "calib/solver/linearised_cost.h"
 
+#include <cstddef>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 void add_priors(ReducedNormalEquations& equations,
                 const std::vector<RigPrior>& priors,
@@ -32,4 +40,4 @@ LinearisedCost linearised_cost(const BoardObservations& observations,
   return cost;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

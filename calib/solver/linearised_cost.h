@@ -5,9 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "calib/minimise_reprojection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The unified cost about a state, in the directions that are free:
 ///
@@ -33,4 +38,4 @@ LinearisedCost linearised_cost(const BoardObservations& observations,
                                const BoardState& state,
                                const ReprojectionProblem& problem);
 
-}  // namespace vernier
+}  // namespace vernier::internal

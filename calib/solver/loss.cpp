@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/loss.h"
+#include "calib/solver/loss.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::internal {
 
 Loss balanced(LossShape shape, double limit) {
   // Moments of the standard normal within the limit.
@@ -46,4 +46,4 @@ double curvature_of(const Loss& loss, double r) {
   return loss.gain * t * (1 - 5 * share);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

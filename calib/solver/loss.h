@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What a residual r adds to the cost, in standard deviations.
 enum class LossShape {
@@ -26,4 +26,4 @@ double cost_of(const Loss& loss, double r);
 double weight_of(const Loss& loss, double r);
 double curvature_of(const Loss& loss, double r);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,22 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/minimise_reprojection.h"
+#include "calib/solver/minimise_reprojection.h"
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numeric>
+#include <string>
+#include <vector>
 
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/pair_cost.h"
-#include "calib/parameter_buffer.h"
-#include "calib/view_cost.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/pair_cost.h"
+#include "calib/solver/parameter_buffer.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/view_cost.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -26,7 +37,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 class PriorCost : public ceres::CostFunction {
  public:
   PriorCost(const RigPrior& prior, double pixel_sigma_px) : prior_(prior) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(prior.information);
+    const SymmetricEigen eigen(prior.information);
     half_ = pixel_sigma_px * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
             eigen.eigenvectors().transpose();
     set_num_residuals(static_cast<int>(half_.rows()));
@@ -265,31 +276,6 @@ class Minimisation {
 
 }  // namespace
 
-void check_problem(const BoardObservations& observations,
-                   const Rig& rig,
-                   const ReprojectionProblem& problem) {
-  const int n = parameter_count(rig);
-  if (!problem.held.empty() && static_cast<int>(problem.held.size()) != n) {
-    throw Error("held parameters", "there is not one flag a parameter of the rig",
-                "make them with held_mask");
-  }
-  for (const RigPrior& prior : problem.priors) {
-    if (prior.information.rows() != n || prior.information.cols() != n ||
-        parameter_names(prior.mean) != parameter_names(rig)) {
-      throw Error("prior", "it is of other parameters than the rig's", "make it with rig_prior");
-    }
-  }
-  bool fits =
-      problem.corner_weights.empty() || problem.corner_weights.size() == observations.views.size();
-  for (std::size_t v = 0; fits && v < problem.corner_weights.size(); ++v) {
-    fits = problem.corner_weights[v].size() == observations.views[v].ids.size();
-  }
-  if (!fits) throw Error("corner weights", "there is not one a corner", "give one a corner");
-  if (!(problem.pixel_sigma_px > 0)) {
-    throw Error("pixel sigma", "it is not positive", "give a standard deviation in pixels");
-  }
-}
-
 BoardState minimise_reprojection(const BoardObservations& observations,
                                  BoardState start,
                                  const ReprojectionProblem& problem) {
@@ -298,4 +284,4 @@ BoardState minimise_reprojection(const BoardObservations& observations,
   return Minimisation(observations, start, problem).solve();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/normal_equations.h"
+#include "calib/solver/normal_equations.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
-#include "calib/pose_factor.h"
-#include "calib/view_linearisation.h"
+#include "calib/rig.h"
+#include "calib/solver/pose_factor.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Sums over the views of one frame.
@@ -182,4 +185,4 @@ ReducedNormalEquations rescaled(ReducedNormalEquations equations, double pixel_s
   return equations;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,9 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The normal equations of a board calibration with the board poses eliminated view by view
 /// (Schur complement). With r the residuals of frame f divided by the pixel noise, A its
@@ -28,9 +29,6 @@ struct ReducedNormalEquations {
   int residuals = 0;                               ///< count of r
   Eigen::MatrixXd prior_information;               ///< the prior's term of S; empty without one
 };
-
-/// Whether the board's warp is among the unknowns.
-enum class BoardWarp { known, free };
 
 /// `pixel_sigma_px` is the standard deviation of a pixel coordinate.
 ReducedNormalEquations reduced_normal_equations(const BoardObservations& observations,
@@ -57,4 +55,4 @@ void add_prior(ReducedNormalEquations& equations, const Eigen::MatrixXd& informa
 /// has no prior yet.
 ReducedNormalEquations rescaled(ReducedNormalEquations equations, double pixel_sigma_ratio);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,11 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/packed_pairs.h"
+#include "calib/solver/packed_pairs.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/solver/epipolar_kernel.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/view_kernel.h"
+
+namespace vernier::internal {
 namespace {
 
 EpipolarSums unpacked(const std::vector<double>& sums, int columns, double cost) {
@@ -68,4 +76,4 @@ EpipolarSums epipolar_sums(const PackedPairs& packed, const Rig& rig, const Loss
   return sums_of(packed.lanes({}), packed.eights(), rig, loss);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

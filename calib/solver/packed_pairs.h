@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "calib/epipolar_kernel.h"
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/solver/epipolar_kernel.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/loss.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Matched pairs eight at a time, image pair by image pair, the last eight of each padded.
 class PackedPairs {
@@ -50,4 +54,4 @@ EpipolarSums epipolar_sums(const PackedPairs& packed,
                            const Loss& loss);
 EpipolarSums epipolar_sums(const PackedPairs& packed, const Rig& rig, const Loss& loss);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,15 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/packed_views.h"
+#include "calib/solver/packed_views.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <string>
+#include <utility>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/view_kernel.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// View of every (frame, camera), -1 for none, and the frames in the order of their corner counts.
@@ -186,4 +197,4 @@ Eigen::MatrixXd kernel_by_tangent(const Rig& rig) {
   return M;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

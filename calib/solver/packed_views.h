@@ -3,12 +3,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
-#include "calib/frame_kernel.h"
-#include "calib/minimise_reprojection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/rig.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/view_kernel.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Eight frames that are worked on together.
 struct FrameGroup {
@@ -67,4 +74,4 @@ Eigen::VectorXd kernel_intrinsics(const Camera& camera);
 /// (f_x f_y o_x o_y k …, twists of T_camera_first), to first order at `rig`.
 Eigen::MatrixXd kernel_by_tangent(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::internal

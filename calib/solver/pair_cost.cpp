@@ -1,11 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/pair_cost.h"
+#include "calib/solver/pair_cost.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/solver/epipolar_kernel.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/parameter_buffer.h"
+#include "calib/solver/view_kernel.h"
+
+namespace vernier::internal {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -117,4 +127,4 @@ void CompressedPairs::PrepareForEvaluation(bool jacobians, bool new_point) {
   rotation_by_block_ = left_jacobian({pose[0], pose[1], pose[2]});
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -8,15 +8,17 @@
 #include <memory>
 #include <vector>
 
-#include "calib/packed_pairs.h"
-#include "calib/parameter_buffer.h"
+#include "calib/board_state.h"
+#include "calib/pair_observations.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/parameter_buffer.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The Sampson residuals of matched pairs as Ceres gets them: one block of as many rows as a pair's
-/// row has columns. As with CompressedViews (calib/view_cost.h), a triangular factor of [J r]ᵀ [J
-/// r] stands for all rows with the same cost, gradient and Gauss–Newton matrix. One for all image
-/// pairs: those of few pairs leave more directions free than rounding lets a factor show.
+/// row has columns. As with CompressedViews (calib/solver/view_cost.h), a triangular factor of [J
+/// r]ᵀ [J r] stands for all rows with the same cost, gradient and Gauss–Newton matrix. One for all
+/// image pairs: those of few pairs leave more directions free than rounding lets a factor show.
 class CompressedPairs : public ceres::EvaluationCallback {
  public:
   /// Residuals are in standard deviations times `unit`; `weights` multiply their squares, one a
@@ -45,4 +47,4 @@ class CompressedPairs : public ceres::EvaluationCallback {
   std::vector<double> sums_;  // the triangle U; evaluated without, χ² in the first
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/pair_equations.h"
+#include "calib/solver/pair_equations.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
-#include "calib/epipolar_system.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/solver/packed_pairs.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 ReducedNormalEquations pair_equations(const PairObservations& pairs,
                                       const Rig& rig,
@@ -81,4 +89,4 @@ PairObservations split_into_cells(const PairObservations& pairs,
   return split;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

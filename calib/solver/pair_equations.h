@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/loss.h"
-#include "calib/normal_equations.h"
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The pairs' part of the normal equations at `rig`, a cluster for every image pair, with residuals
 /// divided by `sigma_scale`: scores Σ ρ'/2 J, and as information m Σ J Jᵀ over the pairs that
@@ -26,4 +27,4 @@ PairObservations split_into_cells(const PairObservations& pairs,
                                   const Eigen::Vector2i& size_px,
                                   int cells);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
-#include "calib/initial_rig.h"
+#include "calib/board_state.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A pose as Ceres sees it: rotation vector (radians) and translation (metres). Its derivative is
 /// the left tangent's times J_l, which keeps Ceres' own manifolds and their half angles out.
@@ -69,4 +72,4 @@ class ParameterBuffer {
   std::vector<double> values_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/pose_factor.h"
+#include "calib/solver/pose_factor.h"
 
 #include <string>
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 Eigen::LLT<Eigen::Matrix<double, 6, 6>> pose_factor(const Eigen::Matrix<double, 6, 6>& BtB,
                                                     int frame) {
@@ -20,4 +20,4 @@ Eigen::LLT<Eigen::Matrix<double, 6, 6>> pose_factor(const Eigen::Matrix<double, 
   return factor;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

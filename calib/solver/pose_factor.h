@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A pivot below this share of its diagonal is rounding: the corners do not fix the board's pose.
 inline constexpr double least_pose_pivot = 1e-13;
@@ -14,4 +14,4 @@ inline constexpr double least_pose_pivot = 1e-13;
 Eigen::LLT<Eigen::Matrix<double, 6, 6>> pose_factor(const Eigen::Matrix<double, 6, 6>& BtB,
                                                     int frame);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,12 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/refined_minimum.h"
+#include "calib/solver/refined_minimum.h"
 
-#include "calib/board_warp.h"
-#include "calib/square_root_system.h"
-#include "calib/view_linearisation.h"
+#include <cstddef>
 
-namespace vernier {
+#include "calib/board/board_warp.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/held_parameters.h"
+#include "calib/rig.h"
+#include "calib/solver/square_root_system.h"
+
+namespace vernier::internal {
 namespace {
 
 struct Linearisation {
@@ -94,4 +100,4 @@ RefinedMinimum refine_minimum(const BoardObservations& observations,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

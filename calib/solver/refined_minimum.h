@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib/held_parameters.h"
-#include "calib/initial_rig.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A minimum of the reprojection error to rounding.
 struct RefinedMinimum {
@@ -23,11 +23,11 @@ struct RefinedMinimum {
 /// Takes a state near the minimum to it by Gauss and Newton's steps, which need no look at the
 /// cost: at a distance of d standard deviations the cost differs by d² σ², so a solver that
 /// compares costs in double precision stops at d about 1e-6. Steps and bound come from
-/// calib/square_root_system.h, so they keep their digits where the parameters hardly differ in
-/// their effect (opencv8). `held` has one entry a parameter; empty holds none. The board keeps the
-/// warp it has.
+/// calib/solver/square_root_system.h, so they keep their digits where the parameters hardly differ
+/// in their effect (opencv8). `held` has one entry a parameter; empty holds none. The board keeps
+/// the warp it has.
 RefinedMinimum refine_minimum(const BoardObservations& observations,
                               const BoardState& start,
                               std::vector<bool> held = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,16 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/resolve.h"
+#include "calib/solver/resolve.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "calib/eliminated_boards.h"
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/solver/eliminated_boards.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double least_rcond = 3e-14;  // of the scaled reduced system
@@ -38,11 +45,11 @@ Step solve(const ReducedSystem& system, const Eigen::MatrixXd& E) {
   scale = scale.cwiseSqrt().cwiseInverse();
   S = scale.asDiagonal() * S * scale.asDiagonal();
   if (!S.allFinite() || !g.allFinite()) return step;
-  const Eigen::LLT<Eigen::MatrixXd> factor(S);
-  if (factor.info() != Eigen::Success) return step;
+  const Cholesky factor(S);
+  if (!factor.is_positive_definite()) return step;
   step.sound = S.rows() == 0 || factor.rcond() > least_rcond;
-  const Eigen::VectorXd half = factor.matrixL().solve(scale.cwiseProduct(-g));
-  const Eigen::VectorXd z = scale.cwiseProduct(Eigen::VectorXd(factor.matrixU().solve(half)));
+  const Eigen::VectorXd half = factor.solve_lower(Eigen::VectorXd(scale.cwiseProduct(-g)));
+  const Eigen::VectorXd z = scale.cwiseProduct(factor.solve_upper(half));
   step.tangent = all ? z : E * z;
   step.length = half.norm();
   step.predicted = half.squaredNorm() + system.frames_drop;
@@ -221,15 +228,15 @@ Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
   if (E.size() == 0) E = Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd S = E.transpose() * system.information * E;
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * S * scale.asDiagonal());
-  if (factor.info() != Eigen::Success || !(factor.rcond() > least_rcond)) {
+  const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
+  if (!factor.is_positive_definite() || !(factor.rcond() > least_rcond)) {
     throw Error("calibration", "the views leave a direction free",
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }
   const Eigen::MatrixXd half =
-      factor.matrixL().solve(Eigen::MatrixXd(scale.asDiagonal() * E.transpose()));
+      factor.solve_lower(Eigen::MatrixXd(scale.asDiagonal() * E.transpose()));
   return (half.transpose() * half)
       .topLeftCorner(problem_->rig_parameters, problem_->rig_parameters);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "calib/minimise_reprojection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct ResolveOptions {
   double tolerance_sigma = 1e-7;  ///< largest error left, in standard deviations of the rig
@@ -66,4 +68,4 @@ class Resolver {
   std::shared_ptr<const Problem> problem_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/resolve_pairs.h"
+#include "calib/solver/resolve_pairs.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "calib/epipolar_system.h"
+#include "calib/base/decompositions.h"
 #include "calib/held_parameters.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/packed_pairs.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// The step of (S + λ diag S) δ = −g, scaled before it is factored.
@@ -17,7 +23,7 @@ Eigen::VectorXd damped_step(const EpipolarSystem& system, double damping) {
       ((1 + damping) * system.information.diagonal()).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd S = d.asDiagonal() * system.information * d.asDiagonal();
   S.diagonal().setOnes();
-  return d.cwiseProduct(S.ldlt().solve(-d.cwiseProduct(system.gradient)));
+  return d.cwiseProduct(solve_symmetric(S, Eigen::VectorXd(-d.cwiseProduct(system.gradient))));
 }
 
 }  // namespace
@@ -55,4 +61,4 @@ EpipolarMinimum PairResolver::minimise(const Rig& start, const EpipolarProblem& 
   return best;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,11 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "calib/loss.h"
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/packed_pairs.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 class PackedPairs;
 
@@ -48,4 +50,4 @@ class PairResolver {
   std::shared_ptr<const PackedPairs> packed_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/square_root_system.h"
+#include "calib/solver/square_root_system.h"
+
+#include <utility>
 
 #include <Eigen/QR>
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// The upper triangle of M's QR decomposition, square.
@@ -60,4 +62,4 @@ Eigen::MatrixXd SquareRootSystem::covariance() const {
   return inverse * inverse.transpose();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

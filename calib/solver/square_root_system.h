@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The least-squares problem min Σ_f ‖A_f a + B_f b_f + r_f‖² of a linearised calibration in
 /// triangular form: Householder's QR of each frame's rows [B_f | A_f | r_f], then of what is left
@@ -15,7 +15,8 @@ namespace vernier {
 ///     R a + s = 0                    the rig: RᵀR = S, the reduced information
 ///
 /// No normal matrix is formed, so the error of S⁻¹ = R⁻¹ R⁻ᵀ grows with the condition of A and not
-/// with its square, as that of calib/normal_equations.h does. Rows in units of the pixel noise.
+/// with its square, as that of calib/solver/normal_equations.h does. Rows in units of the pixel
+/// noise.
 class SquareRootSystem {
  public:
   explicit SquareRootSystem(int parameters);
@@ -38,4 +39,4 @@ class SquareRootSystem {
   std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic>> frames_;  ///< [R_f | N_f | s_f]
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,10 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_cost.h"
+#include "calib/solver/view_cost.h"
 
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/parameter_buffer.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/view_kernel.h"
+
+namespace vernier::internal {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -164,4 +175,4 @@ void CompressedViews::PrepareForEvaluation(bool jacobians, bool new_point) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,13 +5,18 @@
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "calib/packed_views.h"
-#include "calib/parameter_buffer.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/solver/frame_kernel.h"
+#include "calib/solver/packed_views.h"
+#include "calib/solver/parameter_buffer.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The reprojection residuals of all views as Ceres gets them: one block a view, of as many rows as
 /// its system has columns. With J the derivatives of a view's 2n residuals r,
@@ -21,7 +26,7 @@ namespace vernier {
 /// so r' and J' have the cost, the gradient and the Gauss–Newton matrix of r and J at a tenth of
 /// the size. A normal equations solver, which squares them anyway, loses nothing. Where only the
 /// cost is asked for, r' is (|r|, 0, …). All views are evaluated together before Ceres asks for
-/// the first, with the re-solver's kernels (calib/view_kernel.h), in pixels.
+/// the first, with the re-solver's kernels (calib/solver/view_kernel.h), in pixels.
 class CompressedViews : public ceres::EvaluationCallback {
  public:
   /// Refers to `parameters`, which Ceres changes, as long as it lives.
@@ -62,4 +67,4 @@ class CompressedViews : public ceres::EvaluationCallback {
   std::vector<Matrix6> board_by_block_, camera_by_block_;  // twists by what Ceres moves
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

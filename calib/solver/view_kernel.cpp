@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_kernel.h"
+#include "calib/solver/view_kernel.h"
 
 // A machine has AVX-512, AVX2 or, rarely, SSE2 alone; what lies between gains nothing here. The
 // formulas keep packs in arrays, which vectors without a fixed size (SVE, RVV) do not allow.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "calib/view_kernel.cpp"
+#define HWY_TARGET_INCLUDE "calib/solver/view_kernel.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/contrib/math/math-inl.h>
@@ -17,12 +17,12 @@
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#include "calib/corner_formulas.h"
-#include "calib/pack.h"
+#include "calib/camera/corner_formulas.inc"
+#include "calib/solver/pack.inc"
 
 /// Corners whose rows stand in the first cache together: 16 x 2 x 14 columns x 64 bytes.
 constexpr int chunk_corners = 16;
@@ -211,11 +211,11 @@ void factor_views(int n, double* sums) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::internal {
 
 HWY_EXPORT(sum_views);
 HWY_EXPORT(sum_residuals);
@@ -231,11 +231,5 @@ void sum_residuals(const ViewLanes& views, double* chi2) {
 
 void factor_views(int columns, double* sums) { HWY_DYNAMIC_DISPATCH(factor_views)(columns, sums); }
 
-const char* kernel_target_name() {
-  // The best target that was compiled in and that this processor has.
-  const std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(targets & -targets);
-}
-
-}  // namespace vernier
+}  // namespace vernier::internal
 #endif

@@ -7,7 +7,7 @@
 
 #include "calib/camera.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Views are worked on eight at a time, one a SIMD lane: sums over corners then need no sums over
 /// lanes, and their order does not depend on the width of the registers.
@@ -55,7 +55,4 @@ void sum_residuals(const ViewLanes& views, double* chi2);
 /// A column that depends on those before it to rounding gets a row of zeros.
 void factor_views(int columns, double* sums);
 
-/// The instruction set that the kernels run on here, such as "AVX3".
-const char* kernel_target_name();
-
-}  // namespace vernier
+}  // namespace vernier::internal

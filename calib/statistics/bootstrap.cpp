@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/bootstrap.h"
+#include "calib/statistics/bootstrap.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,12 @@
 #include <limits>
 #include <vector>
 
-#include "calib/draw_sources.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/interval.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// Between the two order statistics beside it.
@@ -57,4 +58,4 @@ Interval bootstrap_interval(std::size_t clusters,
   return {quantile(values, tail), quantile(values, 1 - tail)};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

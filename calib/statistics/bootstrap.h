@@ -9,7 +9,7 @@
 
 #include "calib/interval.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct BootstrapOptions {
   int resamples = 10'000;
@@ -25,11 +25,11 @@ using ClusterStatistic = std::function<double(std::span<const std::size_t> clust
 /// 1979; Davison and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and
 /// 5.3): scenes, views or draws whose parts are not independent of each other. Values that are no
 /// numbers are left out. It is too narrow where clusters are few: of a mean, at 95 %, by 17 % at
-/// eleven and by a half at four; cluster_interval (calib/cluster_interval.h) corrects that. Both
-/// ends are not a number where fewer than two clusters or no value are given. Throws Error for
-/// options out of bounds.
+/// eleven and by a half at four; cluster_interval (calib/statistics/cluster_interval.h) corrects
+/// that. Both ends are not a number where fewer than two clusters or no value are given. Throws
+/// Error for options out of bounds.
 Interval bootstrap_interval(std::size_t clusters,
                             const ClusterStatistic& statistic,
                             const BootstrapOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/chi_squared.h"
+#include "calib/statistics/chi_squared.h"
 
 #include <math.h>
 
@@ -9,7 +9,7 @@
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -95,4 +95,4 @@ double fisher_survival(double x, double d1, double d2) {
   return incomplete_beta(d2 / (d2 + d1 * x), 0.5 * d2, 0.5 * d1);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

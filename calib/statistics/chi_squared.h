@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Probability that a chi-squared variable of `dof` degrees of freedom exceeds x,
 ///
@@ -20,4 +20,4 @@ double chi_squared_survival(double x, double dof);
 /// number.
 double fisher_survival(double x, double d1, double d2);
 
-}  // namespace vernier
+}  // namespace vernier::internal

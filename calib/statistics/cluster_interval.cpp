@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/cluster_interval.h"
+#include "calib/statistics/cluster_interval.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <vector>
 
-#include "calib/random.h"
+#include "calib/interval.h"
+#include "calib/statistics/bootstrap.h"
+#include "calib/statistics/random.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 double student_quantile(double p, int dof) {
   const double z = normal_quantile(p), n = dof, z2 = z * z;
@@ -44,4 +47,4 @@ Interval cluster_interval(int clusters,
           value + few * std::max(0.0, drawn.high - value)};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

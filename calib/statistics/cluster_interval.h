@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/bootstrap.h"
 #include "calib/interval.h"
+#include "calib/statistics/bootstrap.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// 95 % interval of a figure whose samples are alike within clusters. With K clusters the
-/// percentiles q of their bootstrap (calib/bootstrap.h) are drawn away from the figure v itself by
+/// percentiles q of their bootstrap (calib/statistics/bootstrap.h) are drawn away from the figure v
+/// itself by
 ///
 ///     v − f (v − q_0.025),  v + f (q_0.975 − v),   f = t_{K−1, 0.975} / z_0.975 √(K / (K − 1))
 ///
@@ -29,4 +30,4 @@ Interval cluster_interval(int clusters,
 /// Stegun 26.7.5); exact for one and two degrees of freedom, right to 1 % from three at p = 0.975.
 double student_quantile(double p, int dof);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/distributions.h"
+#include "calib/statistics/distributions.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-#include "calib/chi_squared.h"
+#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/random.h"
 
-namespace vernier {
+namespace vernier::internal {
 double chi_squared_cdf(double x, double dof) { return 1 - chi_squared_survival(x, dof); }
 
 double chi_squared_quantile(double p, double dof) {
@@ -52,4 +54,4 @@ double draw_chi_squared(Draws& draws, double dof) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -5,11 +5,11 @@
 #include <functional>
 #include <vector>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
-namespace vernier {
+namespace vernier::internal {
 
-/// Distribution function of χ² with `dof` degrees of freedom (calib/chi_squared.h).
+/// Distribution function of χ² with `dof` degrees of freedom (calib/statistics/chi_squared.h).
 double chi_squared_cdf(double x, double dof);
 
 /// Its inverse, by Newton's method from Wilson and Hilferty's cube. p in (0, 1).
@@ -25,4 +25,4 @@ double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<doub
 /// A draw from χ² with `dof` > 2 degrees of freedom (Marsaglia and Tsang 2000).
 double draw_chi_squared(Draws& draws, double dof);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Who draws: the source number of DrawPlace. One list for the whole project, so that no two
 /// processes ever share a stream. Numbers are part of every stored result: never reuse one.
@@ -29,4 +29,4 @@ enum class DrawSource : std::uint32_t {
   cluster_bootstrap = 25,  // clusters of bootstrap intervals
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

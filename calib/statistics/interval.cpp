@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
 namespace vernier {
+
+using namespace internal;
 
 Interval wilson_interval(double successes, double trials, double confidence) {
   if (!(trials > 0)) return {0, 1};

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The middle value, the larger one of two; 0 of none.
 inline double median(std::vector<double> values) {
@@ -16,4 +16,4 @@ inline double median(std::vector<double> values) {
   return *middle;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
 #include <Random123/philox.h>
 
@@ -9,7 +9,7 @@
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 Draws::Draws(const DrawPlace& place)
     : key_{static_cast<std::uint32_t>(place.seed), static_cast<std::uint32_t>(place.seed >> 32)},
@@ -101,4 +101,4 @@ double normal_quantile(double p) {
   return q < 0 ? -z : z;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Where a random draw belongs. The generator has no state beyond this: the same place draws the
 /// same numbers whatever else is drawn, in whatever order, on any number of threads.
@@ -44,4 +44,4 @@ class Draws {
 /// (relative accuracy about 1e-16).
 double normal_quantile(double p);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/scaled_root.h"
+#include "calib/statistics/scaled_root.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <vector>
 
-namespace vernier {
+#include "calib/base/decompositions.h"
+
+namespace vernier::internal {
 namespace {
 
 Eigen::VectorXd inverse_or_zero(const Eigen::VectorXd& deviations) {
@@ -20,7 +23,7 @@ ScaledEigen::ScaledEigen(const Eigen::MatrixXd& matrix)
     : deviations(matrix.diagonal().cwiseMax(0).cwiseSqrt()) {
   const Eigen::VectorXd inverse = inverse_or_zero(deviations);
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * matrix * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (scaled + scaled.transpose()));
+  const SymmetricEigen eigen(0.5 * (scaled + scaled.transpose()));
   std::vector<Eigen::Index> order(static_cast<std::size_t>(matrix.rows()));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
@@ -41,4 +44,4 @@ ScaledRoot::ScaledRoot(const Eigen::MatrixXd& matrix) {
           inverse_or_zero(eigen.deviations).asDiagonal();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

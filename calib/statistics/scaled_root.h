@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace vernier {
+namespace vernier::internal {
 
 /// A positive semi-definite matrix scaled to a unit diagonal and decomposed,
 ///
@@ -29,4 +29,4 @@ struct ScaledRoot {
   explicit ScaledRoot(const Eigen::MatrixXd& matrix);
 };
 
-}  // namespace vernier
+}  // namespace vernier::internal

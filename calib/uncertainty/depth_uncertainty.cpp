@@ -6,11 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/sampled_propagation.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/uncertainty/sampled_propagation.h"
 
 namespace vernier {
+
+using namespace internal;
 
 namespace {
 

@@ -1,14 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/joint_information.h"
+#include "calib/uncertainty/joint_information.h"
 
 #include <Eigen/Cholesky>
 
-#include "calib/board_warp.h"
-#include "calib/pose_factor.h"
-#include "calib/view_linearisation.h"
+#include <cstddef>
+#include <vector>
 
-namespace vernier {
+#include "calib/board/board_warp.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/solver/pose_factor.h"
+
+namespace vernier::internal {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -81,4 +88,4 @@ BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

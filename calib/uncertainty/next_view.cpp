@@ -1,30 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/next_view.h"
+#include "calib/uncertainty/next_view.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <utility>
 
-#include "calib/board_warp.h"
+#include "calib/base/decompositions.h"
+#include "calib/board/board_placement.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/normal_equations.h"
+#include "calib/rig.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/uncertainty/wanted_error.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// I + n Fᵀ S F, factored.
-Eigen::LLT<Eigen::MatrixXd> gain(const Eigen::MatrixXd& F, const Eigen::MatrixXd& S, double n) {
+Cholesky gain(const Eigen::MatrixXd& F, const Eigen::MatrixXd& S, double n) {
   Eigen::MatrixXd M = n * F.transpose() * S * F;
   M.diagonal().array() += 1;
-  return Eigen::LLT<Eigen::MatrixXd>(M);
+  return Cholesky(M);
 }
 
 double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const WantedError& wanted) {
   // g F (L Lᵀ)⁻¹ Fᵀ gᵀ = |L⁻¹ Fᵀ gᵀ|²
   const Eigen::MatrixXd half =
-      gain(F, view.information, 1).matrixL().solve((wanted.gradient * F).transpose());
+      gain(F, view.information, 1).solve_lower(Eigen::MatrixXd((wanted.gradient * F).transpose()));
   return std::sqrt(half.squaredNorm() / static_cast<double>(wanted.gradient.rows()));
 }
 
@@ -94,7 +103,9 @@ Eigen::MatrixXd updated_factor(const Eigen::MatrixXd& factor,
                                const Eigen::MatrixXd& information,
                                double times) {
   // F (L Lᵀ)⁻¹ Fᵀ = (L⁻¹ Fᵀ)ᵀ (L⁻¹ Fᵀ)
-  return gain(factor, information, times).matrixL().solve(factor.transpose()).transpose();
+  return gain(factor, information, times)
+      .solve_lower(Eigen::MatrixXd(factor.transpose()))
+      .transpose();
 }
 
 ViewAdvice advise_views(const Eigen::MatrixXd& factor,
@@ -128,4 +139,4 @@ ViewAdvice advise_views(const Eigen::MatrixXd& factor,
   return advice;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

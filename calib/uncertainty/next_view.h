@@ -4,15 +4,17 @@
 
 #include <vector>
 
-#include "calib/board_placement.h"
-#include "calib/wanted_error.h"
+#include "calib/board/board_placement.h"
+#include "calib/rig.h"
+#include "calib/uncertainty/wanted_error.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What one more view would tell of a rig.
 struct CandidateView {
   BoardPlacement placement;
-  Eigen::MatrixXd information;  ///< S_f of calib/normal_equations.h, the board's pose eliminated
+  Eigen::MatrixXd
+      information;  ///< S_f of calib/solver/normal_equations.h, the board's pose eliminated
 };
 
 /// A view with what it would do to the wanted error.
@@ -35,8 +37,8 @@ struct ViewAdviceOptions {
 };
 
 /// The information of a view at each of the placements, under independent noise of
-/// `pixel_sigma_px` on every coordinate. `warp_m` is the board's (calib/board_warp.h), taken as
-/// known.
+/// `pixel_sigma_px` on every coordinate. `warp_m` is the board's (calib/board/board_warp.h), taken
+/// as known.
 std::vector<CandidateView> candidate_views(const Rig& rig,
                                            const std::vector<Eigen::Vector3d>& target_m,
                                            const Eigen::Vector2d& warp_m,
@@ -62,4 +64,4 @@ ViewAdvice advise_views(const Eigen::MatrixXd& factor,
                         const WantedError& wanted,
                         const ViewAdviceOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

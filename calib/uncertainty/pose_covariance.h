@@ -7,36 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/covariance_choice.h"
-#include "calib/joint_information.h"
+#include "calib/rig_and_boards.h"
 
-namespace vernier {
-
-/// How rig and boards move together: what carries a point that is fixed in space rather than in a
-/// camera (mrcal's reference for its projection uncertainty).
-///
-/// The covariance of the boards given the rig is board_sigma_px² times that of joint_information.h.
-/// For the bound board_sigma_px is the pixel noise σ and everything is (JᵀJ)⁻¹ σ² exactly. For the
-/// honest covariance C of the rig it is σ √φ with the mean inflation of what the views say,
-///
-///     φ = (tr(C_bound⁻¹ C) − (p − d)) / d,   d = tr(C_bound S)
-///
-/// of p parameters, S the views' information: a prior's part, p − d, is not inflated. The
-/// residuals of a frame cannot show how wrong its own pose is (Bᵀr = 0 at the minimum, whatever the
-/// noise), so no sandwich covers that part, and it is taken to be as inflated as the rig.
-struct RigAndBoards {
-  Rig rig;
-  std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
-  Eigen::MatrixXd rig_covariance;
-  BoardPosesGivenRig given_rig;
-  double board_sigma_px = 0;
-};
-
-/// Throws Error(`place`) where the estimate has no evidence, pixel noise or covariance.
-RigAndBoards rig_and_boards(const RigEstimate& estimate,
-                            CovarianceChoice choice,
-                            const std::string& place = "rig");
+namespace vernier::internal {
 
 /// Covariance of (δ_a, m), parameters + 6: m = (w, u) is the boards' mean motion, by which a point
 /// x of the first camera's frame that is fixed to the boards moves as δx = w × x + u. The mean over
@@ -64,4 +37,4 @@ MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               std::uint64_t seed,
                               std::uint32_t trial);
 
-}  // namespace vernier
+}  // namespace vernier::internal

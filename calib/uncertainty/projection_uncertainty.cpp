@@ -6,12 +6,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/uncertainty/pose_covariance.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr int most_columns = core_parameter_count + 8 + 6 + 6;  // opencv8, pose, motion

@@ -1,17 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/sampled_propagation.h"
+#include "calib/uncertainty/sampled_propagation.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
-#include "calib/draw_sources.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/pose.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/sampler.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "calib/triangulation.h"
+#include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/pose_covariance.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// First and second moments of the physical draws about a fixed value.
@@ -180,4 +190,4 @@ std::array<double, 2> interval_95(const std::vector<double>& sorted) {
   return {quantile(0.025), quantile(0.975)};
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "calib/projection_uncertainty.h"
+#include "calib/rig_and_boards.h"
 #include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// How to sample. Draw i of a seed is one rig and, given it, one pose of the board a frame.
 struct SamplingOptions {
@@ -72,4 +74,4 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
 /// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite where one is.
 std::array<double, 2> interval_95(const std::vector<double>& sorted);
 
-}  // namespace vernier
+}  // namespace vernier::internal

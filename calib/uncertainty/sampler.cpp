@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/sampler.h"
 
-#include "calib/draw_sources.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
 namespace vernier {
+
+using namespace internal;
 
 RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
     : mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {

@@ -3,8 +3,15 @@
 #include "calib/triangulation_uncertainty.h"
 
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/triangulation.h"
+#include "calib/uncertainty/pose_covariance.h"
 
 namespace vernier {
+
+using namespace internal;
 
 TriangulationUncertainty::TriangulationUncertainty(const RigAndBoards& joint,
                                                    TriangulationFrame frame,

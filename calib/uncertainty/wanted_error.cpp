@@ -1,18 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/wanted_error.h"
+#include "calib/uncertainty/wanted_error.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <utility>
 
+#include "calib/camera.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr int grid_columns = 8, grid_rows = 6;
@@ -182,4 +187,4 @@ WantedError wanted_error(const Rig& rig, const std::string& what, double at_m) {
   return parameter_error(rig, what);
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

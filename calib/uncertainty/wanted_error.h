@@ -8,7 +8,7 @@
 
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// An error that somebody wants smaller, to first order in the rig's parameters: rows g of
 /// derivatives, with the standard deviation
@@ -35,4 +35,4 @@ double sd_of(const WantedError& wanted, const Eigen::MatrixXd& factor);
 /// error needs.
 WantedError wanted_error(const Rig& rig, const std::string& what, double at_m);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,18 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/left_out_boards.h"
+#include "calib/validation/left_out_boards.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/draw_sources.h"
+#include "calib/board_observations.h"
+#include "calib/calibrate.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 #include "calib/triangulation.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr int fewest_frames = 6;
@@ -220,4 +228,4 @@ LeftOutBoardsResult measure_left_out_boards(
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

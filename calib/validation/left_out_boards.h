@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <functional>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct LeftOutBoardsOptions {
   int training_frames = 0;  ///< per split; 0: a little over half
@@ -55,4 +56,4 @@ LeftOutBoardsResult measure_left_out_boards(
     const LeftOutBoardsOptions& options = {},
     const std::function<void(int done, int total)>& progress = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

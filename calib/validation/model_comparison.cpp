@@ -1,20 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/model_comparison.h"
+#include "calib/validation/model_comparison.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/board_pose.h"
-#include "calib/board_warp.h"
+#include "calib/board/board_pose.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
+#include "calib/calibrate.h"
+#include "calib/calibration/calibration_problem.h"
+#include "calib/calibration/covariance_estimators.h"
+#include "calib/calibration/outliers.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
 #include "calib/error.h"
-#include "calib/linearised_cost.h"
-#include "calib/model_nesting.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/linearised_cost.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr int fewest_frames = 6;
@@ -270,4 +286,4 @@ ModelComparison compare_models(const RigEstimate& estimate,
   return comparison;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/calibrate.h"
+#include <string>
+#include <vector>
 
-namespace vernier {
+#include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier::internal {
 
 /// How a lens model predicts views it has not seen.
 struct ModelScore {
@@ -20,11 +25,12 @@ struct ModelScore {
   std::string largest_move;
 };
 
-/// No covariance covers model error: this asks whether a richer lens model (calib/model_nesting.h)
-/// predicts better, by leaving views out. The frames are dealt into at most eight groups, those
-/// that the same cameras saw evenly; each group is left out in turn, every model calibrated on the
-/// rest (which must determine it), and a left-out frame's squared error taken after fitting its
-/// board's pose alone. With more than `most_frames`, evenly spaced ones stand for all.
+/// No covariance covers model error: this asks whether a richer lens model
+/// (calib/camera/model_nesting.h) predicts better, by leaving views out. The frames are dealt into
+/// at most eight groups, those that the same cameras saw evenly; each group is left out in turn,
+/// every model calibrated on the rest (which must determine it), and a left-out frame's squared
+/// error taken after fitting its board's pose alone. With more than `most_frames`, evenly spaced
+/// ones stand for all.
 struct ModelComparison {
   ModelScore in_use;
   std::vector<ModelScore> richer;     ///< the next two, those that the views can determine
@@ -41,4 +47,4 @@ ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,
                                int most_frames = 60);
 
-}  // namespace vernier
+}  // namespace vernier::internal

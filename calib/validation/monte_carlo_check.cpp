@@ -1,21 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/monte_carlo_check.h"
+#include "calib/validation/monte_carlo_check.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
 
-#include "calib/distributions.h"
-#include "calib/draw_sources.h"
+#include "calib/base/decompositions.h"
+#include "calib/base/ordered_parallel.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/outliers.h"
 #include "calib/error.h"
-#include "calib/ordered_parallel.h"
-#include "calib/outliers.h"
-#include "calib/resolve.h"
-#include "calib/scaled_root.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/resolve.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "calib/statistics/scaled_root.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
@@ -100,10 +109,9 @@ std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
       A(i, i) = std::sqrt(draw_chi_squared(draws, n - i));
       for (int j = 0; j < i; ++j) A(i, j) = draws.normal();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A * A.transpose() / n,
-                                                               Eigen::EigenvaluesOnly);
-    least[k] = eigen.eigenvalues()[0];
-    largest[k] = eigen.eigenvalues()[q - 1];
+    const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(A * A.transpose() / n);
+    least[k] = eigenvalues[0];
+    largest[k] = eigenvalues[q - 1];
   }
   const int tail = wishart_draws / 200;
   std::nth_element(least.begin(), least.begin() + tail, least.end());
@@ -141,9 +149,8 @@ void judge(const Eigen::MatrixXd& errors,
     check.std_ratio_max = std::max(check.std_ratio_max, ratio);
   }
 
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(white * white.transpose() / n,
-                                                             Eigen::EigenvaluesOnly);
-  check.eigenvalues = {eigen.eigenvalues()[0], eigen.eigenvalues()[q - 1]};
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(white * white.transpose() / n);
+  check.eigenvalues = {eigenvalues[0], eigenvalues[q - 1]};
   check.eigenvalue_band_99 = wishart_band(q, static_cast<int>(n), seed);
   check.ks_p = kolmogorov_smirnov_p({nees.begin(), nees.end()},
                                     [&](double x) { return chi_squared_cdf(x, q); });
@@ -200,4 +207,4 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
   return check;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "calib/minimise_reprojection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/solver/reprojection_problem.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 struct MonteCarloOptions {
   int trials = 500;
@@ -55,4 +57,4 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                                   const Eigen::MatrixXd& covariance,
                                   const MonteCarloOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/residual_structure.h"
+#include "calib/validation/residual_structure.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
+#include "calib/board_observations.h"
+#include "calib/calibration/outliers.h"
 #include "calib/error.h"
+#include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 constexpr double first_edge = -5, bin = 0.25;  // in sigmas
@@ -83,4 +87,4 @@ ResidualStructure residual_structure(const std::vector<CornerResidual>& residual
   return s;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

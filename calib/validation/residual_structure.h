@@ -7,7 +7,7 @@
 
 #include "calib/rig_estimate.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// One corner of a calibration with what the model leaves of it unexplained.
 struct CornerResidual {
@@ -48,4 +48,4 @@ ResidualStructure residual_structure(const std::vector<CornerResidual>& residual
                                      int columns,
                                      int rows);
 
-}  // namespace vernier
+}  // namespace vernier::internal

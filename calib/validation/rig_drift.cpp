@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/rig_drift.h"
+#include "calib/validation/rig_drift.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-#include "calib/scaled_root.h"
+#include "calib/combine.h"
+#include "calib/joint_calibration.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/statistics/scaled_root.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 /// How much larger than by the bound the pairs' share of an estimate's variance is, over what they
@@ -60,4 +65,4 @@ std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
   return batches;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

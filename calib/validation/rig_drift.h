@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "calib/combine.h"
+#include "calib/prior_agreement.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// The rig as one batch of pairs alone saw it.
 struct MonitoredBatch {
@@ -30,4 +32,4 @@ struct MonitoredBatch {
 std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
                                     const Combination& combination);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,17 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_influence.h"
+#include "calib/validation/view_influence.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
-#include "calib/covariance_choice.h"
+#include "calib/base/decompositions.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/error.h"
-#include "calib/scaled_root.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/statistics/scaled_root.h"
 
-namespace vernier {
+namespace vernier::internal {
 std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equations,
                                           const Eigen::MatrixXd& bound) {
   constexpr double decides_alone = 1 - 1e-6;
@@ -21,7 +27,7 @@ std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equation
     ViewInfluence one;
     const Eigen::VectorXd u = L.transpose() * equations.scores.col(static_cast<Eigen::Index>(f));
     const Eigen::MatrixXd H = L.transpose() * equations.frame_information[f] * L;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (H + H.transpose()));
+    const SymmetricEigen eigen(0.5 * (H + H.transpose()));
     const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(1.0);
     const Eigen::MatrixXd& V = eigen.eigenvectors();
     one.leverage = H.trace();
@@ -69,4 +75,4 @@ std::vector<ViewInfluence> view_influence(const RigEstimate& estimate, const std
   return influences;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

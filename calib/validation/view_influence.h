@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "calib/normal_equations.h"
 #include "calib/rig_estimate.h"
+#include "calib/solver/normal_equations.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// What the views of one frame did to a calibration. With C = L Lᵀ the minimum variance bound, S_f
-/// and g_f the frame's information and score (calib/normal_equations.h) and H_f = Lᵀ S_f L,
+/// and g_f the frame's information and score (calib/solver/normal_equations.h) and H_f = Lᵀ S_f L,
 ///
 ///     δ_f = C g_f                    the move of the estimate, to first order, were the frame's
 ///                                    score taken away; Σ_f δ_f = 0 without a prior
@@ -45,4 +45,4 @@ std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equation
 std::vector<ViewInfluence> view_influence(const RigEstimate& estimate,
                                           const std::string& place = "rig");
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -1,14 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/board_input.h"
+#include "cli/calibration/board_input.h"
 
 #include <array>
+#include <filesystem>
+#include <span>
+#include <utility>
+#include <variant>
 
+#include "calib/board/kalibr_target.h"
+#include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "calib/calibration/observation_checks.h"
 #include "calib/error.h"
-#include "calib/kalibr_target.h"
-#include "calib/observation_checks.h"
 #include "calib/observations_file.h"
-#include "cli/option_checks.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

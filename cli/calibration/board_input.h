@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "calib/board_detection.h"
-#include "cli/session.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibrate.h"
 
-#include "calib/model_comparison.h"
+#include <array>
+#include <memory>
+#include <string>
+
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/board_input.h"
-#include "cli/calibrate_pairs.h"
-#include "cli/option_checks.h"
-#include "cli/rig_table.h"
-#include "cli/session.h"
-#include "cli/solver_input.h"
-#include "cli/spare_inputs.h"
+#include "calib/validation/model_comparison.h"
+#include "cli/calibration/board_input.h"
+#include "cli/calibration/calibrate_pairs.h"
+#include "cli/calibration/solver_input.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/rig_table.h"
+#include "cli/program/session.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/calibrate_pairs.h"
+#include "cli/calibration/calibrate_pairs.h"
 
+#include <filesystem>
+
+#include "calib/calibrate.h"
 #include "calib/error.h"
-#include "calib/pairs_file.h"
+#include "calib/formats/pairs_file.h"
+#include "calib/joint_calibration.h"
 #include "calib/rig_file.h"
-#include "cli/observability_report.h"
-#include "cli/rig_table.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
+#include "cli/calibration/observability_report.h"
+#include "cli/calibration/solver_input.h"
+#include "cli/program/rig_table.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 

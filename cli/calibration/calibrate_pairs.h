@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "cli/session.h"
-#include "cli/solver_input.h"
+#include "cli/calibration/solver_input.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

@@ -1,17 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/calibration_problem.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
 #include "calib/error.h"
-#include "calib/model_nesting.h"
+#include "calib/held_parameters.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/board_input.h"
-#include "cli/check_file.h"
-#include "cli/check_left_out.h"
-#include "cli/check_mrcal.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/solver_input.h"
+#include "calib/solver/initial_rig.h"
+#include "cli/calibration/board_input.h"
+#include "cli/calibration/check_file.h"
+#include "cli/calibration/check_left_out.h"
+#include "cli/calibration/check_mrcal.h"
+#include "cli/calibration/check_part.h"
+#include "cli/calibration/solver_input.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,14 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/check_file.h"
+#include "cli/calibration/check_file.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
+#include <vector>
 
+#include "calib/board_state.h"
+#include "calib/calibrate.h"
+#include "calib/camera/model_nesting.h"
+#include "calib/covariance.h"
 #include "calib/imported_rig.h"
-#include "calib/model_nesting.h"
 #include "calib/mrcal/mrcal_comparison.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "cli/calibration/check_part.h"
 
 namespace vernier::cli {
 namespace {

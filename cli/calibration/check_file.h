@@ -3,7 +3,10 @@
 #pragma once
 
 #include "calib/calibrate.h"
-#include "cli/check_part.h"
+#include "calib/rig_estimate.h"
+#include "cli/calibration/check_part.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

@@ -1,6 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/check_left_out.h"
+#include "cli/calibration/check_left_out.h"
+
+#include <string>
+
+#include "calib/board_observations.h"
+#include "calib/validation/left_out_boards.h"
+#include "cli/calibration/check_part.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

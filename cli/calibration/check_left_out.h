@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/left_out_boards.h"
-#include "cli/check_mrcal.h"
+#include "calib/board_observations.h"
+#include "calib/validation/left_out_boards.h"
+#include "cli/calibration/check_part.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

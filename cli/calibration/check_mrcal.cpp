@@ -1,16 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/check_mrcal.h"
+#include "cli/calibration/check_mrcal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <string>
+#include <vector>
 
+#include "calib/board_state.h"
 #include "calib/error.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/mrcal_solver.h"
 #include "calib/mrcal/uncertainty_comparison.h"
-#include "calib/resolve.h"
-#include "cli/share_folder.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/refined_minimum.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/resolve.h"
+#include "cli/calibration/check_part.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/minimise_reprojection.h"
-#include "calib/refined_minimum.h"
-#include "cli/check_part.h"
+#include <cstdint>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/solver/reprojection_problem.h"
+#include "cli/calibration/check_part.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/monte_carlo_check.h"
-#include "cli/check_mrcal.h"
+#include "calib/validation/monte_carlo_check.h"
+#include "cli/calibration/check_mrcal.h"
+#include "cli/calibration/check_part.h"
 
 namespace vernier::cli {
 

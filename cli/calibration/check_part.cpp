@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/check_part.h"
+#include "cli/calibration/check_part.h"
 
 namespace vernier::cli {
 

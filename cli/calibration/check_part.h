@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

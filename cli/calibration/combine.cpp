@@ -4,17 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <utility>
 
-#include "calib/atomic_file.h"
-#include "calib/error.h"
-#include "calib/pairs_file.h"
-#include "calib/rig_drift.h"
+#include "calib/base/atomic_file.h"
+#include "calib/covariance.h"
+#include "calib/formats/pairs_file.h"
+#include "calib/joint_calibration.h"
+#include "calib/prior_agreement.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/observability_report.h"
-#include "cli/rig_table.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
+#include "calib/rig_prior.h"
+#include "calib/validation/rig_drift.h"
+#include "cli/calibration/observability_report.h"
+#include "cli/program/rig_table.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,14 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "cli/convert_formats.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
+#include "calib/imported_rig.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "cli/calibration/convert_formats.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,21 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/convert_formats.h"
+#include "cli/calibration/convert_formats.h"
 
 #include <array>
+#include <cstddef>
 #include <fstream>
+#include <utility>
 
-#include "calib/atomic_file.h"
-#include "calib/colmap_cameras.h"
+#include "calib/base/atomic_file.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/kalibr_camchain.h"
-#include "calib/mrcal_cameramodel.h"
-#include "calib/opencv_calibration_file.h"
-#include "calib/opencv_intrinsics.h"
+#include "calib/formats/colmap_cameras.h"
+#include "calib/formats/kalibr_camchain.h"
+#include "calib/formats/mrcal_cameramodel.h"
+#include "calib/formats/opencv_calibration_file.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/imported_rig.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "stereo/rectified_camera_info.h"
+#include "cli/program/share_folder.h"
+#include "stereo/rectification/rectified_camera_info.h"
 
 namespace vernier::cli {
 namespace {

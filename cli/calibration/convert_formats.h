@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "calib/imported_rig.h"
 #include "calib/rig_estimate.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

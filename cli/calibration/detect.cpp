@@ -1,7 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/board_input.h"
-#include "cli/spare_inputs.h"
+#include <memory>
+#include <string>
+
+#include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "cli/calibration/board_input.h"
+#include "cli/program/session.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,12 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/observability_report.h"
+#include "cli/calibration/observability_report.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
-#include "stereo/vertical_disparity.h"
+#include "calib/joint_calibration.h"
+#include "calib/observability.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "cli/program/session.h"
+#include "stereo/rectification/vertical_disparity.h"
 
 namespace vernier::cli {
 namespace {

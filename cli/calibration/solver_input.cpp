@@ -1,13 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/solver_input.h"
+#include "cli/calibration/solver_input.h"
 
 #include <cmath>
+#include <cstddef>
 #include <sstream>
 
+#include "calib/board_state.h"
+#include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/held_parameters.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
+#include "calib/rig_prior.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

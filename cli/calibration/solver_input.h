@@ -8,7 +8,8 @@
 
 #include "calib/calibrate.h"
 #include "calib/rig_file.h"
-#include "cli/session.h"
+#include "calib/rig_prior.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

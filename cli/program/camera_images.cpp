@@ -1,8 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/camera_images.h"
+#include "cli/program/camera_images.h"
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "cli/program/session.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 namespace {

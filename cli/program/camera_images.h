@@ -5,8 +5,9 @@
 #include <string>
 
 #include "calib/rig.h"
-#include "cli/session.h"
-#include "stereo/matcher.h"
+#include "cli/program/session.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

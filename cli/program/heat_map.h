@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/program/namespaces.h"
+
 namespace vernier::cli {
 
 /// Values over an image, as a picture.

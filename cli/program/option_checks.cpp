@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/option_checks.h"
+#include "cli/program/option_checks.h"
 
 #include <cmath>
 #include <filesystem>

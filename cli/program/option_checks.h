@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "cli/program/namespaces.h"
+
 namespace vernier::cli {
 
 /// Checks of options for CLI11: what is wrong with the text, or nothing.

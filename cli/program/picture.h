@@ -6,6 +6,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "cli/program/namespaces.h"
+
 namespace vernier::cli {
 
 /// From blue for 0 over green to red for 1, blue-green-red.

@@ -1,12 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rig_table.h"
+#include "cli/program/rig_table.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
-#include "calib/chi_squared.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/statistics/chi_squared.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

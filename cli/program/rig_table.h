@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include "calib/covariance.h"
 #include "calib/rig_estimate.h"
-#include "cli/session.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

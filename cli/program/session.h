@@ -6,11 +6,15 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 
@@ -84,25 +88,5 @@ std::vector<double> parse_distances(const std::string& text, const std::string& 
 std::vector<double> parse_numbers(const std::string& text,
                                   std::size_t n,
                                   const std::string& option);
-
-void add_doctor(CLI::App& app, Session& session);
-void add_detect(CLI::App& app, Session& session);
-void add_match(CLI::App& app, Session& session);
-void add_calibrate(CLI::App& app, Session& session);
-void add_combine(CLI::App& app, Session& session);
-void add_check(CLI::App& app, Session& session);
-void add_uncertainty(CLI::App& app, Session& session);
-void add_sample(CLI::App& app, Session& session);
-void add_convert(CLI::App& app, Session& session);
-void add_diff(CLI::App& app, Session& session);
-void add_advise(CLI::App& app, Session& session);
-void add_rectify(CLI::App& app, Session& session);
-void add_stereo(CLI::App& app, Session& session);
-void add_evaluate(CLI::App& app, Session& session);
-void add_characterise(CLI::App& app, Session& session);
-void add_world(CLI::App& app, Session& session);
-void add_simulate(CLI::App& app, Session& session);
-void add_study(CLI::App& app, Session& session);
-void add_report(CLI::App& app, Session& session);
 
 }  // namespace vernier::cli

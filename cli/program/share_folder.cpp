@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/share_folder.h"
+#include "cli/program/share_folder.h"
 
 #include <cstdlib>
 #include <set>

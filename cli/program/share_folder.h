@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/program/namespaces.h"
+
 namespace vernier::cli {
 
 /// Something that ships with the program, "worlds/workshop.world.toml" say: in the folder that the

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/spare_inputs.h"
+#include "cli/program/spare_inputs.h"
 
 #include "calib/error.h"
 

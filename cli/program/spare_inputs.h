@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/program/namespaces.h"
+
 namespace vernier::cli {
 
 /// Throws Error where writing `output` would replace one of the files that were read, by whatever

@@ -1,16 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/atomic_file.h"
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/atomic_file.h"
+#include "calib/base/instruction_set.h"
 #include "calib/error.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/report_calibration.h"
-#include "cli/report_data.h"
-#include "cli/report_evaluation.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
-#include "localise/bhattacharyya.h"
-#include "sim/study_store.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/report/report_calibration.h"
+#include "cli/report/report_data.h"
+#include "cli/report/report_evaluation.h"
+#include "cli/simulation/study_folder.h"
+#include "sim/study/study.h"
+#include "sim/study/study_store.h"
 
 namespace vernier::cli {
 namespace {
@@ -140,7 +149,7 @@ void run(const Options& options, Session& session) {
   const Proof proof = options.no_proof ? Proof::skip : Proof::make;
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},
-                     {"instruction_set", target_name()},
+                     {"instruction_set", instruction_set()},
                      {"command", command_of(inputs)}};
   data["rigs"] = Json::array();
   if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);

@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/report_calibration.h"
+#include "cli/report/report_calibration.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <set>
+#include <utility>
+#include <vector>
 
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
-#include "calib/error.h"
-#include "calib/pose_covariance.h"
-#include "cli/rig_table.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "cli/program/rig_table.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calib/rig_estimate.h"
-#include "cli/session.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 

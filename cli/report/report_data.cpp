@@ -1,13 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/report_data.h"
+#include "cli/report/report_data.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <utility>
 
-#include "calib/atomic_file.h"
-#include "cli/sighting_json.h"
-#include "localise/bhattacharyya.h"
+#include "calib/base/atomic_file.h"
+#include "cli/program/session.h"
+#include "cli/simulation/sighting_json.h"
+#include "cli/simulation/study_folder.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+#include "sim/look.h"
+#include "sim/query_protocol.h"
+#include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "stereo/segment.h"
 
 namespace vernier::cli {
 namespace {

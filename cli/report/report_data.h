@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
-#include "cli/study_folder.h"
+#include "cli/program/session.h"
+#include "sim/study/study.h"
+#include "sim/world.h"
 
 namespace vernier::cli {
 
-/// The parts of the report page's data (cli/report_calibration.h has those of a rig).
+/// The parts of the report page's data (cli/report/report_calibration.h has those of a rig).
 Json report_study(const Study& study, const StudyResults& results);
 Json report_world(const World& world);
 /// The view of the first trial of a study's middle cell.

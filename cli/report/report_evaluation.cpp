@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/report_evaluation.h"
+#include "cli/report/report_evaluation.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {

@@ -5,12 +5,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "cli/session.h"
+#include "cli/program/session.h"
 
 namespace vernier::cli {
-
-/// What `evaluate -o` leaves in a folder, beside its pictures.
-inline constexpr const char* evaluation_file = "evaluation.json";
 
 /// Whether a folder holds an evaluation.
 bool is_evaluation(const std::filesystem::path& folder);

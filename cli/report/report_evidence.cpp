@@ -1,16 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/pose_covariance.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
+#include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
-#include "calib/residual_structure.h"
-#include "calib/view_influence.h"
-#include "cli/report_calibration.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/validation/residual_structure.h"
+#include "calib/validation/view_influence.h"
+#include "cli/program/session.h"
+#include "cli/report/report_calibration.h"
 
 namespace vernier::cli {
 namespace {

@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "calib/board_observations.h"
+#include "calib/calibrate.h"
 #include "calib/error.h"
-#include "calib/left_out_boards.h"
-#include "calib/model_comparison.h"
-#include "cli/check_file.h"
-#include "cli/check_left_out.h"
-#include "cli/report_calibration.h"
+#include "calib/rig_estimate.h"
+#include "calib/validation/left_out_boards.h"
+#include "calib/validation/model_comparison.h"
+#include "cli/calibration/check_file.h"
+#include "cli/calibration/check_left_out.h"
+#include "cli/program/session.h"
+#include "cli/report/report_calibration.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,8 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/sighting_json.h"
+#include "cli/simulation/sighting_json.h"
 
 #include <numbers>
+
+#include "calib/rig.h"
+#include "cli/program/session.h"
+#include "sim/look.h"
+#include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "stereo/segment.h"
 
 namespace vernier::cli {
 namespace {

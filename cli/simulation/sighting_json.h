@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/session.h"
+#include "calib/rig.h"
+#include "cli/program/session.h"
+#include "sim/look.h"
 #include "sim/sense.h"
 
 namespace vernier::cli {

@@ -1,14 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "calib/error.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/sighting_json.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/simulation/sighting_json.h"
+#include "localise/place.h"
+#include "sim/look.h"
 #include "sim/sense.h"
+#include "sim/sources.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 #include "sim/world_file.h"
 
 namespace vernier::cli {

@@ -1,15 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study.h"
+#include "sim/study/study.h"
 
 #include <charconv>
+#include <cstddef>
 #include <cstdlib>
 #include <map>
+#include <memory>
+#include <utility>
 
 #include "calib/error.h"
-#include "cli/session.h"
-#include "cli/study_folder.h"
-#include "sim/study_store.h"
+#include "cli/program/session.h"
+#include "cli/simulation/study_folder.h"
+#include "sim/study/study_store.h"
 
 namespace vernier::cli {
 namespace {

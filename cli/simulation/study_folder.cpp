@@ -1,15 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/study_folder.h"
+#include "cli/simulation/study_folder.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/fingerprint.h"
 #include "calib/error.h"
+#include "calib/interval.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/share_folder.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/world.h"
 #include "sim/world_file.h"
 
 namespace vernier::cli {

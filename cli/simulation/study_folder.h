@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
-#include "cli/session.h"
-#include "sim/study.h"
+#include "cli/program/session.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
 
 namespace vernier::cli {
 

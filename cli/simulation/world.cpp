@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world.h"
 
-#include "calib/error.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "sim/office.h"
+#include <filesystem>
+#include <memory>
+
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 #include "sim/route.h"
+#include "sim/world/office.h"
 #include "sim/world_file.h"
 
 namespace vernier::cli {

@@ -1,13 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/atomic_file.h"
-#include "calib/error.h"
-#include "cli/characterise_report.h"
-#include "cli/evaluate_scene.h"
-#include "cli/matcher_names.h"
-#include "cli/option_checks.h"
-#include "cli/scene_options.h"
-#include "cli/spare_inputs.h"
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calib/base/atomic_file.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/stereo/characterise_report.h"
+#include "cli/stereo/evaluate_scene.h"
+#include "cli/stereo/matcher_names.h"
+#include "cli/stereo/scene_options.h"
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
+#include "sim/sources/sources_file.h"
+#include "stereo/evaluation/pair_samples.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/matcher.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,8 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/characterise_report.h"
+#include "cli/stereo/characterise_report.h"
 
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "calib/interval.h"
+#include "cli/program/session.h"
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
+#include "sim/sources/sources_file.h"
 
 namespace vernier::cli {
 namespace {

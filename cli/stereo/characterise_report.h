@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
-#include "sim/sources_file.h"
+#include "cli/program/session.h"
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
 
 namespace vernier::cli {
 

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/disparity_picture.h"
+#include "cli/stereo/disparity_picture.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <opencv2/imgproc.hpp>
 
-#include "cli/picture.h"
+#include "cli/program/picture.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 namespace {

@@ -5,7 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

@@ -2,23 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <memory>
 #include <opencv2/core/utility.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "cli/disparity_picture.h"
-#include "cli/evaluate_draws.h"
-#include "cli/evaluate_equal_density.h"
-#include "cli/evaluate_figures.h"
-#include "cli/evaluate_scene.h"
-#include "cli/matcher_names.h"
-#include "cli/option_checks.h"
-#include "cli/report_evaluation.h"
-#include "cli/scene_options.h"
-#include "cli/session.h"
-#include "cli/spare_inputs.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/stereo/disparity_picture.h"
+#include "cli/stereo/evaluate_draws.h"
+#include "cli/stereo/evaluate_equal_density.h"
+#include "cli/stereo/evaluate_figures.h"
+#include "cli/stereo/evaluate_scene.h"
+#include "cli/stereo/matcher_names.h"
+#include "cli/stereo/scene_options.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/stereo_scenes.h"
+#include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
 namespace {

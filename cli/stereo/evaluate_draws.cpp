@@ -1,25 +1,41 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/evaluate_draws.h"
+#include "cli/stereo/evaluate_draws.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <set>
+#include <span>
+#include <utility>
 
-#include "calib/cluster_interval.h"
+#include "calib/base/ordered_parallel.h"
 #include "calib/error.h"
-#include "calib/ordered_parallel.h"
-#include "calib/resized_rig.h"
+#include "calib/estimate/resized_rig.h"
+#include "calib/interval.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
-#include "cli/share_folder.h"
+#include "calib/statistics/cluster_interval.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/stereo/evaluate_scene.h"
 #include "stereo/canny_edges.h"
-#include "stereo/rectification_covariance.h"
-#include "stereo/vertical_field.h"
-#include "stereo/warped_evaluation.h"
+#include "stereo/edge_point.h"
+#include "stereo/evaluation/warped_evaluation.h"
+#include "stereo/evaluation/warped_pair.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
+#include "stereo/rectification/rectification_covariance.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
 /// What one draw gives, without and with repair.

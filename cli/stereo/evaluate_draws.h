@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "cli/evaluate_scene.h"
+#include "cli/program/session.h"
+#include "cli/stereo/evaluate_scene.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
 
 namespace vernier::cli {
 

@@ -1,11 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/evaluate_equal_density.h"
+#include "cli/stereo/evaluate_equal_density.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "stereo/dense_matchers.h"
+#include "cli/program/session.h"
+#include "cli/stereo/evaluate_scene.h"
+#include "stereo/evaluation/equal_density.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
+#include "stereo/matching/dense_matchers.h"
 
 namespace vernier::cli {
 namespace {

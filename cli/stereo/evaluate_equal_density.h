@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/evaluate_scene.h"
-#include "stereo/equal_density.h"
+#include "cli/program/session.h"
+#include "cli/stereo/evaluate_scene.h"
+#include "stereo/evaluation/equal_density.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
 
 namespace vernier::cli {
 

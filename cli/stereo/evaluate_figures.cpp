@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/evaluate_figures.h"
+#include "cli/stereo/evaluate_figures.h"
 
 #include <algorithm>
+#include <cstddef>
+
+#include "cli/program/session.h"
+#include "stereo/matcher_evaluation.h"
 
 namespace vernier::cli {
 

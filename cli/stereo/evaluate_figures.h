@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
+#include "cli/program/session.h"
 #include "stereo/matcher_evaluation.h"
 
 namespace vernier::cli {
+
+/// What `evaluate -o` leaves in a folder, beside its pictures.
+inline constexpr const char* evaluation_file = "evaluation.json";
 
 /// A score as JSON; null where there is nothing to share.
 Json figures_json(const MatcherScore& score, double time_ms);

@@ -1,18 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/evaluate_scene.h"
+#include "cli/stereo/evaluate_scene.h"
 
 #include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
+#include <string>
 
 #include "calib/error.h"
-#include "cli/camera_images.h"
-#include "cli/exchanged_pair.h"
+#include "cli/program/camera_images.h"
+#include "cli/program/session.h"
+#include "cli/stereo/exchanged_pair.h"
 #include "stereo/canny_edges.h"
-#include "stereo/matcher_input.h"
-#include "stereo/vertical_field.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
 namespace {
@@ -35,7 +43,8 @@ double cpu_ms() {
 /// Corners that match only the other way round.
 void check_corners_not_exchanged(const Scene& scene, const VerticalField& field) {
   if (field.known || !field.unrectified) return;
-  const VerticalField other = vertical_field({scene.pair.right, scene.pair.left}, scene.file.range);
+  const VerticalField other =
+      vertical_field(RectifiedPair{scene.pair.right, scene.pair.left}, scene.file.range);
   if (!other.known || other.unrectified) return;
   throw Error(scene.file.left.string(),
               fmt::format("left and right seem exchanged: {} corners match as given, {} the other "

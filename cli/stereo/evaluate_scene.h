@@ -4,9 +4,13 @@
 
 #include <vector>
 
-#include "cli/session.h"
+#include "cli/program/session.h"
+#include "stereo/edge_point.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/stereo_scenes.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
 

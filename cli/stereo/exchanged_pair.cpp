@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/exchanged_pair.h"
+#include "cli/stereo/exchanged_pair.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,9 @@
 
 #include "calib/error.h"
 #include "stereo/canny_edges.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

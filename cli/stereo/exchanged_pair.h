@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

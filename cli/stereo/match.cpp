@@ -1,20 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
 #include <mutex>
+#include <string>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/ordered_parallel.h"
 #include "calib/error.h"
-#include "calib/ordered_parallel.h"
-#include "calib/pairs_file.h"
+#include "calib/formats/pairs_file.h"
+#include "calib/pair_observations.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/match_picture.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/solver_input.h"
-#include "cli/spare_inputs.h"
-#include "stereo/match_images.h"
+#include "cli/calibration/solver_input.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/stereo/match_picture.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/match_images.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/match_picture.h"
+#include "cli/stereo/match_picture.h"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
-#include "calib/grey_image.h"
-#include "cli/picture.h"
+#include "calib/base/grey_image.h"
+#include "cli/program/picture.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/match_images.h"
 
 namespace vernier::cli {
 namespace {

@@ -4,7 +4,9 @@
 
 #include <filesystem>
 
-#include "stereo/match_images.h"
+#include "stereo/corners/match_images.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/matcher_names.h"
+#include "cli/stereo/matcher_names.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <sstream>
 
 #include "calib/error.h"
-#include "cli/option_checks.h"
-#include "stereo/dense_matchers.h"
+#include "cli/program/option_checks.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/external_matcher.h"
-#include "stereo/stretch_correlation.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/dense_matchers.h"
+#include "stereo/matching/external_matcher.h"
+#include "stereo/matching/stretch_correlation.h"
 
 namespace vernier::cli {
 namespace {

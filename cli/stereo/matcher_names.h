@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
 #include "stereo/matcher.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 
 /// Matchers on the command line.
 struct MatcherOptions {
-  std::string names;                  ///< "edge,bm,sgbm"; names of commands among them if need be
-  std::vector<std::string> commands;  ///< programs (stereo/external_matcher.h), "NAME=command" …
-                                      ///< or the command alone, named by its program
-  double time_limit_s = 0;            ///< of a program for each pair; 0: none
+  std::string names;  ///< "edge,bm,sgbm"; names of commands among them if need be
+  std::vector<std::string>
+      commands;             ///< programs (stereo/matching/external_matcher.h), "NAME=command" …
+                            ///< or the command alone, named by its program
+  double time_limit_s = 0;  ///< of a program for each pair; 0: none
 };
 
 /// Those of the list in its order, then the commands that it does not name. Throws Error for a name

@@ -2,21 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/camera_images.h"
-#include "cli/option_checks.h"
-#include "cli/picture.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
-#include "cli/vertical_field_json.h"
-#include "stereo/matrix_of.h"
-#include "stereo/rectification_covariance.h"
+#include "cli/program/camera_images.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/picture.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/stereo/vertical_field_json.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/rectification/rectification_covariance.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
 #include "stereo/rectified_images.h"
-#include "stereo/vertical_field.h"
 
 namespace vernier::cli {
 namespace {

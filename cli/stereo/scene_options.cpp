@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/scene_options.h"
+#include "cli/stereo/scene_options.h"
 
-#include "cli/option_checks.h"
+#include <filesystem>
+#include <tuple>
+
+#include "cli/program/option_checks.h"
+#include "stereo/evaluation/stereo_scenes.h"
 
 namespace vernier::cli {
 

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "cli/session.h"
-#include "stereo/stereo_scenes.h"
+#include "stereo/evaluation/stereo_scenes.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

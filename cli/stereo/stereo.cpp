@@ -2,22 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "calib/median.h"
-#include "cli/disparity_picture.h"
-#include "cli/exchanged_pair.h"
-#include "cli/matcher_names.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
-#include "cli/stereo_files.h"
-#include "cli/vertical_field_json.h"
+#include "calib/statistics/median.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/stereo/disparity_picture.h"
+#include "cli/stereo/exchanged_pair.h"
+#include "cli/stereo/matcher_names.h"
+#include "cli/stereo/stereo_files.h"
+#include "cli/stereo/stereo_input.h"
+#include "cli/stereo/vertical_field_json.h"
 #include "stereo/canny_edges.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,11 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/stereo_files.h"
+#include "cli/stereo/stereo_files.h"
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
-#include "stereo/rectification_covariance.h"
+#include "calib/rig.h"
+#include "cli/program/session.h"
+#include "cli/stereo/stereo_input.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
+#include "stereo/rectification/rectification_covariance.h"
+#include "stereo/rectified_geometry.h"
 
 namespace vernier::cli {
 namespace {

@@ -5,9 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/stereo_input.h"
-#include "stereo/edge_segments.h"
-#include "stereo/space_segments.h"
+#include "cli/stereo/stereo_input.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

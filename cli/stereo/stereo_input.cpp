@@ -1,14 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/stereo_input.h"
+#include "cli/stereo/stereo_input.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/camera_images.h"
-#include "cli/share_folder.h"
-#include "stereo/matcher_input.h"
+#include "cli/program/camera_images.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_images.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 namespace {

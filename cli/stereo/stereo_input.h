@@ -7,9 +7,11 @@
 #include <string>
 
 #include "calib/rig_estimate.h"
-#include "cli/session.h"
+#include "cli/program/session.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
 #include "stereo/rectified_images.h"
-#include "stereo/vertical_field.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/vertical_field_json.h"
+#include "cli/stereo/vertical_field_json.h"
+
+#include "cli/program/session.h"
+#include "stereo/rectification/vertical_field.h"
 
 namespace vernier::cli {
 

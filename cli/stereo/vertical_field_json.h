@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/session.h"
-#include "stereo/vertical_field.h"
+#include "cli/program/session.h"
+#include "stereo/rectification/vertical_field.h"
 
 namespace vernier::cli {
 

@@ -1,15 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <vector>
 
-#include "calib/covariance_choice.h"
+#include "calib/board/board_placement.h"
+#include "calib/board_target.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/next_view.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
+#include "calib/uncertainty/next_view.h"
+#include "calib/uncertainty/wanted_error.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {

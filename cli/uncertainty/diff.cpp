@@ -1,16 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/covariance_choice.h"
-#include "calib/error.h"
-#include "calib/projection_difference.h"
+#include "calib/covariance.h"
+#include "calib/estimate/projection_difference.h"
+#include "calib/pose.h"
 #include "calib/rig_difference.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {

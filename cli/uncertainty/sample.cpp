@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/sampler.h"
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
 
-#include "calib/atomic_file.h"
-#include "calib/error.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
+#include "calib/sampler.h"
+#include "cli/program/option_checks.h"
+
+#include "calib/base/atomic_file.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
-#include "cli/rig_table.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
+#include "cli/program/rig_table.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {

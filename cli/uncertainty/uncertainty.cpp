@@ -1,13 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/covariance_choice.h"
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <tuple>
+
 #include "calib/error.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "cli/option_checks.h"
-#include "cli/session.h"
-#include "cli/share_folder.h"
-#include "cli/spare_inputs.h"
-#include "cli/uncertainty_tables.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/program/spare_inputs.h"
+#include "cli/uncertainty/uncertainty_report.h"
+#include "cli/uncertainty/uncertainty_tables.h"
 
 namespace vernier::cli {
 namespace {

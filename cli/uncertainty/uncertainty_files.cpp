@@ -3,12 +3,21 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
-#include "cli/heat_map.h"
-#include "cli/uncertainty_tables.h"
+#include "calib/base/atomic_file.h"
+#include "calib/depth_uncertainty.h"
+#include "calib/projection_uncertainty.h"
+#include "cli/program/heat_map.h"
+#include "cli/program/session.h"
+#include "cli/uncertainty/uncertainty_report.h"
+#include "cli/uncertainty/uncertainty_tables.h"
 
 namespace vernier::cli {
 namespace {

@@ -1,8 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
 
-#include "cli/uncertainty_tables.h"
+#include "calib/covariance.h"
+#include "calib/depth_uncertainty.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/uncertainty/sampled_propagation.h"
+#include "cli/program/session.h"
+#include "cli/uncertainty/uncertainty_report.h"
+#include "cli/uncertainty/uncertainty_tables.h"
+#include "stereo/rectification/vertical_disparity.h"
 
 namespace vernier::cli {
 namespace {

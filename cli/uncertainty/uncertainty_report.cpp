@@ -1,14 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/uncertainty_report.h"
+#include "cli/uncertainty/uncertainty_report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
-#include "calib/rig_pair.h"
+#include "calib/camera.h"
+#include "calib/depth_uncertainty.h"
+#include "calib/estimate/rig_pair.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/triangulation.h"
+#include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/sampled_propagation.h"
+#include "stereo/rectification/vertical_disparity.h"
 
 namespace vernier::cli {
 namespace {

@@ -6,8 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
-#include "stereo/vertical_disparity.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/rig_estimate.h"
+#include "calib/triangulation.h"
+#include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/sampled_propagation.h"
+#include "stereo/rectification/vertical_disparity.h"
+
+#include "cli/program/namespaces.h"
 
 namespace vernier::cli {
 

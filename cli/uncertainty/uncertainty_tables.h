@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "cli/session.h"
-#include "cli/uncertainty_report.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
+#include "cli/program/session.h"
+#include "cli/uncertainty/uncertainty_report.h"
 
 namespace vernier::cli {
 

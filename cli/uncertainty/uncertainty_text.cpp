@@ -2,8 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
-#include "cli/uncertainty_tables.h"
+#include "calib/covariance.h"
+#include "calib/depth_uncertainty.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
+#include "cli/uncertainty/uncertainty_report.h"
+#include "cli/uncertainty/uncertainty_tables.h"
 
 namespace vernier::cli {
 namespace {

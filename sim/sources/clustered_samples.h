@@ -3,19 +3,24 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <span>
 #include <vector>
 
-#include "sim/measured_sources.h"
+#include "calib/statistics/cluster_interval.h"
+#include "sim/sources/measured_sources.h"
+#include "stereo/evaluation/pair_samples.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// Which cluster a place of a pair's left image is in.
 struct ClusterOf {
   bool by_pair = false;
 
-  int operator()(const PairSamples& of, int pair, const Eigen::Vector2d& left_px) const {
+  int operator()(const stereo::internal::PairSamples& of,
+                 int pair,
+                 const Eigen::Vector2d& left_px) const {
     constexpr int parts = 4;
     if (by_pair) return pair;
     const auto part = [](double at, int size) {
@@ -75,7 +80,7 @@ Measured measured(const ClusteredSamples<Sample>& samples,
   result.samples = samples.count();
   if (samples.count() < options.least_samples) return result;
   result.value = figure(samples.all());
-  result.interval = cluster_interval(
+  result.interval = vernier::internal::cluster_interval(
       samples.clusters(),
       [&](std::span<const std::size_t> drawn) { return figure(samples.taken(drawn)); },
       options.bootstrap, is_scale);
@@ -112,9 +117,10 @@ Measured measured_ratio(const std::map<int, Sums>& clusters,
   result.samples = count;
   if (count < options.least_samples) return result;
   result.value = of(each);
-  result.interval = cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);
+  result.interval =
+      vernier::internal::cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);
   not_below_zero(result);
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -3,13 +3,28 @@
 //
 // psi_e, psi_l and psi_g from segments of both images.
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
 
-#include "calib/median.h"
-#include "sim/measured_figures.h"
-#include "sim/variance_line.h"
+#include "calib/statistics/median.h"
+#include "sim/sources/clustered_samples.h"
+#include "sim/sources/measured_figures.h"
+#include "sim/sources/measured_sources.h"
+#include "sim/sources/variance_line.h"
+#include "stereo/evaluation/edge_loss.h"
+#include "stereo/evaluation/end_difference.h"
+#include "stereo/evaluation/pair_samples.h"
+#include "stereo/evaluation/segment_shift.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace stereo::internal;
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double cut_deviations = 3;  // of end points; beyond are outliers
@@ -223,4 +238,4 @@ MeasuredEndpoints measured_endpoints(const PairList& pairs,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/clustered_samples.h"
+#include <vector>
+
+#include "sim/sources/clustered_samples.h"
+#include "sim/sources/measured_sources.h"
+#include "stereo/evaluation/pair_samples.h"
 
 /// One figure each of measure_sources. Not installed.
-namespace vernier {
+namespace vernier::sim::internal {
 
-using PairList = std::vector<PairSamples>;
+using PairList = std::vector<stereo::internal::PairSamples>;
 
 MeasuredEdgeLoss measured_edge_loss(const PairList&, const ClusterOf&, const MeasuringOptions&);
 MeasuredLateralShift measured_lateral_shift(const PairList&,
@@ -19,4 +23,4 @@ MeasuredStereoMismatch measured_stereo_mismatch(const PairList&,
                                                 const ClusterOf&,
                                                 const MeasuringOptions&);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -2,13 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // psi_cd, psi_cm and psi_s from matched corners and lines.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <vector>
 
-#include "calib/median.h"
-#include "sim/measured_figures.h"
+#include "calib/interval.h"
+#include "calib/statistics/median.h"
 #include "sim/sources.h"
+#include "sim/sources/clustered_samples.h"
+#include "sim/sources/measured_figures.h"
+#include "sim/sources/measured_sources.h"
+#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/line_match.h"
+#include "stereo/evaluation/pair_samples.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace stereo::internal;
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double wrong_corner_px = 1.5, wrong_line_px = 3;
@@ -188,4 +203,4 @@ MeasuredStereoMismatch measured_stereo_mismatch(const PairList& pairs,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

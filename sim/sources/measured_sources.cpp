@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/measured_sources.h"
+#include "sim/sources/measured_sources.h"
 
 #include "calib/error.h"
-#include "sim/measured_figures.h"
+#include "sim/sources/clustered_samples.h"
+#include "sim/sources/measured_figures.h"
+#include "stereo/evaluation/pair_samples.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace stereo::internal;
 
 MeasuredSources measure_sources(const std::vector<PairSamples>& pairs,
                                 const MeasuringOptions& options) {
@@ -27,4 +31,4 @@ MeasuredSources measure_sources(const std::vector<PairSamples>& pairs,
   return sources;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

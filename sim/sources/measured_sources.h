@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "calib/cluster_interval.h"
-#include "stereo/pair_samples.h"
+#include "calib/interval.h"
+#include "calib/statistics/bootstrap.h"
+#include "stereo/evaluation/pair_samples.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// A figure with its 95 % interval.
 struct Measured {
@@ -87,14 +88,14 @@ struct MeasuredSources {
 };
 
 struct MeasuringOptions {
-  int least_samples = 30;                        ///< of a figure; else it is not a number
-  int pairs_for_clusters = 6;                    ///< with fewer, parts of images are the clusters
-  int wrong_for_reach = 5;                       ///< mismatches from which their range is measured
-  BootstrapOptions bootstrap{.resamples = 999};  ///< 0 resamples: no intervals
+  int least_samples = 30;      ///< of a figure; else it is not a number
+  int pairs_for_clusters = 6;  ///< with fewer, parts of images are the clusters
+  int wrong_for_reach = 5;     ///< mismatches from which their range is measured
+  vernier::internal::BootstrapOptions bootstrap{.resamples = 999};  ///< 0 resamples: no intervals
 };
 
 /// The simulator's sources from samples of pairs with truth: equations in docs/characterise.md.
-MeasuredSources measure_sources(const std::vector<PairSamples>& pairs,
+MeasuredSources measure_sources(const std::vector<stereo::internal::PairSamples>& pairs,
                                 const MeasuringOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

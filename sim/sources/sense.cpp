@@ -2,7 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sense.h"
 
-namespace vernier {
+#include <utility>
+
+#include "calib/camera.h"
+#include "calib/rig.h"
+#include "sim/look.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
+#include "sim/uncertainty_source.h"
+#include "stereo/rectification.h"
+
+namespace vernier::sim {
+
+using namespace stereo;
 
 Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px)
     : rig_(true_rig),
@@ -36,4 +48,4 @@ StereoSighting Sensor::sense(const Look& look,
   return sighting;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

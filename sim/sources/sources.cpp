@@ -6,7 +6,7 @@
 
 #include "calib/error.h"
 
-namespace vernier {
+namespace vernier::sim {
 namespace {
 
 constexpr SourceParameter parameters[] = {
@@ -53,4 +53,4 @@ SourceSettings no_sources() {
   return settings;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

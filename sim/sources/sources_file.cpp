@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/sources_file.h"
+#include "sim/sources/sources_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
-namespace vernier {
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
+
+namespace vernier::sim::internal {
 namespace {
 
 const SourceParameter& parameter_of(std::string_view key) {
@@ -145,4 +150,4 @@ std::string sources_toml(const MeasuredSources& sources, ShiftMode mode, const s
   return text;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/measured_sources.h"
 #include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// A key of [sources] and what was measured of it.
 struct SourceEntry {
@@ -33,4 +33,4 @@ std::string sources_toml(const MeasuredSources& sources,
                          ShiftMode mode = ShiftMode::common,
                          const std::string& how = "");
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

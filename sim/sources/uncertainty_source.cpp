@@ -5,13 +5,25 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
+#include <utility>
 
-#include "calib/draw_sources.h"
-#include "calib/random.h"
+#include "calib/camera.h"
+#include "calib/rig.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "sim/look.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
+#include "stereo/rectification.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace stereo;
+using namespace vernier::internal;
 
 ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye) {
   const auto pixel = [&](const Eigen::Vector3d& x, int end) -> Eigen::Vector2d {
@@ -262,4 +274,4 @@ std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSet
   return sources;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/variance_line.h"
+#include "sim/sources/variance_line.h"
 
-#include "calib/median.h"
+#include "calib/statistics/median.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "calib/distributions.h"
+#include "calib/statistics/distributions.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 /// Of |squares|, which a few large ones hardly touch.
@@ -64,4 +68,4 @@ VarianceLine variance_line(const std::vector<SquareSample>& samples, double cut)
   return line;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// A square (or a product of two equal things), and how much of a second variance is in it.
 struct SquareSample {
@@ -23,4 +23,4 @@ struct VarianceLine {
 /// given back. Zeros for fewer than two samples.
 VarianceLine variance_line(const std::vector<SquareSample>& samples, double cut);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

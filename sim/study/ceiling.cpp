@@ -1,13 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/ceiling.h"
+#include "sim/study/ceiling.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "calib/error.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/place.h"
+#include "sim/look.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace localise;
+
 namespace {
 
 constexpr double tolerance_m = 0.02;
@@ -172,4 +183,4 @@ Aliases AliasFinder::aliases(const PlanePose& pose) const {
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

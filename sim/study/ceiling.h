@@ -4,14 +4,17 @@
 
 #include <vector>
 
+#include "calib/rig.h"
+#include "localise/place.h"
 #include "sim/look.h"
+#include "sim/visibility.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// How many places look the same as one.
 struct Aliases {
-  int elsewhere = 0;                ///< poses more than 1 m away with the same noise-free view
-  std::vector<PlanePose> examples;  ///< a few of them
+  int elsewhere = 0;  ///< poses more than 1 m away with the same noise-free view
+  std::vector<localise::PlanePose> examples;  ///< a few of them
   /// What the best guess among indistinguishable places succeeds with.
   double ceiling() const { return 1.0 / (1 + elsewhere); }
 };
@@ -28,7 +31,7 @@ class AliasFinder {
   /// Keeps references to `visibility`; the rig is the true one.
   AliasFinder(const Visibility& visibility, Rig rig, LookOptions options);
 
-  Aliases aliases(const PlanePose& pose) const;
+  Aliases aliases(const localise::PlanePose& pose) const;
 
  private:
   /// An upright edge: where it stands and from which height to which.
@@ -42,10 +45,10 @@ class AliasFinder {
     double length_px;
   };
 
-  std::vector<ViewEdge> view_from(const PlanePose& pose) const;
-  std::vector<PlanePose> hypotheses(const std::vector<ViewEdge>& view) const;
+  std::vector<ViewEdge> view_from(const localise::PlanePose& pose) const;
+  std::vector<localise::PlanePose> hypotheses(const std::vector<ViewEdge>& view) const;
   bool has_upright(const Eigen::Vector2d& at_m, double low_m, double high_m) const;
-  bool on_wire_frame(const std::vector<ViewEdge>& view, const PlanePose& pose) const;
+  bool on_wire_frame(const std::vector<ViewEdge>& view, const localise::PlanePose& pose) const;
 
   const Visibility& visibility_;
   Rig rig_;
@@ -56,4 +59,4 @@ class AliasFinder {
   std::vector<std::vector<int>> cells_;  // uprights by a grid on the floor
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -6,12 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
-#include "calib/draw_sources.h"
-#include "stereo/triangulate.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "sim/look.h"
+#include "sim/query_protocol.h"
+#include "sim/route.h"
+#include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "sim/visibility.h"
+#include "stereo/reconstruction/triangulate.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace localise;
+using namespace stereo::internal;
+
 namespace {
 
 /// Trials of a map lie far from those of queries: the same sources draw from other streams.
@@ -144,4 +161,4 @@ std::vector<TrialResult> LocalisationExperiment::run_block(std::uint32_t block,
   return results;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -4,13 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string>
+#include <vector>
 
-#include "calib/draw_sources.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "localise/place.h"
+#include "sim/route.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace localise;
+using namespace vernier::internal;
+
 namespace {
 
 /// Distance on the floor from a point to a segment.
@@ -118,4 +129,4 @@ PlanePose draw_query(const Visibility& visibility,
               "lead the route through free space");
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

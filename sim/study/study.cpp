@@ -1,22 +1,38 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study.h"
+#include "sim/study/study.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "calib/error.h"
-#include "sim/ceiling.h"
-#include "sim/study_store.h"
+#include "calib/interval.h"
+#include "sim/experiment.h"
+#include "sim/look.h"
+#include "sim/query_protocol.h"
+#include "sim/study/ceiling.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
+#include "sim/visibility.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace localise;
+
 namespace {
 
 /// Changes when the meaning of stored results does.
@@ -118,12 +134,6 @@ double median(std::vector<double> values, double quantile = 0.5) {
 }
 
 }  // namespace
-
-std::string fingerprint(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const unsigned char byte : text) hash = (hash ^ byte) * 0x100000001b3ull;
-  return fmt::format("{:016x}", hash);
-}
 
 void run_study(const Study& study, const StudyRun& run) {
   if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
@@ -282,4 +292,4 @@ PairedComparison compare(const CellResult& a, const CellResult& b) {
   return c;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

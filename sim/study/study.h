@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "calib/interval.h"
-#include "sim/study_file.h"
+#include "calib/rig_estimate.h"
+#include "sim/experiment.h"
+#include "sim/study/study_file.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// A study with everything it names loaded.
 struct Study {
@@ -19,9 +22,6 @@ struct Study {
   RigEstimate rig;
   std::string world_fingerprint, rig_fingerprint;  ///< of the files' content
 };
-
-/// A short fingerprint of a text (FNV-1a, 64 bits, hexadecimal), to tell contents apart.
-std::string fingerprint(const std::string& text);
 
 /// Which part of the blocks this process does: block i belongs to shard i mod count.
 struct Shard {
@@ -82,4 +82,4 @@ struct PairedComparison {
 };
 PairedComparison compare(const CellResult& a, const CellResult& b);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

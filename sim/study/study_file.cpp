@@ -1,18 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study_file.h"
+#include "sim/study/study_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/toml_reader.h"
 #include "calib/error.h"
-#include "stereo/toml_reader.h"
+#include "localise/localiser.h"
+#include "sim/experiment.h"
+#include "sim/query_protocol.h"
+#include "sim/sources.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace localise;
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -336,4 +348,4 @@ StudyFile read_study(const std::filesystem::path& file, const std::filesystem::p
   return parse_study(read_whole(file), file.string(), sources);
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

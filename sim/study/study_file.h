@@ -9,7 +9,7 @@
 
 #include "sim/experiment.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// One combination of the swept settings.
 struct StudyCell {
@@ -38,4 +38,4 @@ StudyFile parse_study(const std::string& text,
                       const std::string& place,
                       const std::filesystem::path& sources = {});
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

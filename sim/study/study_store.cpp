@@ -1,18 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study_store.h"
+#include "sim/study/study_store.h"
 
 #include <sqlite3.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "calib/base/instruction_set.h"
 #include "calib/error.h"
-#include "localise/bhattacharyya.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace localise;
+using namespace vernier::internal;
+
 namespace {
 
 using Json = nlohmann::json;
@@ -135,7 +145,7 @@ StudyStore::StudyStore(const std::filesystem::path& file)
     throw Error(file.string(), "a store of schema " + version + ", this program writes 1",
                 "use another folder");
   }
-  const std::string here(target_name()), there = note("instruction_set");
+  const std::string here(instruction_set()), there = note("instruction_set");
   if (there.empty()) {
     put_note("instruction_set", here);
   } else if (there != here) {
@@ -226,4 +236,4 @@ std::vector<std::filesystem::path> store_files(const std::filesystem::path& fold
   return files;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -5,11 +5,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/experiment.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// A finished block of trials of one cell.
 struct StoredBlock {
@@ -49,4 +50,4 @@ StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place)
 /// Store files of a study's folder, in the order of their names.
 std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/convex_pieces.h"
+#include "sim/visibility/convex_pieces.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <utility>
 
-namespace vernier {
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -190,4 +194,4 @@ ConvexSurfaces convex_surfaces(const World& world) {
   return surfaces;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

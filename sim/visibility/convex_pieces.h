@@ -7,7 +7,7 @@
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// Unit normal n and distance d of the plane n·x = d through a polygon, by Newell's sum
 ///
@@ -44,4 +44,4 @@ struct ConvexSurfaces {
 };
 ConvexSurfaces convex_surfaces(const World& world);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

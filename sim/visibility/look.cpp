@@ -4,10 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/place.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace localise;
+
 namespace {
 
 /// Stretches that two sorted lists of runs of one segment have in common.
@@ -85,4 +96,4 @@ Look look(const Visibility& visibility,
   return seen;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

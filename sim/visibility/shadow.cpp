@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/shadow.h"
+#include "sim/visibility/shadow.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
-namespace vernier {
+namespace vernier::sim::internal {
 namespace {
 
 constexpr double on_side_m = 1e-9;
@@ -157,4 +158,4 @@ void visible_stretches(const Stretch& whole,
   unite(left, right, visible);
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

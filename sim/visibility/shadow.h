@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// One side of a shadow: x is inside where inward·x > tolerance. The side contains the eye, which
 /// is the origin here, and an edge of the surface.
@@ -94,4 +94,4 @@ void visible_stretches(const Stretch& whole,
                        std::vector<HiddenStretch>& hidden,
                        std::vector<Stretch>& visible);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

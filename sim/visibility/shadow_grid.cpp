@@ -1,14 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/shadow_grid.h"
+#include "sim/visibility/shadow_grid.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
-namespace vernier {
+#include "calib/pose.h"
+#include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/shadow.h"
+#include "sim/visibility/tile_walk.h"
+#include "sim/visibility/view_frustum.h"
+
+namespace vernier::sim::internal {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -344,4 +352,4 @@ PointInShadow ShadowGrid::classify(const Eigen::Vector3d& point,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -5,15 +5,16 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "calib/pose.h"
-#include "sim/convex_pieces.h"
-#include "sim/shadow.h"
-#include "sim/tile_walk.h"
-#include "sim/view_frustum.h"
+#include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/shadow.h"
+#include "sim/visibility/tile_walk.h"
+#include "sim/visibility/view_frustum.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// The shadows that one view's surfaces cast, sorted into tiles of the image.
 ///
@@ -92,4 +93,4 @@ class ShadowGrid {
   std::uint32_t segment_ = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

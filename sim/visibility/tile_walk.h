@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/shadow.h"
+#include "sim/visibility/shadow.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// The tile that coordinate g, in tiles, falls into, of `count`.
 inline int clamp_tile(double g, int count) {
@@ -87,4 +87,4 @@ class TileWalk {
   int minor0_ = 0, minor1_ = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

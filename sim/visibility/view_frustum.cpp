@@ -1,16 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/view_frustum.h"
+#include "sim/visibility/view_frustum.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "sim/visibility/shadow.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 namespace {
 
 constexpr int samples_a_side = 8;
@@ -283,4 +288,4 @@ bool ViewFrustum::contains(const Eigen::Vector3d& point) const {
          vernier::in_image(camera_, project(camera_, point));
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calib/camera.h"
-#include "sim/shadow.h"
+#include "sim/visibility/shadow.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// An upright rectangle of normalised image coordinates (x / z, y / z).
 struct ImageBox {
@@ -63,4 +63,4 @@ class ViewFrustum {
   double outer_radius2_ = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -5,13 +5,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "sim/convex_pieces.h"
-#include "sim/shadow.h"
-#include "sim/shadow_grid.h"
-#include "sim/view_frustum.h"
+#include "calib/pose.h"
+#include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/shadow.h"
+#include "sim/visibility/shadow_grid.h"
+#include "sim/visibility/view_frustum.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace internal;
+
 namespace {
 
 void check(const Pose& T_camera_world, const VisibilityOptions& options) {
@@ -152,4 +158,4 @@ bool Visibility::sees(const Eigen::Vector3d& eye,
   });
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

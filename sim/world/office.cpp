@@ -1,19 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office.h"
+#include "sim/world/office.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
-#include "sim/office_clutter.h"
-#include "sim/office_furniture.h"
-#include "sim/office_room.h"
-#include "sim/office_site.h"
+#include "calib/statistics/random.h"
+#include "sim/world.h"
+#include "sim/world/office_clutter.h"
+#include "sim/world/office_furniture.h"
+#include "sim/world/office_room.h"
+#include "sim/world/office_shapes.h"
+#include "sim/world/office_site.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -280,4 +287,4 @@ WorldDescription make_office(std::uint64_t seed, const OfficeOptions& options) {
   return world;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -7,7 +7,7 @@
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// How an office floor is laid out.
 struct OfficeOptions {
@@ -23,4 +23,4 @@ struct OfficeOptions {
 /// description to the bit. Throws Error for a size in which no room fits.
 WorldDescription make_office(std::uint64_t seed, const OfficeOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -1,12 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office_clutter.h"
+#include "sim/world/office_clutter.h"
 
 #include <algorithm>
 
-#include "sim/office_furniture.h"
+#include "calib/statistics/random.h"
+#include "sim/world/office_furniture.h"
+#include "sim/world/office_shapes.h"
+#include "sim/world/office_site.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -210,4 +216,4 @@ void run_cables(OfficeSite& site, const OfficeWall& wall, Draws& draws) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -4,21 +4,26 @@
 
 #include <Eigen/Core>
 
-#include "sim/office_site.h"
+#include "calib/statistics/random.h"
+#include "sim/world/office_shapes.h"
+#include "sim/world/office_site.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 // Odds and ends: loose features that no two rooms share.
 
 /// Books and cartons on the boards of a bookshelf at `x_m` along the wall.
-void fill_bookshelf(OfficeSite& site, const QuarterFrame& frame, double x_m, Draws& draws);
+void fill_bookshelf(OfficeSite& site,
+                    const QuarterFrame& frame,
+                    double x_m,
+                    vernier::internal::Draws& draws);
 
 /// Sheets of paper on a rectangle of wall (a notice board), from `low_m` to `high_m` (x, z).
 void pin_papers(OfficeSite& site,
                 const QuarterFrame& frame,
                 const Eigen::Vector2d& low_m,
                 const Eigen::Vector2d& high_m,
-                Draws& draws);
+                vernier::internal::Draws& draws);
 
 /// Stacks of paper and books and small boxes on a top of `size_m` whose near left corner is
 /// `corner_m`.
@@ -27,22 +32,28 @@ void litter_top(OfficeSite& site,
                 const Eigen::Vector3d& corner_m,
                 const Eigen::Vector2d& size_m,
                 int things,
-                Draws& draws);
+                vernier::internal::Draws& draws);
 
 /// Cartons on top of a cupboard.
 void stack_cartons(OfficeSite& site,
                    const QuarterFrame& frame,
                    const Eigen::Vector3d& corner_m,
                    const Eigen::Vector2d& size_m,
-                   Draws& draws);
+                   vernier::internal::Draws& draws);
 
 /// Framed pictures, calendars and posters of drawn sizes where a wall is free.
-void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, Draws& draws);
+void hang_pictures(OfficeSite& site,
+                   const OfficeWall& wall,
+                   int tries,
+                   vernier::internal::Draws& draws);
 
 /// Cartons on the floor along a wall.
-void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, Draws& draws);
+void drop_cartons(OfficeSite& site,
+                  const OfficeWall& wall,
+                  int tries,
+                  vernier::internal::Draws& draws);
 
 /// A duct in a corner, conduits with their junction boxes up a wall, a stretch of cable trunking.
-void run_cables(OfficeSite& site, const OfficeWall& wall, Draws& draws);
+void run_cables(OfficeSite& site, const OfficeWall& wall, vernier::internal::Draws& draws);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

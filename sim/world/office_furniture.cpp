@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office_furniture.h"
+#include "sim/world/office_furniture.h"
 
-#include "sim/office_shapes.h"
+#include <cstddef>
 
-namespace vernier {
+#include "sim/world.h"
+#include "sim/world/office_shapes.h"
+
+namespace vernier::sim::internal {
 namespace {
 
 FeatureSet door_frame() {
@@ -296,4 +299,4 @@ std::vector<WorldTemplate> office_templates() {
           {"door_sign", door_sign()}};
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -7,7 +7,7 @@
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 inline constexpr double wall_thickness_m = 0.1;
 inline constexpr double door_width_m = 0.9;
@@ -27,4 +27,4 @@ inline constexpr double shelf_clear_height_m = 0.35, book_front_m = 0.28;
 /// stand on; door frames at the middle of the opening on the room's side of the wall.
 std::vector<WorldTemplate> office_templates();
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

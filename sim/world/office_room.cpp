@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office_room.h"
+#include "sim/world/office_room.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
-#include "sim/office_clutter.h"
-#include "sim/office_furniture.h"
+#include "calib/statistics/random.h"
+#include "sim/world/office_clutter.h"
+#include "sim/world/office_furniture.h"
+#include "sim/world/office_shapes.h"
+#include "sim/world/office_site.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -258,4 +265,4 @@ void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/office_site.h"
+#include "sim/world/office_site.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// Furnishes the current room of the site: windows and radiators at the wall `window_side`,
 /// furniture drawn by room along all walls, lights and vents. The door is in the wall opposite,
 /// its opening's middle at `door_x_m` along that wall; its surroundings stay free.
 void furnish_room(OfficeSite& site, int window_side, double door_x_m);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

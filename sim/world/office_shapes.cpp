@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office_shapes.h"
+#include "sim/world/office_shapes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
-namespace vernier {
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
 namespace {
 
 using Eigen::Vector3d;
@@ -128,4 +131,4 @@ Eigen::AlignedBox3d bounds(const FeatureSet& features) {
   return box;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

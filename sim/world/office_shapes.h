@@ -10,7 +10,7 @@
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// Rounds to the tenth of a millimetre that a world file keeps, so that a generated world and its
 /// text say the same to the bit.
@@ -71,4 +71,4 @@ class Shapes {
 /// The box around all segments.
 Eigen::AlignedBox3d bounds(const FeatureSet& features);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office_site.h"
+#include "sim/world/office_site.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <set>
+#include <utility>
 
-#include "sim/office_furniture.h"
+#include "calib/statistics/random.h"
+#include "sim/world.h"
+#include "sim/world/office_furniture.h"
+#include "sim/world/office_shapes.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -156,4 +164,4 @@ WorldDescription OfficeSite::finish() {
   return std::move(world_);
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

@@ -9,15 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "calib/draw_sources.h"
-#include "calib/random.h"
-#include "sim/office_shapes.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 #include "sim/world.h"
+#include "sim/world/office_shapes.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// The stream of every draw of a generated office.
-inline constexpr auto office_draws = static_cast<std::uint32_t>(DrawSource::office);
+inline constexpr auto office_draws =
+    static_cast<std::uint32_t>(vernier::internal::DrawSource::office);
 
 /// One wall of a room seen from inside: x along it, y into the room, z up.
 struct OfficeWall {
@@ -46,7 +47,7 @@ class OfficeSite {
   void enter(const OfficeRoom& room, const std::vector<Eigen::Vector2d>& path_m);
 
   /// Draws that belong to one item of the current room.
-  Draws draws(std::uint32_t item) const;
+  vernier::internal::Draws draws(std::uint32_t item) const;
 
   /// Whether a box of the current room is free. What hangs above a head may cross the route.
   bool is_free(const Eigen::AlignedBox3d& box) const;
@@ -84,4 +85,4 @@ class OfficeSite {
   std::vector<Eigen::AlignedBox3d> occupied_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

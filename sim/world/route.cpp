@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "calib/error.h"
+#include "localise/place.h"
+#include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace localise;
+
 namespace {
 
 double heading_of(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
@@ -73,4 +79,4 @@ std::vector<PlanePose> map_places(const std::vector<RouteLeg>& route,
   return places;
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/world.h"
 
-namespace vernier {
+namespace vernier::sim::internal {
 
 /// What is wrong with a piece of a world and what to do about it; the caller knows the place.
 struct WorldFault {
@@ -25,7 +26,10 @@ std::optional<WorldFault> surface_fault(const std::vector<Eigen::Vector3d>& poly
 /// A leg of a route must have at least two finite points.
 std::optional<WorldFault> route_fault(const std::vector<Eigen::Vector2d>& points_m);
 
+/// The templates by their names. Throws Error for a template without a name or with a taken one.
+std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescription& description);
+
 /// Checks everything build_world relies on; throws Error with template and index as the place.
 void check_world(const WorldDescription& description);
 
-}  // namespace vernier
+}  // namespace vernier::sim::internal

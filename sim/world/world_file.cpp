@@ -6,12 +6,20 @@
 #include <map>
 #include <numbers>
 #include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "calib/atomic_file.h"
-#include "sim/world_check.h"
-#include "stereo/toml_reader.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/toml_reader.h"
+#include "sim/world.h"
+#include "sim/world/world_check.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace internal;
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
@@ -205,4 +213,4 @@ WorldDescription read_world(const std::filesystem::path& file) {
   return parse_world(read_whole(file), file.string());
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

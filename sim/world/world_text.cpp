@@ -2,14 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <numbers>
+#include <string>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "sim/world_check.h"
+#include "sim/world.h"
+#include "sim/world/world_check.h"
 #include "sim/world_file.h"
 
-namespace vernier {
+namespace vernier::sim {
+
+using namespace internal;
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double steps_per_unit =
@@ -148,4 +155,4 @@ void write_world(const WorldDescription& description, const std::filesystem::pat
   write_atomically(file, format_world(description));
 }
 
-}  // namespace vernier
+}  // namespace vernier::sim

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A corner seen in both images.
 struct CornerMatch {
@@ -33,4 +33,4 @@ struct CornerMatchingOptions {
   double sigma_floor_px = 0.05;      ///< of sigma_px
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

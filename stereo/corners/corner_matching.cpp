@@ -1,19 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/corner_matching.h"
+#include "stereo/corners/corner_matching.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
-#include "calib/distributions.h"
 #include "calib/error.h"
 #include "calib/projection_uncertainty.h"
-#include "stereo/image_noise.h"
-#include "stereo/match_support.h"
-#include "stereo/patch_alignment.h"
+#include "calib/statistics/distributions.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/epipolar_band.h"
+#include "stereo/corners/harris_corners.h"
+#include "stereo/corners/match_support.h"
+#include "stereo/image/image_noise.h"
+#include "stereo/image/patch_alignment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Patches = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor>;
@@ -222,4 +229,4 @@ std::vector<CornerMatch> match_corners(const CornerImage& left,
   return supported(matches, options);
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -6,11 +6,11 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "stereo/corner_match.h"
-#include "stereo/epipolar_band.h"
-#include "stereo/harris_corners.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/epipolar_band.h"
+#include "stereo/corners/harris_corners.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// An image and its corners.
 struct CornerImage {
@@ -24,10 +24,11 @@ CornerImage corner_image(const cv::Mat& grey, const HarrisOptions& options);
 
 /// Corners matched from left to right, in the order of the left ones:
 ///
-///  1. candidates: right corners within the gate of the left one's band (stereo/epipolar_band.h);
+///  1. candidates: right corners within the gate of the left one's band
+///  (stereo/corners/epipolar_band.h);
 ///  2. the one whose patch correlates best (ZNCC), if by at least `least_score`, if by
 ///     `least_margin` more than the second best, and if it has no better left one itself;
-///  3. least squares matching about both (stereo/patch_alignment.h) has to settle within
+///  3. least squares matching about both (stereo/image/patch_alignment.h) has to settle within
 ///     `most_shift_px` of the corner and correlate by `least_aligned_score`; its place is the
 ///     match's right pixel;
 ///  4. of the `neighbours` nearest matches at least `support` have nearly the same displacement: it
@@ -41,4 +42,4 @@ std::vector<CornerMatch> match_corners(const CornerImage& left,
                                        const CornerMatchingOptions& options = {},
                                        long* candidates = nullptr);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

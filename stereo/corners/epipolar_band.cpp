@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/epipolar_band.h"
+#include "stereo/corners/epipolar_band.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr int first_steps = 16;
@@ -174,4 +179,4 @@ BandDistance distance_to_curve(const std::vector<BandNode>& curve, const Uncerta
   return least;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

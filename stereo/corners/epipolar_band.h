@@ -3,13 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A pixel with its covariance.
 struct UncertainPixel {
@@ -83,4 +84,4 @@ BandDistance distance_to_step(const std::vector<BandNode>& curve,
 /// To the whole curve: the least.
 BandDistance distance_to_curve(const std::vector<BandNode>& curve, const UncertainPixel& right);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/harris_corners.h"
+#include "stereo/corners/harris_corners.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "calib/projection_uncertainty.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 /// The gradient's filter: a sampled Gaussian, and its central difference.
@@ -294,4 +295,4 @@ std::vector<ImageCorner> harris_corners(const cv::Mat& grey,
   return corners;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct HarrisOptions {
   int count = 400;                 ///< at most so many, the strongest; 0: all
@@ -50,4 +50,4 @@ std::vector<ImageCorner> harris_corners(const cv::Mat& grey,
                                         double noise,
                                         const HarrisOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

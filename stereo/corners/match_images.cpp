@@ -1,16 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/match_images.h"
+#include "stereo/corners/match_images.h"
 
 #include <map>
 
+#include "calib/base/grey_image.h"
 #include "calib/board_detection.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/grey_image.h"
 #include "calib/observations_file.h"
-#include "stereo/corner_matching.h"
+#include "calib/pair_observations.h"
+#include "calib/rig_estimate.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/corner_matching.h"
+#include "stereo/corners/epipolar_band.h"
+#include "stereo/corners/harris_corners.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using FilesByNumber = std::map<int, std::filesystem::path>;
@@ -106,4 +116,4 @@ void add_matches(PairObservations& pairs, const ImageMatching& matching) {
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -8,10 +8,10 @@
 
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
-#include "stereo/corner_match.h"
-#include "stereo/epipolar_band.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/epipolar_band.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Two simultaneous images.
 struct ImageFiles {
@@ -40,10 +40,11 @@ struct ImageMatching {
   std::vector<CornerMatch> matches;
 };
 
-/// Matches the corners of an image pair (stereo/corner_matching.h), searching where a prior of the
-/// rig says. The left image's corners may be near the weakest of the right one's, which is why the
-/// right image gets more. Throws Error for files that are no images or not of the size of the
-/// prior's cameras (`prior_place` is the prior's name in messages), and where it has no covariance.
+/// Matches the corners of an image pair (stereo/corners/corner_matching.h), searching where a prior
+/// of the rig says. The left image's corners may be near the weakest of the right one's, which is
+/// why the right image gets more. Throws Error for files that are no images or not of the size of
+/// the prior's cameras (`prior_place` is the prior's name in messages), and where it has no
+/// covariance.
 ImageMatching match_images(const ImageFiles& files,
                            const RigEstimate& prior,
                            const std::string& prior_place,
@@ -52,4 +53,4 @@ ImageMatching match_images(const ImageFiles& files,
 /// The matches as observations of image pair files.number, appended.
 void add_matches(PairObservations& pairs, const ImageMatching& matching);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

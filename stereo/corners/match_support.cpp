@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/match_support.h"
+#include "stereo/corners/match_support.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
-namespace vernier {
+#include "stereo/corners/corner_match.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double always_allowed_px = 1;
@@ -38,4 +42,4 @@ std::vector<CornerMatch> supported(const std::vector<CornerMatch>& matches,
   return kept;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "stereo/corner_match.h"
+#include "stereo/corners/corner_match.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// The matches that enough of their nearest neighbours agree with: displacements right − left
 /// differ by at most a pixel or `support_slope` of the distance in the left image, which is a limit
@@ -15,4 +15,4 @@ namespace vernier {
 std::vector<CornerMatch> supported(const std::vector<CornerMatch>& matches,
                                    const CornerMatchingOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

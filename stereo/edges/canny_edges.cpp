@@ -5,17 +5,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/connected_sets.h"
-#include "stereo/edge_places.h"
-#include "stereo/image_gradient.h"
-#include "stereo/image_noise.h"
-#include "stereo/matrix_of.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/connected_sets.h"
+#include "stereo/edges/edge_places.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/image_gradient.h"
+#include "stereo/image/image_noise.h"
+#include "stereo/image/matrix_of.h"
 
-namespace vernier {
+namespace vernier::stereo {
+
+using namespace internal;
+
 namespace {
 
 constexpr int strip = 48;  // rows at a time, for the processor's cache
@@ -219,4 +226,4 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   return edges;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

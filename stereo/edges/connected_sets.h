@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Sets of things numbered from 0 on, joined one after the other; a set is named by its first.
 class ConnectedSets {
@@ -28,4 +28,4 @@ class ConnectedSets {
   std::vector<int> parents_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_chains.h"
+#include "stereo/edges/edge_chains.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
-namespace vernier {
+#include "stereo/edge_point.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr int most_spur_points = 2;
@@ -128,4 +131,4 @@ std::vector<EdgeChain> edge_chains(const std::vector<EdgePoint>& points) {
   return chains;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -6,7 +6,7 @@
 
 #include "stereo/edge_point.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Edge points in the order in which an edge passes through them, by their places in the list.
 struct EdgeChain {
@@ -20,4 +20,4 @@ struct EdgeChain {
 /// chains end and which is in none of them; a spur of one or two points is none.
 std::vector<EdgeChain> edge_chains(const std::vector<EdgePoint>& points);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

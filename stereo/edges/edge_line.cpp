@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_line.h"
+#include "stereo/edges/edge_line.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "stereo/edge_point.h"
+
+namespace vernier::stereo::internal {
 
 void LineRegression::add(const Eigen::Vector2d& p) {
   sum_ += p;
@@ -97,4 +100,4 @@ void EdgeLine::propagate(const std::vector<EdgePoint>& points,
   if (squares > expected && expected > 0) covariance *= squares / expected;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

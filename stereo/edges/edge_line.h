@@ -8,7 +8,7 @@
 
 #include "stereo/edge_point.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Sums for the orthogonal regression of a line to points.
 class LineRegression {
@@ -54,4 +54,4 @@ struct EdgeLine {
                  double scale_px);
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_neighbours.h"
+#include "stereo/edges/edge_neighbours.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "stereo/edge_point.h"
+
+namespace vernier::stereo::internal {
 
 EdgeNeighbours::EdgeNeighbours(const std::vector<EdgePoint>& points) : points_(points) {
   const int rows = points.empty() ? 0 : points.back().y + 1;
@@ -55,4 +58,4 @@ double EdgeNeighbours::edge_across(const std::vector<EdgeNeighbour>& in_gate,
   return sum / count;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

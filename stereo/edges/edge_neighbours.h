@@ -6,7 +6,7 @@
 
 #include "stereo/edge_point.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A straight edge's place to look at, and its way.
 struct EdgePlace {
@@ -42,4 +42,4 @@ class EdgeNeighbours {
   std::vector<int> row_begin_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_places.h"
+#include "stereo/edges/edge_places.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <opencv2/core/hal/hal.hpp>
+#include <vector>
 
-namespace vernier {
+#include "stereo/edge_point.h"
+#include "stereo/image/image_gradient.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr float least_ratio = 0.1F;        // of a neighbour's gradient to the peak's
@@ -156,4 +161,4 @@ void EdgePlaces::place(const GradientRows& gradient, std::span<EdgePoint> points
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

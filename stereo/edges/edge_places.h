@@ -7,9 +7,9 @@
 #include <span>
 
 #include "stereo/edge_point.h"
-#include "stereo/image_gradient.h"
+#include "stereo/image/image_gradient.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Where the edges are in the pixels that the gradient is largest in, across it: the peak along the
 /// normal n of the quadratic that fits log |g| in 3 x 3 pixels best, and the standard deviation
@@ -37,4 +37,4 @@ class EdgePlaces {
   std::array<std::array<float, 3>, 15> correlation_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_points_by_row.h"
+#include "stereo/edges/edge_points_by_row.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 /// For the points of row `from` in turn, the nearest point of another row.
@@ -81,4 +83,4 @@ PointsByRow points_by_row(std::vector<int> x, std::vector<int> y, int height_px)
   return points;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

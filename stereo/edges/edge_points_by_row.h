@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Points of an image in the order of (y, x), at most one a pixel, and which of them support each
 /// other: along the row, up and down, and on both diagonals, to the nearest in reach.
@@ -24,4 +24,4 @@ struct PointsByRow {
 /// `x` and `y` are of the same length and in order.
 PointsByRow points_by_row(std::vector<int> x, std::vector<int> y, int height_px);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

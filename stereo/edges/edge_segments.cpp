@@ -1,19 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_segments.h"
+#include "stereo/edges/edge_segments.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_chains.h"
-#include "stereo/edge_line.h"
-#include "stereo/straight_parts.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_chains.h"
+#include "stereo/edges/edge_line.h"
+#include "stereo/edges/straight_parts.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double end_sigma_px = 3;       // along the line, of an end that is no corner
@@ -165,4 +168,4 @@ std::vector<EdgeSegment> edge_segments(const std::vector<EdgePoint>& points,
   return segments;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

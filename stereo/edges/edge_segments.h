@@ -8,7 +8,7 @@
 #include "stereo/edge_point.h"
 #include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct EdgeSegmentOptions {
   double most_rms_px = 0.15;  ///< of a segment's points from its line
@@ -46,4 +46,4 @@ struct EdgeSegment {
 std::vector<EdgeSegment> edge_segments(const std::vector<EdgePoint>& points,
                                        const EdgeSegmentOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/image_edges.h"
+#include "stereo/edges/image_edges.h"
 
-namespace vernier {
+#include <cstddef>
+
+#include "stereo/canny_edges.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/grey_levels.h"
+
+namespace vernier::stereo::internal {
 
 ImageEdges image_edges(const GreyLevels& image,
                        const CannyOptions& canny,
@@ -22,4 +28,4 @@ std::vector<int> segment_of_points(const ImageEdges& edges) {
   return segment;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_segments.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// The edges of an image and the straight pieces of them.
 struct ImageEdges {
@@ -24,4 +26,4 @@ ImageEdges image_edges(const GreyLevels& image,
 /// The segment that each point is of; −1: none.
 std::vector<int> segment_of_points(const ImageEdges& edges);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

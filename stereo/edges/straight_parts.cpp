@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/straight_parts.h"
+#include "stereo/edges/straight_parts.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-#include "stereo/edge_line.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_line.h"
+#include "stereo/edges/edge_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double least_cosine = 0.7;     // of a point's normal to the mean of its part
@@ -121,4 +124,4 @@ std::vector<ChainPart> straight_parts(const std::vector<EdgePoint>& points,
   return StraightParts(points, chain, options).find();
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

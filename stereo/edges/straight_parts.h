@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "stereo/edge_point.h"
-#include "stereo/edge_segments.h"
+#include "stereo/edges/edge_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A part of a chain of points, [begin, end).
 struct ChainPart {
@@ -25,4 +25,4 @@ std::vector<ChainPart> straight_parts(const std::vector<EdgePoint>& points,
                                       std::span<const int> chain,
                                       const EdgeSegmentOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,13 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/corner_repeat.h"
+#include "stereo/evaluation/corner_repeat.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include "stereo/corners/corner_match.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double displaced_px = 12;
@@ -95,4 +101,4 @@ std::vector<CornerError> corner_errors(const std::vector<CornerMatch>& matches,
   return errors;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

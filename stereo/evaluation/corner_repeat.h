@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "stereo/corner_match.h"
+#include "stereo/corners/corner_match.h"
 #include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct CornerRepeatOptions {
   double within_px = 1.5;  ///< a right corner this near to where the truth puts it is the same one
@@ -38,4 +38,4 @@ struct CornerError {
 std::vector<CornerError> corner_errors(const std::vector<CornerMatch>& matches,
                                        const StereoTruth& truth);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_loss.h"
+#include "stereo/evaluation/edge_loss.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <optional>
 
-#include "stereo/edge_neighbours.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_neighbours.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr std::array<double, 4> displacements_px = {-12, -8, 8, 12};
@@ -80,4 +85,4 @@ std::vector<SegmentLoss> edge_losses(const std::vector<WarpedSegment>& left,
   return losses;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,9 +4,10 @@
 
 #include <vector>
 
-#include "stereo/warped_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct EdgeLossOptions {
   double across_px = 2;      ///< a right edge this near across is the same one …
@@ -33,4 +34,4 @@ std::vector<SegmentLoss> edge_losses(const std::vector<WarpedSegment>& left,
                                      const ImageEdges& right,
                                      const EdgeLossOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

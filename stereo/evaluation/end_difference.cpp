@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/end_difference.h"
+#include "stereo/evaluation/end_difference.h"
 
 #include <cmath>
+#include <cstddef>
 #include <map>
 
-#include "stereo/edge_neighbours.h"
+#include "stereo/edges/edge_neighbours.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 /// The right segment that holds the most of a left segment's points; −1: none holds enough.
@@ -61,4 +65,4 @@ std::vector<SegmentEnds> segment_ends(const ImageEdges& left,
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,9 +4,10 @@
 
 #include <vector>
 
-#include "stereo/warped_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct EndDifferenceOptions {
   double across_px = 3;      ///< right segments farther across are other ones
@@ -40,4 +41,4 @@ std::vector<SegmentEnds> segment_ends(const ImageEdges& left,
                                       const ImageEdges& right,
                                       const EndDifferenceOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,14 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/equal_density.h"
+#include "stereo/evaluation/equal_density.h"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "calib/error.h"
+#include "calib/statistics/bootstrap.h"
+#include "calib/statistics/cluster_interval.h"
+#include "stereo/matcher_evaluation.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 /// One scene and setting.
@@ -89,4 +96,4 @@ EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -5,10 +5,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "calib/cluster_interval.h"
+#include "calib/interval.h"
+#include "calib/statistics/bootstrap.h"
 #include "stereo/matcher_evaluation.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Errors against density of a matcher and of a peer's settings on one scene, densest first
 /// (stereo/matcher_evaluation.h).
@@ -30,6 +31,6 @@ struct EqualDensity {
 /// On each scene the density is the largest that both reach. Throws Error without scenes, or where
 /// they have different numbers of settings, or a curve is empty.
 EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
-                              const BootstrapOptions& options = {});
+                              const vernier::internal::BootstrapOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

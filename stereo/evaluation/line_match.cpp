@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/line_match.h"
+#include "stereo/evaluation/line_match.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "calib/error.h"
-#include "calib/median.h"
+#include "calib/statistics/median.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const std::vector<EdgeDisparity>& found,
                                     const StereoTruth& truth,
@@ -48,4 +56,4 @@ std::vector<LineMatch> line_matches(const ImageEdges& left,
   return lines;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "stereo/image_edges.h"
+#include "stereo/edges/image_edges.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct LineMatchOptions {
   double least_angle_rad = 0.0873;  ///< segments nearer to the row (5°) are not asked
@@ -31,4 +31,4 @@ std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const StereoTruth& truth,
                                     const LineMatchOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "calib/error.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo {
 namespace {
 
 constexpr double mismatch_px = 3, inlier_px = 1;
@@ -193,4 +197,4 @@ double bad_1_at(const std::vector<CurvePoint>& curve, double density) {
   return density > curve.front().density ? curve.front().bad_1 : curve.back().bad_1;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

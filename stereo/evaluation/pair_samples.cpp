@@ -1,17 +1,37 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/pair_samples.h"
+#include "stereo/evaluation/pair_samples.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
-#include "stereo/corner_matching.h"
-#include "stereo/map_window.h"
-#include "stereo/matcher_input.h"
-#include "stereo/matrix_of.h"
-#include "stereo/stretched_image.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "stereo/corners/corner_matching.h"
+#include "stereo/corners/epipolar_band.h"
+#include "stereo/corners/harris_corners.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/edge_loss.h"
+#include "stereo/evaluation/end_difference.h"
+#include "stereo/evaluation/line_match.h"
+#include "stereo/evaluation/segment_shift.h"
+#include "stereo/evaluation/warped_segments.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/image/stretched_image.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/map_window.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 DisparityMap mirrored(DisparityMap map) {
@@ -130,4 +150,4 @@ PairSamples pair_samples(const RectifiedPair& pair,
   return samples;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -5,13 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "stereo/corner_repeat.h"
-#include "stereo/edge_loss.h"
-#include "stereo/end_difference.h"
-#include "stereo/line_match.h"
-#include "stereo/segment_shift.h"
+#include "stereo/disparity_file.h"
+#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/edge_loss.h"
+#include "stereo/evaluation/end_difference.h"
+#include "stereo/evaluation/line_match.h"
+#include "stereo/evaluation/segment_shift.h"
+#include "stereo/evaluation/warped_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct PairSamplesOptions {
   int corners = 400;  ///< strongest ones of the left image; the right one has half as many again
@@ -52,4 +57,4 @@ PairSamples pair_samples(const RectifiedPair& pair,
 /// pixels of one surface that the right image shows; not known where no left pixel falls.
 DisparityMap truth_of_right(const StereoTruth& truth);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,15 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/segment_shift.h"
+#include "stereo/evaluation/segment_shift.h"
 
-#include "calib/median.h"
+#include "calib/statistics/median.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
-#include "stereo/edge_neighbours.h"
+#include "stereo/edges/edge_neighbours.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double apart_px = 4;    // of the two parts: the noise of points reaches 3 px
@@ -85,4 +92,4 @@ std::vector<SegmentShift> segment_shifts(const std::vector<WarpedSegment>& left,
   return shifts;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

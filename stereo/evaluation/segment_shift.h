@@ -5,9 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "stereo/warped_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/warped_segments.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct SegmentShiftOptions {
   double across_px = 4;      ///< right edges farther across are other ones
@@ -35,4 +36,4 @@ std::vector<SegmentShift> segment_shifts(const std::vector<WarpedSegment>& left,
                                          const ImageEdges& right,
                                          const SegmentShiftOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

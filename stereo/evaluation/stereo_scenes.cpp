@@ -1,15 +1,44 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stereo_scenes.h"
+#include "stereo/evaluation/stereo_scenes.h"
+
+#include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <set>
 
-#include "calib/atomic_file.h"
-#include "stereo/toml_reader.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/toml_reader.h"
+#include "calib/error.h"
+#include "stereo/disparity_file.h"
+#include "stereo/matching/map_window.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
+
+DisparityMap read_map(const std::filesystem::path& file,
+                      double scale,
+                      int width_px,
+                      int height_px) {
+  DisparityFileOptions options;
+  options.scale = scale;
+  DisparityMap map = read_disparity(file, options);
+  if (map.width_px != width_px || map.height_px != height_px) {
+    throw Error(file.string(),
+                "its size " + fmt::format("{}x{}", map.width_px, map.height_px) +
+                    " is not that of the images, " + fmt::format("{}x{}", width_px, height_px),
+                "give the truth of these images");
+  }
+  check_known(map, file.string());
+  return map;
+}
 
 constexpr std::array<std::string_view, 4> truth_kinds = {"exact", "measured", "reduced",
                                                          "labelled"};
@@ -111,4 +140,11 @@ std::vector<StereoSceneFile> read_stereo_scenes(const std::filesystem::path& fil
   return SceneReader(file).read(root);
 }
 
-}  // namespace vernier
+StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px) {
+  DisparityMap left = read_map(scene.truth, scene.truth_scale, width_px, height_px);
+  if (scene.right_truth.empty()) return stereo_truth(std::move(left));
+  const DisparityMap right = read_map(scene.right_truth, scene.truth_scale, width_px, height_px);
+  return stereo_truth(std::move(left), &right);
+}
+
+}  // namespace vernier::stereo::internal

@@ -7,9 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+#include "stereo/stereo_truth.h"
+
+namespace vernier::stereo::internal {
 
 /// How a ground truth came about, which says what figures it can judge.
 enum class TruthKind {
@@ -51,4 +53,8 @@ struct StereoSceneFile {
 /// range and a file that is not there.
 std::vector<StereoSceneFile> read_stereo_scenes(const std::filesystem::path& file);
 
-}  // namespace vernier
+/// Reads a pair's ground truth. Throws Error naming the file, for its size too where that is not
+/// the images' one.
+StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px);
+
+}  // namespace vernier::stereo::internal

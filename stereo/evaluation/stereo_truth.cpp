@@ -6,11 +6,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/map_window.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/matching/map_window.h"
 
-namespace vernier {
+namespace vernier::stereo {
+
+using namespace internal;
+
 namespace {
 
 /// Pixels of a row that are on both sides of a fold have different numbers.
@@ -118,29 +128,6 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
   return at;
 }
 
-void check_known(const DisparityMap& map, const std::string& place) {
-  if (std::all_of(map.values.begin(), map.values.end(), [](float d) { return std::isnan(d); })) {
-    throw Error(place, "holds no known disparity", "give a map of the scene");
-  }
-}
-
-DisparityMap read_map(const std::filesystem::path& file,
-                      double scale,
-                      int width_px,
-                      int height_px) {
-  DisparityFileOptions options;
-  options.scale = scale;
-  DisparityMap map = read_disparity(file, options);
-  if (map.width_px != width_px || map.height_px != height_px) {
-    throw Error(file.string(),
-                "its size " + size_text(map.width_px, map.height_px) +
-                    " is not that of the images, " + size_text(width_px, height_px),
-                "give the truth of these images");
-  }
-  check_known(map, file.string());
-  return map;
-}
-
 }  // namespace
 
 StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right) {
@@ -158,13 +145,6 @@ StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right) {
   return truth;
 }
 
-StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px) {
-  DisparityMap left = read_map(scene.truth, scene.truth_scale, width_px, height_px);
-  if (scene.right_truth.empty()) return stereo_truth(std::move(left));
-  const DisparityMap right = read_map(scene.right_truth, scene.truth_scale, width_px, height_px);
-  return stereo_truth(std::move(left), &right);
-}
-
 std::vector<TruthAtEdge> truth_at(const StereoTruth& truth, const std::vector<EdgePoint>& edges) {
   std::vector<TruthAtEdge> found;
   found.reserve(edges.size());
@@ -172,4 +152,4 @@ std::vector<TruthAtEdge> truth_at(const StereoTruth& truth, const std::vector<Ed
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

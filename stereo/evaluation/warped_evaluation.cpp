@@ -1,11 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/warped_evaluation.h"
+#include "stereo/evaluation/warped_evaluation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "stereo/edge_point.h"
+#include "stereo/evaluation/warped_pair.h"
+#include "stereo/matcher.h"
+#include "stereo/matcher_evaluation.h"
+#include "stereo/stereo_truth.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double mismatch_px = 3;
@@ -60,4 +67,4 @@ WarpedScore evaluate(const WarpedPair& warped,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,10 +4,13 @@
 
 #include <vector>
 
+#include "stereo/edge_point.h"
+#include "stereo/evaluation/warped_pair.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/warped_pair.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// What wrong rows do to a pair before any matcher sees it, over the edges that are asked about.
 struct GeometricError {
@@ -18,8 +21,8 @@ struct GeometricError {
 
 /// How a matcher did on such a pair.
 struct WarpedScore {
-  /// Against the warped truth (stereo/warped_pair.h): what is wrong here was matched to something
-  /// else, whatever the geometry.
+  /// Against the warped truth (stereo/evaluation/warped_pair.h): what is wrong here was matched to
+  /// something else, whatever the geometry.
   MatcherScore score;
   /// Root mean square of found disparities less those of the pair as given, of smooth matches that
   /// are no mismatch: the geometric error as it reaches the depth.
@@ -40,4 +43,4 @@ WarpedScore evaluate(const WarpedPair& warped,
                      const std::vector<EdgeDisparity>& found,
                      const EvaluationOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,19 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/warped_pair.h"
+#include "stereo/evaluation/warped_pair.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
 
+#include "calib/base/ordered_parallel.h"
 #include "calib/error.h"
-#include "calib/ordered_parallel.h"
-#include "stereo/map_window.h"
-#include "stereo/resampled_image.h"
+#include "calib/rig.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/resampled_image.h"
+#include "stereo/matching/map_window.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
@@ -179,4 +193,4 @@ std::vector<TruthAtEdge> truth_at(const WarpedPair& warped, const std::vector<Ed
   return at;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,12 +4,15 @@
 
 #include <vector>
 
-#include "stereo/matcher.h"
+#include "calib/rig.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/rectification/vertical_field.h"
 #include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
-#include "stereo/vertical_field.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A rectified pair as it looks where its rows are wrong, with its ground truth carried along.
 struct WarpedPair {
@@ -45,8 +48,8 @@ void repair(WarpedPair& warped, const VerticalField& field);
 
 /// The truth at edges of the new left image, with the crossing of each: where the right image's
 /// rows are off by dy', an edge with unit normal n crosses the row dy' n_y / n_x further on
-/// (stereo/rectification_covariance.h). A long straight edge is found there, a corner at its own
-/// disparity, most things between the two. Throws Error for edges outside of the pair.
+/// (stereo/rectification/rectification_covariance.h). A long straight edge is found there, a corner
+/// at its own disparity, most things between the two. Throws Error for edges outside of the pair.
 std::vector<TruthAtEdge> truth_at(const WarpedPair& warped, const std::vector<EdgePoint>& edges);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,14 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/warped_segments.h"
+#include "stereo/evaluation/warped_segments.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_line.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_line.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/segment.h"
+#include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double beyond_px = 3, beyond_corner_px = 9;  // ends from the last points shown
@@ -141,4 +148,4 @@ std::vector<WarpedSegment> warped_segments(const ImageEdges& left,
   return warped;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

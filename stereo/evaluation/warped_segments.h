@@ -5,10 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "stereo/image_edges.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/segment.h"
 #include "stereo/stereo_truth.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A point of a left segment where the truth puts it in the right image.
 struct WarpedPoint {
@@ -45,4 +46,4 @@ std::vector<WarpedSegment> warped_segments(const ImageEdges& left,
                                            const StereoTruth& truth,
                                            const WarpOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

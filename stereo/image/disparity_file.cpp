@@ -4,18 +4,25 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/byte_order.h"
+#include "calib/base/image_file.h"
+#include "calib/base/numpy_array.h"
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
-#include "calib/image_file.h"
-#include "calib/text_lines.h"
-#include "stereo/byte_order.h"
-#include "stereo/numpy_array.h"
 
-namespace vernier {
+namespace vernier::stereo {
+
+using namespace vernier::internal;
+
 namespace {
 
 constexpr double png_scale = 256;  // of written files
@@ -190,4 +197,4 @@ void write_disparity(const std::filesystem::path& file, const DisparityMap& map)
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -7,10 +7,15 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/error.h"
-#include "calib/image_file.h"
+#include <string_view>
 
-namespace vernier {
+#include "calib/base/image_file.h"
+#include "calib/error.h"
+
+namespace vernier::stereo {
+
+using namespace vernier::internal;
+
 namespace {
 
 /// What a grey value is multiplied by, so that the file's range becomes 0 to 255.
@@ -56,4 +61,4 @@ GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* rema
   return grey;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/image_gradient.h"
+#include "stereo/image/image_gradient.h"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 GradientKernel::GradientKernel(double scale_px)
     : reach(static_cast<int>(std::lround(3.5 * scale_px))) {
@@ -32,4 +32,4 @@ void GradientRows::compute(const cv::Mat& grey, const GradientKernel& kernel, in
   cv::magnitude(x, y, strength);
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

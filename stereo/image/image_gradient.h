@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A sampled Gaussian of sum one and its derivative, of response one to a ramp of one grey level a
 /// pixel: the two factors of a gradient's filter. Cut off at 3.5 σ.
@@ -25,4 +25,4 @@ struct GradientRows {
   cv::Mat x, y, strength;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

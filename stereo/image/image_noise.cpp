@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/image_noise.h"
+#include "stereo/image/image_noise.h"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr int block = 16;
@@ -41,4 +41,4 @@ double image_noise(const cv::Mat& grey) {
   return used.empty() ? least_noise : std::max(least_noise, lower_quintile(used));
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

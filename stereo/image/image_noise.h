@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Standard deviation (grey values) of an image's white noise, from the image itself: the
 /// difference of two Laplacians
@@ -18,4 +18,4 @@ namespace vernier {
 /// noise is cut off, count only where there are no others.
 double image_noise(const cv::Mat& grey);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -6,11 +6,11 @@
 
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// The image as a CV_32F matrix of the same memory: to be read only, as long as the image lives.
 inline cv::Mat matrix_of(const GreyLevels& image) {
   return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// An image with its outermost pixels repeated about it, so that nothing has to ask for the border.
 class PaddedImage {
@@ -43,4 +44,4 @@ class PaddedImage {
   std::vector<float> values_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/patch_alignment.h"
+#include "stereo/image/patch_alignment.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr int most_steps = 25;
@@ -193,4 +193,4 @@ std::optional<Alignment> align_patch(const cv::Mat& left,
   return std::nullopt;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

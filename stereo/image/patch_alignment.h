@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct AlignmentOptions {
   int half_px = 7;  ///< patches of 2 half + 1 pixels, under a Gaussian of half their half-size
@@ -42,4 +42,4 @@ std::optional<Alignment> align_patch(const cv::Mat& left,
 /// the border, its outermost pixels'.
 double grey_between(const cv::Mat& image, double x, double y);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

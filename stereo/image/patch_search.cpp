@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/patch_search.h"
+#include "stereo/image/patch_search.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <opencv2/imgproc.hpp>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr float flat_variance = 4;  // grey values²; a patch with less has nothing to correlate
@@ -118,4 +119,4 @@ std::optional<FoundPatch> PatchSearch::find(const cv::Mat& other,
   return found;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Pixels in which a patch's centre is sought, both ends included.
 struct SearchWindow {
@@ -48,4 +48,4 @@ class PatchSearch {
   std::vector<float> scores_;  ///< of the window, row by row
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

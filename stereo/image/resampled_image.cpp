@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/resampled_image.h"
+#include "stereo/image/resampled_image.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
-#include "calib/ordered_parallel.h"
-#include "stereo/matrix_of.h"
-#include "stereo/patch_alignment.h"
+#include "calib/base/ordered_parallel.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/image/patch_alignment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
 
 GreyLevels resampled(const GreyLevels& image,
                      const Eigen::Vector2i& size_px,
@@ -31,4 +36,4 @@ GreyLevels resampled(const GreyLevels& image,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

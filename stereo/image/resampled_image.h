@@ -8,7 +8,7 @@
 
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Where an image has what a pixel of its resampled one shows; nothing: not known.
 using PixelSource = std::function<std::optional<Eigen::Vector2d>(int x, int y)>;
@@ -21,4 +21,4 @@ GreyLevels resampled(const GreyLevels& image,
                      const PixelSource& source,
                      int threads);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

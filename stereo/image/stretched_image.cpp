@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stretched_image.h"
+#include "stereo/image/stretched_image.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-namespace vernier {
+#include "stereo/grey_levels.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 float between(const float* row, int width, double x) {
@@ -47,4 +50,4 @@ GreyLevels mirrored(const GreyLevels& image) {
   return other;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,7 +4,7 @@
 
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// The image `scale` times as wide: pixel P shows what is at P / scale, linearly between pixels,
 /// averaged over a new pixel's width where it becomes narrower.
@@ -13,4 +13,4 @@ GreyLevels stretched(const GreyLevels& image, double scale);
 /// With every row turned round.
 GreyLevels mirrored(const GreyLevels& image);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,21 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/census.h"
+#include "stereo/matching/census.h"
+#include "stereo/grey_levels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-// As in calib/view_kernel.cpp.
+// As in calib/solver/view_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stereo/census.cpp"
+#define HWY_TARGET_INCLUDE "stereo/matching/census.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 
 constexpr int half_width = 4, half_height = 3, block = 256;
@@ -44,11 +46,11 @@ void census_block(const std::uint8_t* const* rows, int n, std::uint64_t* out) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::stereo::internal {
 
 HWY_EXPORT(census_block);
 
@@ -113,5 +115,5 @@ CensusImage mirrored(const CensusImage& census) {
   return other;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif  // HWY_ONCE

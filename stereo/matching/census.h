@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "stereo/grey_levels.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// The census transform of an image (Zabih and Woodfill 1994): of each pixel, which of the 62 about
 /// it in 9 x 7 are brighter, as bits. Rows have `border` words before and after them that resemble
@@ -32,4 +33,4 @@ CensusImage census_transform(const GreyLevels& image, int border);
 /// The same with every row turned round.
 CensusImage mirrored(const CensusImage& census);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,17 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/dense_matchers.h"
+#include "stereo/matching/dense_matchers.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 
 #include "calib/error.h"
-#include "stereo/matcher_input.h"
-#include "stereo/matrix_of.h"
+#include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr int fine = 16;       // of OpenCV's disparities a pixel, and what their number divides
@@ -172,4 +180,4 @@ std::vector<Matcher> by_uniqueness(const SgbmOptions& options, const std::vector
   return for_each_uniqueness(options, percents, &sgbm);
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

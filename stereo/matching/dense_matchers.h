@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "stereo/disparity_file.h"
-#include "stereo/edge_sampling.h"
 #include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/rectified_pair.h"
 
 /// OpenCV's dense matchers as plug-ins, for comparison.
 ///
@@ -22,7 +23,7 @@
 /// uniqueness ratios. They run on as many threads as OpenCV is set to (cv::setNumThreads), which
 /// nothing here changes; results do not depend on it. They throw Error for images of unequal size,
 /// an empty range, one beyond the images' width or 2000 px, and options out of OpenCV's bounds.
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Block matching by the sum of absolute differences of a horizontal Sobel filter (Konolige, "Small
 /// vision systems", 1997).
@@ -74,4 +75,4 @@ std::vector<Matcher> by_uniqueness(const SgbmOptions& options,
                                    const std::vector<int>& percents = {0, 2, 5, 10, 15, 20, 30, 40,
                                                                        60});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,24 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/disparity_refinement.h"
+#include "stereo/matching/disparity_refinement.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/padded_image.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-// As in stereo/edge_support.cpp.
+// As in stereo/matching/edge_support.cpp.
 #define HWY_WANT_AVX3_DL
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stereo/disparity_refinement.cpp"
+#define HWY_TARGET_INCLUDE "stereo/matching/disparity_refinement.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>
 
 #ifndef VERNIER_REFINEMENT_TYPES
 #define VERNIER_REFINEMENT_TYPES
-namespace vernier {
+namespace vernier::stereo::internal {
 
 constexpr int half_width = 4, half_height = 3, width = 9, rows = 7;
 constexpr int lanes = 16;    // of a row: its nine pixels, then nothing
@@ -39,11 +42,11 @@ struct RightSums {
   double squares = 0, sum = 0;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -256,11 +259,11 @@ void refine_all(const PaddedImage& left,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::stereo::internal {
 
 HWY_EXPORT(refine_all);
 
@@ -283,5 +286,5 @@ std::vector<RefinedDisparity> DisparityRefiner::refine(
   return refined;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif  // HWY_ONCE

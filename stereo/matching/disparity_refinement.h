@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "stereo/grey_levels.h"
-#include "stereo/padded_image.h"
+#include "stereo/image/padded_image.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Where refinement of a point starts: its pixel in the left image, and how the right one shows it.
 struct RefinementStart {
@@ -56,4 +56,4 @@ class DisparityRefiner {
   RefinementOptions options_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

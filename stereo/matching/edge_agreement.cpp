@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_agreement.h"
+#include "stereo/matching/edge_agreement.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
-#include "stereo/connected_sets.h"
+#include "stereo/edges/connected_sets.h"
+#include "stereo/edges/edge_points_by_row.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 /// Chains of matched points that are near each other and agree, built row by row.
@@ -89,4 +91,4 @@ void drop_lonely(const PointsByRow& points,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "stereo/edge_points_by_row.h"
+#include "stereo/edges/edge_points_by_row.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Drops points that fewer than `least_points` agree with, in a chain of matched points within
 /// reach of each other in row and column whose disparities differ by at most one, and by `slope`
@@ -17,4 +17,4 @@ void drop_lonely(const PointsByRow& points,
                  double slope,
                  std::vector<float>& disparity);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,16 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_agreement.h"
-#include "stereo/edge_refinement.h"
-#include "stereo/edge_support.h"
-#include "stereo/matcher_input.h"
-#include "stereo/stretched_image.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/stretched_image.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/census.h"
+#include "stereo/matching/disparity_refinement.h"
+#include "stereo/matching/edge_agreement.h"
+#include "stereo/matching/edge_refinement.h"
+#include "stereo/matching/edge_support.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo {
+
+using namespace internal;
+
 namespace {
 
 /// What was found for the left points.
@@ -275,4 +288,4 @@ Matcher edge_matcher(const EdgeMatcherOptions& options) {
           true};
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

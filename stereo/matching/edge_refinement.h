@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
-#include "stereo/disparity_refinement.h"
-#include "stereo/edge_points_by_row.h"
-#include "stereo/image_noise.h"
-#include "stereo/matcher.h"
-#include "stereo/matrix_of.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/image/image_noise.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/matching/disparity_refinement.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Least squares at points: at first where disparities were found, then from neighbours that are
 /// settled already, whose surface says where to start.
@@ -143,4 +144,4 @@ class EdgeRefinement {
   std::vector<RefinedDisparity> fits_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_sampling.h"
+#include "stereo/matching/edge_sampling.h"
 
 #include <algorithm>
+#include <limits>
 
-#include "stereo/map_window.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/map_window.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 float largest(const MapWindow& window) {
@@ -44,4 +48,4 @@ std::vector<EdgeDisparity> sample_at_edges(const DisparityMap& map,
   return disparities;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

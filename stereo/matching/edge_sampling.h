@@ -8,7 +8,7 @@
 #include "stereo/edge_point.h"
 #include "stereo/matcher.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// What a dense map says at an edge between two surfaces.
 enum class EdgeSampling {
@@ -24,4 +24,4 @@ std::vector<EdgeDisparity> sample_at_edges(const DisparityMap& map,
                                            const std::vector<EdgePoint>& edges,
                                            EdgeSampling sampling = EdgeSampling::foreground);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

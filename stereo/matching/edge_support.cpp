@@ -1,25 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_support.h"
+#include "stereo/matching/edge_support.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 
-#include "stereo/recent_values.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/matching/census.h"
+#include "stereo/matching/recent_values.h"
 
-// As in calib/view_kernel.cpp, but for targets that count bits in vectors.
+// As in calib/solver/view_kernel.cpp, but for targets that count bits in vectors.
 #define HWY_WANT_AVX3_DL
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stereo/edge_support.cpp"
+#define HWY_TARGET_INCLUDE "stereo/matching/edge_support.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -275,11 +278,11 @@ void semi_global_winners(const CensusCosts& costs,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::stereo::internal {
 
 HWY_EXPORT(census_costs);
 HWY_EXPORT(semi_global_winners);
@@ -305,5 +308,5 @@ std::vector<Winner> semi_global_winners(const CensusCosts& costs,
   return winners;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif  // HWY_ONCE

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "stereo/census.h"
-#include "stereo/edge_points_by_row.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/matching/census.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Where a disparity has no place in the other image.
 constexpr std::int16_t no_place_cost = 560;
@@ -79,4 +79,4 @@ std::vector<Winner> semi_global_winners(const CensusCosts& costs,
                                         Support support = Support::all,
                                         const SupportOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/external_matcher.h"
+#include "stereo/matching/external_matcher.h"
 
 #include <fmt/core.h>
 
@@ -8,19 +8,30 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstddef>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/image_file.h"
+#include "calib/base/program_run.h"
 #include "calib/error.h"
-#include "calib/image_file.h"
-#include "calib/program_run.h"
-#include "stereo/matcher_input.h"
-#include "stereo/matrix_of.h"
+#include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,4 +231,4 @@ DisparityMap external_map(const RectifiedPair& pair,
   return run(parse_command(command), pair, range, options);
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -5,10 +5,11 @@
 #include <string>
 
 #include "stereo/disparity_file.h"
-#include "stereo/edge_sampling.h"
 #include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct ExternalMatcherOptions {
   std::string name;         ///< empty: that of the program
@@ -45,4 +46,4 @@ DisparityMap external_map(const RectifiedPair& pair,
                           const std::string& command,
                           const ExternalMatcherOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/map_window.h"
+#include "stereo/matching/map_window.h"
 
 #include <fmt/core.h>
 
@@ -8,8 +8,10 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 /// Whether there is a step along a line of `count` pixels from (x, y) in direction (dx, dy).
@@ -64,4 +66,10 @@ float along_row(const DisparityMap& map, float x, int y) {
   return (1 - part) * map(first, y) + part * map(second, y);
 }
 
-}  // namespace vernier
+void check_known(const DisparityMap& map, const std::string& place) {
+  if (std::all_of(map.values.begin(), map.values.end(), [](float d) { return std::isnan(d); })) {
+    throw Error(place, "holds no known disparity", "give a map of the scene");
+  }
+}
+
+}  // namespace vernier::stereo::internal

@@ -7,7 +7,7 @@
 #include "stereo/disparity_file.h"
 #include "stereo/edge_point.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A pixel, and what rounding to parts of one leaves.
 inline constexpr float step_px = 1.01f;
@@ -31,4 +31,7 @@ int column_of(const EdgePoint& edge, const DisparityMap& map, const std::string&
 /// not.
 float along_row(const DisparityMap& map, float x, int y);
 
-}  // namespace vernier
+/// Throws Error(place) for a map without a known disparity.
+void check_known(const DisparityMap& map, const std::string& place);
+
+}  // namespace vernier::stereo::internal

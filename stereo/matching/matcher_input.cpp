@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/matcher_input.h"
+#include "stereo/matching/matcher_input.h"
 
 #include <fmt/core.h>
 
-#include "calib/error.h"
+#include <cstddef>
 
-namespace vernier {
+#include "calib/error.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
+
+namespace vernier::stereo::internal {
 namespace {
 
 bool is_whole(const GreyLevels& image) {
@@ -43,4 +47,4 @@ void check_matcher_input(const RectifiedPair& pair,
   }
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

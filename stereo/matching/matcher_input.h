@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// What every matcher refuses: images of unequal size or without pixels, and a range that is empty
 /// or reaches beyond the images' width. Throws Error(place).
@@ -14,4 +14,4 @@ void check_matcher_input(const RectifiedPair& pair,
                          const DisparityRange& range,
                          const std::string& place);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

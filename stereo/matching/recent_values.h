@@ -3,12 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "stereo/edge_points_by_row.h"
+#include "stereo/edges/edge_points_by_row.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 constexpr int directions = 4;                // of a pass; the other has the opposite ones
 constexpr std::int16_t never_least = 30000;  // with P1 added still a number
@@ -44,4 +45,4 @@ class RecentValues {
   std::vector<std::int16_t> values_, least_;
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

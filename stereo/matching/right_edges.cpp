@@ -1,11 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/right_edges.h"
+#include "stereo/matching/right_edges.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
-namespace vernier {
+#include "stereo/canny_edges.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matching/stretch_correlation.h"
+
+namespace vernier::stereo::internal {
 
 RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
     : reach_px_(static_cast<float>(options.edge_reach_px)),
@@ -62,4 +69,4 @@ float RightEdges::nearest_px(const EdgePoint& left, float x_px) const {
   return nearest;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

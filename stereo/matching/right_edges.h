@@ -4,9 +4,11 @@
 
 #include <vector>
 
-#include "stereo/stretch_correlation.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matching/stretch_correlation.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Edges of the right image by their pixels, to find the one that a left edge is seen as.
 class RightEdges {
@@ -32,4 +34,4 @@ class RightEdges {
   std::vector<int> from_pixel_;      ///< the first crossing from a pixel on; one more a row
 };
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,18 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stretch_correlation.h"
+#include "stereo/matching/stretch_correlation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
-#include "calib/draw_sources.h"
 #include "calib/error.h"
-#include "calib/random.h"
-#include "stereo/matcher_input.h"
-#include "stereo/right_edges.h"
-#include "stereo/stretch_search.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/matcher_input.h"
+#include "stereo/matching/right_edges.h"
+#include "stereo/matching/stretch_search.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 void require(bool good, const char* fault, const char* remedy) {
@@ -268,4 +277,4 @@ Matcher stretch_matcher(const StretchOptions& options) {
           true};
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

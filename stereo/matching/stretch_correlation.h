@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "stereo/canny_edges.h"
+#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// What blocks are compared by.
 enum class StretchFilter {
@@ -121,4 +123,4 @@ StretchFrame match_by_stretch(const RectifiedPair& pair,
 /// The same for single pairs as a plug-in of the name `stretch`.
 Matcher stretch_matcher(const StretchOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

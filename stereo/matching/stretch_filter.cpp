@@ -1,23 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stretch_filter.h"
+#include "stereo/matching/stretch_filter.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "stereo/padded_image.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/padded_image.h"
+#include "stereo/matching/stretch_correlation.h"
 
-// As in calib/view_kernel.cpp.
+// As in calib/solver/view_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stereo/stretch_filter.cpp"
+#define HWY_TARGET_INCLUDE "stereo/matching/stretch_filter.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -47,11 +49,11 @@ void ranks(
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::stereo::internal {
 
 HWY_EXPORT(ranks);
 
@@ -191,5 +193,5 @@ FilteredImage filtered(const GreyLevels& image,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif  // HWY_ONCE

@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "stereo/stretch_correlation.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matching/stretch_correlation.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 constexpr int most_filtered = 255;  // of a filtered pixel's magnitude
 
@@ -36,4 +37,4 @@ FilteredImage filtered(const GreyLevels& image,
                        int margin_x,
                        int margin_y);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,22 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stretch_kernel.h"
+#include "stereo/matching/stretch_kernel.h"
+#include "stereo/matching/stretch_filter.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
-// As in calib/view_kernel.cpp.
+// As in calib/solver/view_kernel.cpp.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "stereo/stretch_kernel.cpp"
+#define HWY_TARGET_INCLUDE "stereo/matching/stretch_kernel.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -228,11 +230,11 @@ float block_scores(const BlockSearch& search, float* scores) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace vernier {
+namespace vernier::stereo::internal {
 
 HWY_EXPORT(add_row_sums);
 HWY_EXPORT(block_weights);
@@ -302,5 +304,5 @@ PairedRows::PairedRows(const FilteredImage& image)
   values_[2 * count - 2] = values_[2 * count - 1] = image.values[count - 1];
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal
 #endif  // HWY_ONCE

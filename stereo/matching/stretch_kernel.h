@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "stereo/stretch_filter.h"
+#include "stereo/matching/stretch_filter.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Where the samples of a block lie in the right image, for one stretch and one shear: in whole
 /// sixteenths of a pixel, so that all sums are of whole numbers. Tables are by column of the block
@@ -86,4 +87,4 @@ struct BlockSearch {
 /// written. Returns the largest of the n.
 float block_scores(const BlockSearch& search, float* scores);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

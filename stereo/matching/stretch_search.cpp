@@ -1,15 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stretch_search.h"
+#include "stereo/matching/stretch_search.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 
-#include "calib/ordered_parallel.h"
-#include "stereo/stretch_kernel.h"
+#include "calib/base/ordered_parallel.h"
+#include "stereo/edge_point.h"
+#include "stereo/matching/stretch_correlation.h"
+#include "stereo/matching/stretch_filter.h"
+#include "stereo/matching/stretch_kernel.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 constexpr int lanes = 32;  // and more of every row that vectors may read or write
@@ -375,4 +384,4 @@ void search_blocks(const RectifiedPair& pair,
   });
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

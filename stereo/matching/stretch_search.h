@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <vector>
 
-#include "stereo/stretch_correlation.h"
+#include "stereo/edge_point.h"
+#include "stereo/matching/stretch_correlation.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Blocks over an image in their places, with the edge points they hold, those too near to the row
 /// left out.
@@ -35,4 +38,4 @@ std::vector<double> stretches_of(const StretchOptions& options);
 /// Shears that are tried, ascending, with 0 in the middle.
 std::vector<double> shears_of(const StretchOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/disparity_line.h"
+#include "stereo/reconstruction/disparity_line.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <utility>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 using Samples = std::span<const DisparitySample>;
@@ -157,4 +159,4 @@ std::vector<DisparityLine> disparity_lines(const std::vector<DisparitySample>& s
   return lines;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A matched point of a straight edge.
 struct DisparitySample {
@@ -23,7 +23,8 @@ struct DisparityLineOptions {
   double floor_length_px = 30;  ///< over which the shared part is
 };
 
-/// A disparity d(s) = d_0 + d_1 (s − s_0) along an edge (stereo/segment_disparity.h).
+/// A disparity d(s) = d_0 + d_1 (s − s_0) along an edge
+/// (stereo/reconstruction/segment_disparity.h).
 struct DisparityLine {
   double along_px = 0;  ///< s_0
   Eigen::Vector2d coefficients{0, 0};
@@ -45,4 +46,4 @@ struct DisparityLine {
 std::vector<DisparityLine> disparity_lines(const std::vector<DisparitySample>& samples,
                                            const DisparityLineOptions& options);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

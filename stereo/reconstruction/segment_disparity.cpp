@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/segment_disparity.h"
+#include "stereo/reconstruction/segment_disparity.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,19 +8,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <string>
 #include <utility>
 
 #include "calib/error.h"
-#include "stereo/disparity_line.h"
-#include "stereo/edge_line.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_line.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/reconstruction/disparity_line.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double patch_width_px = 9, patch_height_px = 7;  // of stereo/disparity_refinement.h
+constexpr double patch_width_px = 9,
+                 patch_height_px = 7;  // of stereo/matching/disparity_refinement.h
 /// Covariance of a disparity and its edge's place along the row, by the variance of that place:
 /// 0.85 ± 0.07 measured on rendered edges; 1 if the place were found as well as can be.
 constexpr double moved_alike = 0.85;
@@ -86,7 +92,7 @@ End end_of(const Edge& edge, bool is_a, double outermost_px, const SegmentDispar
           false};
 }
 
-/// The covariance of both ends' places and disparities (stereo/segment_disparity.h).
+/// The covariance of both ends' places and disparities (stereo/reconstruction/segment_disparity.h).
 class EndCovariance {
  public:
   EndCovariance(const Edge& edge, const DisparityLine& line, const End& a, const End& b)
@@ -254,4 +260,4 @@ std::vector<SegmentDisparity> segment_disparities(const std::vector<EdgePoint>& 
   return all;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

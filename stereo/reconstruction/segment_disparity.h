@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "stereo/edge_segments.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct SegmentDisparityOptions {
   double least_angle_rad = 0.0873;  ///< segments nearer to the row (5°) are refused
@@ -73,9 +75,9 @@ struct SegmentDisparity {
 /// n is the noise, which points share by the overlap l of their patches of 9 x 7 pixels, f the
 /// floor, which they share with the rest of the edge (docs/segments3d.md has the measurements). The
 /// left image's noise moves an edge and its disparity alike: the covariance of both is 0.85 times
-/// the variance of the edge's place. An end keeps its covariance (stereo/edge_segments.h), both
-/// ends' places across are correlated by their common line, and an end that slides along the edge
-/// takes its disparity with it.
+/// the variance of the edge's place. An end keeps its covariance (stereo/edges/edge_segments.h),
+/// both ends' places across are correlated by their common line, and an end that slides along the
+/// edge takes its disparity with it.
 ///
 /// In the order of the segments; refused ones are listed once, with the reason. Throws Error where
 /// edges and disparities differ in number, a segment has a point that is none of them, and on
@@ -85,4 +87,4 @@ std::vector<SegmentDisparity> segment_disparities(const std::vector<EdgePoint>& 
                                                   const std::vector<EdgeDisparity>& disparities,
                                                   const SegmentDisparityOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

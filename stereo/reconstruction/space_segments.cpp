@@ -1,14 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/space_segments.h"
+#include "stereo/reconstruction/space_segments.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "calib/error.h"
-#include "stereo/triangulate.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/triangulate.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -133,4 +141,4 @@ Eigen::MatrixXd calibration_covariance_m2(std::span<const MeasuredSegment> segme
   return J * rig_covariance * J.transpose();
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "calib/rig_estimate.h"
+#include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/rectified_geometry.h"
 #include "stereo/segment.h"
-#include "stereo/segment_disparity.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct SpaceSegmentOptions {
   double max_depth_m = 30;     ///< beyond it a segment is marked unreliable (stereo/segment.h)
@@ -43,17 +43,17 @@ struct MeasuredSegment {
 ///     p = f B / d ((u − c_x) / f, (v − c_y) / f, 1),   ∂p/∂u = z/f e_x,  ∂p/∂v = z/f e_y,
 ///     ∂p/∂d = −p / d
 ///
-/// so that independent = J C Jᵀ with C of the places and disparities (stereo/segment_disparity.h),
-/// turned into the left camera's frame.
+/// so that independent = J C Jᵀ with C of the places and disparities
+/// (stereo/reconstruction/segment_disparity.h), turned into the left camera's frame.
 std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> segments,
                                             const RectifiedGeometry& geometry,
                                             const SpaceSegmentOptions& options = {});
 
 /// The same with what the rig does, whose `geometry` it is. The raw images stay: the left ends'
 /// raw pixels, and the raw pixels of the right line. Another rig reads another line in space from
-/// them, the intersection of stereo/triangulate.h, whose derivatives by_rig are: all that
-/// rectification and triangulation do with the rig's errors, the vertical ones at slanted edges
-/// included. A repair of the vertical field is not in it. Throws Error where the estimate's
+/// them, the intersection of stereo/reconstruction/triangulate.h, whose derivatives by_rig are: all
+/// that rectification and triangulation do with the rig's errors, the vertical ones at slanted
+/// edges included. A repair of the vertical field is not in it. Throws Error where the estimate's
 /// covariance is not of its rig.
 std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> segments,
                                             const RectifiedGeometry& geometry,
@@ -66,4 +66,4 @@ std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> se
 Eigen::MatrixXd calibration_covariance_m2(std::span<const MeasuredSegment> segments,
                                           const Eigen::MatrixXd& rig_covariance);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

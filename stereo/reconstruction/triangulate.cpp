@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/triangulate.h"
+#include "stereo/reconstruction/triangulate.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "calib/camera.h"
+#include "calib/camera/ray_derivatives.h"
 #include "calib/error.h"
-#include "calib/ray_derivatives.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 void require_pair(const Rig& rig) {
@@ -109,4 +117,4 @@ std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

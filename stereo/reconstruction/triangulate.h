@@ -10,7 +10,7 @@
 #include "calib/rig.h"
 #include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 struct TriangulationOptions {
   double endpoint_sigma_px = 0.15;  ///< of each end point across its line, for depth_sigma_m
@@ -53,4 +53,4 @@ struct SegmentTriangulation {
 std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
                                                               const StereoSegment& segment);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,10 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <string>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "stereo/segment.h"
 
-namespace vernier {
+namespace vernier::stereo {
 
 Rectification rectification(const Rig& rig) {
   if (rig.cameras.size() != 2) {
@@ -41,4 +46,4 @@ double epipolar_angle_rad(const Rig& rig,
   return std::atan2(std::abs(d.y()), std::abs(d.x()));
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -1,16 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/rectification_covariance.h"
+#include "stereo/rectification/rectification_covariance.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "calib/camera.h"
+#include "calib/camera/ray_derivatives.h"
 #include "calib/error.h"
-#include "calib/ray_derivatives.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/triangulation.h"
+#include "stereo/rectified_geometry.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::Matrix3d;
@@ -47,7 +55,8 @@ RectificationUncertainty::RectificationUncertainty(const Rig& rig,
                             rig.cameras.size(), n, covariance.rows(), covariance.cols()),
                 "give a pair and its own covariance");
   }
-  // As in stereo/rectification.cpp: x along b = −Rᵀ t, y along c = (e_z + Rᵀ e_z) × x, z = x × y.
+  // As in stereo/rectification/rectification.cpp: x along b = −Rᵀ t, y along c = (e_z + Rᵀ e_z) ×
+  // x, z = x × y.
   const Pose& T = rig.T_camera_first[1];
   const Matrix3d Rt = T.R.transpose();
   const Vector3d b = -(Rt * T.t), x = b.normalized();
@@ -112,4 +121,4 @@ double disparity_variance_px2(const Eigen::Matrix2d& covariance_px2,
   return (by_errors * covariance_px2 * by_errors.transpose()).value();
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

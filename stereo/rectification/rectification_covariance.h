@@ -5,10 +5,11 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "calib/rig.h"
 #include "calib/triangulation.h"
 #include "stereo/rectified_geometry.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// What the error of a rig does to the images that it rectifies, pixel by pixel.
 ///
@@ -76,4 +77,4 @@ class RectificationUncertainty {
 double disparity_variance_px2(const Eigen::Matrix2d& covariance_px2,
                               const Eigen::Vector2d& edge_normal);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

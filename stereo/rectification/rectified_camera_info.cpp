@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/rectified_camera_info.h"
+#include "stereo/rectification/rectified_camera_info.h"
 
-#include "calib/opencv_intrinsics.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/rig.h"
 #include "stereo/rectified_geometry.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
 
 std::vector<RosCameraInfo> rectified_camera_info(const Rig& rig) {
   std::vector<RosCameraInfo> infos;
@@ -29,4 +34,4 @@ std::vector<RosCameraInfo> rectified_camera_info(const Rig& rig) {
   return infos;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

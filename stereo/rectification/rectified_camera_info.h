@@ -4,9 +4,10 @@
 
 #include <vector>
 
-#include "calib/ros_camera_info.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// CameraInfo of every camera of a rig.
 ///
@@ -15,6 +16,6 @@ namespace vernier {
 /// right one's P has the baseline, P03 = -f' |T|. From R, P of both the pose is recovered
 /// (read_ros_camera_info). A camera by itself, and each of three or more, has R = I, P = [K | 0]:
 /// of three or more the poses are lost.
-std::vector<RosCameraInfo> rectified_camera_info(const Rig& rig);
+std::vector<vernier::internal::RosCameraInfo> rectified_camera_info(const Rig& rig);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -7,11 +7,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <variant>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/fisheye4.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "stereo/rectification.h"
 
-namespace vernier {
+namespace vernier::stereo {
 namespace {
 
 constexpr int blank_columns = 40, blank_rows = 30;  // at which blank pixels are counted
@@ -214,4 +222,4 @@ std::optional<Eigen::Vector2d> rectified_pixel(const Rig& rig,
   return geometry.f_px * x.head<2>() / x.z() + geometry.centre_px;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

@@ -6,10 +6,17 @@
 
 #include <algorithm>
 
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "stereo/resampled_image.h"
+#include "calib/rig.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/resampled_image.h"
+#include "stereo/rectified_geometry.h"
 
-namespace vernier {
+namespace vernier::stereo {
+
+using namespace internal;
+
 namespace {
 
 void check(const Camera& camera, const GreyLevels& image) {
@@ -76,4 +83,4 @@ RectifiedImages rectified_images(const Rig& rig,
   return images;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo

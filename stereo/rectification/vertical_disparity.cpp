@@ -1,17 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/vertical_disparity.h"
+#include "stereo/rectification/vertical_disparity.h"
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
 
+#include "calib/base/decompositions.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/sampler.h"
+#include "calib/triangulation.h"
+#include "calib/uncertainty/sampled_propagation.h"
 #include "stereo/rectification.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::Vector3d;
@@ -41,8 +57,7 @@ Eigen::RowVectorXd through_ray(const Camera& camera,
 /// The part of J C Jᵀ that no column of X can explain, as its trace: tr(C JᵀJ) − tr(C (QᵀJ)ᵀ QᵀJ)
 /// with Q an orthonormal basis of X.
 double unexplained(const Eigen::MatrixXd& J, const Eigen::MatrixXd& C, const Eigen::MatrixXd& X) {
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(X).householderQ() *
-                            Eigen::MatrixXd::Identity(X.rows(), X.cols());
+  const Eigen::MatrixXd Q = orthonormal_basis(X);
   const Eigen::MatrixXd rest = J - Q * (Q.transpose() * J);
   return (rest * C).cwiseProduct(rest).sum();
 }
@@ -200,4 +215,4 @@ std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampl
   return result;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

@@ -4,11 +4,15 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "calib/sampled_propagation.h"
+#include "calib/rig.h"
+#include "calib/sampler.h"
+#include "calib/triangulation.h"
+#include "calib/uncertainty/sampled_propagation.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// Vertical disparity v_left − v_right (px) of a pixel pair in the pair rectified by `rig`
 /// (stereo/rectification.h) at a rectified focal length; 0 where the rig is right. Nothing where a
@@ -57,10 +61,11 @@ struct SampledDisparity {
   double sd_px = 0;               ///< about the mean, over the draws that rectify the pair
   double non_physical_share = 0;  ///< draws that do not
 };
-std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampler,
-                                                         std::span<const PixelPair> pairs,
-                                                         double rectified_f_px,
-                                                         const SamplingOptions& options = {});
+std::vector<SampledDisparity> sampled_vertical_disparity(
+    const RigSampler& sampler,
+    std::span<const PixelPair> pairs,
+    double rectified_f_px,
+    const vernier::internal::SamplingOptions& options = {});
 
 /// The pair of pixels at which a point on the left pixel's ray stands: at `distance_m` along it, or
 /// infinity. Nothing where the ray is missing or the point is not in the right image.
@@ -68,4 +73,4 @@ std::optional<PixelPair> pair_at_distance(const Rig& rig,
                                           const Eigen::Vector2d& left_px,
                                           double distance_m);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

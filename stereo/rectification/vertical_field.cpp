@@ -1,23 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/vertical_field.h"
+#include "stereo/rectification/vertical_field.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <vector>
 
 #include "calib/error.h"
-#include "stereo/harris_corners.h"
-#include "stereo/matrix_of.h"
-#include "stereo/patch_alignment.h"
-#include "stereo/patch_search.h"
+#include "stereo/corners/harris_corners.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/matrix_of.h"
+#include "stereo/image/patch_alignment.h"
+#include "stereo/image/patch_search.h"
+#include "stereo/rectification/vertical_field_fit.h"
 #include "stereo/rectified_images.h"
-#include "stereo/vertical_field_fit.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 namespace {
 
 constexpr double corners_a_cell = 2;  // of the parts of the image that corners are spread over
@@ -273,4 +278,4 @@ GreyLevels repaired_right(const GreyLevels& right, const VerticalField& field) {
   return repaired;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

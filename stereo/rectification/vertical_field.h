@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "stereo/matcher.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_images.h"
+#include "stereo/rectified_pair.h"
 
-namespace vernier {
-
-struct RectifiedImages;
+namespace vernier::stereo::internal {
 
 struct VerticalFieldOptions {
   int band_px = 5;           ///< rows above and below that are searched, 1 to 10
@@ -49,9 +49,10 @@ struct VerticalField {
 
 /// The field of a pair, from its matched corners:
 ///
-///  1. Harris corners of the left image at half its size (stereo/harris_corners.h), each sought in
+///  1. Harris corners of the left image at half its size (stereo/corners/harris_corners.h), each
+///  sought in
 ///     the right one by ZNCC over the disparities and the rows of the band, and back;
-///  2. those that stand out are aligned at full size to sub-pixel (stereo/patch_alignment.h);
+///  2. those that stand out are aligned at full size to sub-pixel (stereo/image/patch_alignment.h);
 ///  3. RANSAC over triples (Fischler and Bolles 1981), then least squares reweighted by Tukey's
 ///     biweight. The covariance is that of an M-estimator, A⁻¹ B A⁻¹ (Huber, "Robust Statistics",
 ///     1981, section 6.3): it holds whatever the matches' errors are, if they are independent.
@@ -77,4 +78,4 @@ std::string describe(const VerticalField& field);
 /// border, its outermost rows'. Throws Error on an image of another size than the field's.
 GreyLevels repaired_right(const GreyLevels& right, const VerticalField& field);
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

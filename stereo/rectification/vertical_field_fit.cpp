@@ -1,16 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/vertical_field_fit.h"
+#include "stereo/rectification/vertical_field_fit.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
-#include "calib/draw_sources.h"
-#include "calib/random.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "stereo/rectification/vertical_field.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 using Eigen::Matrix3d;
@@ -219,4 +225,4 @@ VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
   return field;
 }
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

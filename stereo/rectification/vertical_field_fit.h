@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "stereo/vertical_field.h"
+#include "stereo/rectification/vertical_field.h"
 
-namespace vernier {
+namespace vernier::stereo::internal {
 
 /// A match: the right image has it `dy_px` lower than the left one.
 struct RowOffset {
@@ -22,4 +22,4 @@ VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
                                  const Eigen::Vector2i& size_px,
                                  const VerticalFieldOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::stereo::internal

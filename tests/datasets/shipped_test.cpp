@@ -4,12 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "sim/route.h"
+#include "sim/world.h"
 #include "sim/world_file.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+
 namespace {
 
 const std::string folder = VERNIER_SOURCE_DIR "/datasets/";

@@ -4,9 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include "localise/place.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {
+
+using namespace localise;
+using namespace localise::internal;
+
 namespace {
 
 TEST(Align, FindsAKnownMotion) {

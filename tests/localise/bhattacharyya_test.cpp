@@ -4,10 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/base/instruction_set.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/statistics/random.h"
+#include "localise/pgh.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace localise;
+using namespace localise::internal;
+
 namespace {
 
 HistogramRows random_rows(std::uint64_t seed, int rows, int columns) {
@@ -47,7 +54,7 @@ TEST(BestMatches, DifferentBinsAreRefused) {
   EXPECT_THROW(best_matches(random_rows(1, 3, 8), random_rows(1, 3, 9)), Error);
 }
 
-TEST(BestMatches, NamesItsInstructionSet) { EXPECT_FALSE(target_name().empty()); }
+TEST(BestMatches, NamesItsInstructionSet) { EXPECT_FALSE(instruction_set().empty()); }
 
 }  // namespace
 }  // namespace vernier

@@ -5,10 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "calib/error.h"
+#include "calib/statistics/random.h"
+#include "localise/pgh.h"
+#include "localise/place.h"
 #include "localise/rank.h"
+#include "localise/topological_map.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace localise;
+using namespace localise::internal;
+
 namespace {
 
 /// Ten rooms side by side, 10 m apart.

@@ -8,9 +8,17 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "calib/statistics/random.h"
+#include "localise/place.h"
+#include "stereo/segment.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace localise;
+using namespace stereo;
+
 namespace {
 
 /// Oracle: both segments sampled densely, every sample smeared into every bin by the error

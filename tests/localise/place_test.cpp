@@ -6,7 +6,14 @@
 
 #include <numbers>
 
+#include "calib/pose.h"
+#include "stereo/segment.h"
+
 namespace vernier {
+
+using namespace localise;
+using namespace stereo;
+
 namespace {
 
 TEST(PlanePoses, DifferencesAndComposition) {

@@ -8,6 +8,9 @@
 #include <vector>
 
 namespace vernier {
+
+using namespace localise::internal;
+
 namespace {
 
 /// The same by summing Gaussians at dense points of the ramp.

@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/simulated_board.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 /// The same views of a board that is bent by `warp_m`, with the same noise.
 inline BoardObservations bent(const SimulatedBoard& board, const Eigen::Vector2d& warp_m) {

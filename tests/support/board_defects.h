@@ -6,6 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
 
 namespace vernier::test {

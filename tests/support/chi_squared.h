@@ -4,9 +4,11 @@
 
 #include <cmath>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 /// Quantile of the chi-squared distribution by Wilson and Hilferty's cube (error below 0.1 % for
 /// ten degrees of freedom and more).

@@ -7,12 +7,26 @@
 #include <numeric>
 #include <vector>
 
-#include "calib/random.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/statistics/random.h"
+#include "sim/look.h"
 #include "sim/sense.h"
-#include "stereo/image_edges.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/segment.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::test {
+
+using namespace internal;
+using namespace sim;
+using namespace stereo;
+using namespace stereo::internal;
 
 /// A rectified pair of pinholes before a slanted plane: the truth of its disparities is exact.
 struct PlaneBeforePair {

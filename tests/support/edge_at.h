@@ -8,6 +8,8 @@
 
 namespace vernier::test {
 
+using namespace stereo;
+
 /// An upright edge that crosses row y at row_x.
 inline EdgePoint edge_at(float row_x, int y) {
   EdgePoint edge;

@@ -9,10 +9,13 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 #include "stereo/grey_levels.h"
 
 namespace vernier::test {
+
+using namespace internal;
+using namespace stereo;
 
 /// A straight edge from dark to bright: brighter where nᵀ(x − centre) > offset, n at `angle` from
 /// the x axis.

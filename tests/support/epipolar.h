@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "calib/pair_observations.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "tests/support/numeric_jacobian.h"
 
 namespace vernier::test {

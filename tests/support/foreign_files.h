@@ -10,7 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/camera.h"
 #include "calib/imported_rig.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "tests/support/scenes.h"
 
 namespace vernier::test {

@@ -8,6 +8,8 @@
 
 namespace vernier::test {
 
+using namespace stereo;
+
 /// An image of one channel as grey levels.
 inline GreyLevels grey_levels(const cv::Mat& image) {
   cv::Mat values;

@@ -6,6 +6,7 @@
 #include <ceres/rotation.h>
 
 #include "calib/pair_observations.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::test {

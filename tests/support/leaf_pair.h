@@ -6,11 +6,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/draw_sources.h"
-#include "calib/random.h"
-#include "stereo/matcher.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
 
 namespace vernier::test {
+
+using namespace internal;
+using namespace stereo;
 
 /// A plane covered with leaves of two grey levels, one above the other: every edge has the whole
 /// contrast.

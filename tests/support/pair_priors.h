@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "calib/draw_sources.h"
-#include "calib/random.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
 #include "calib/rig_prior.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 /// What a datasheet might say of a `radial1` pair: standard deviations of its 16 parameters, which
 /// leave a vertical disparity of 15 px.

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier::test {
+
+using namespace stereo;
 
 /// Edges well inside the right image: the share of them matched, and of these more than 3 px wrong.
 struct PlaneFigures {

@@ -7,15 +7,23 @@
 #include <Eigen/Dense>
 #include <limits>
 
-#include "calib/board_warp.h"
-#include "calib/covariance.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/outliers.h"
+#include "calib/camera.h"
 #include "calib/held_parameters.h"
-#include "calib/outliers.h"
-#include "calib/resolve.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
-#include "tests/support/scenes.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/resolve.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 inline constexpr double sigma_px = 0.2;
 

@@ -4,10 +4,13 @@
 
 #include <vector>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 #include "localise/place.h"
 
 namespace vernier::test {
+
+using namespace internal;
+using namespace localise;
 
 /// A random room as seen from its middle: upright, level and oblique lines within 5 m.
 inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {

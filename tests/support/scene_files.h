@@ -5,11 +5,14 @@
 #include <limits>
 
 #include "stereo/disparity_file.h"
+#include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
-#include "stereo/stereo_scenes.h"
 #include "tests/support/stereo_scenes.h"
 
 namespace vernier::test {
+
+using namespace stereo;
+using namespace stereo::internal;
 
 /// A scene's files; a compressed archive is written anew, into `folder`, as what the library reads.
 inline StereoSceneFile files_of(const StereoScene& scene, const std::filesystem::path& folder) {

@@ -8,10 +8,18 @@
 #include <string>
 
 #include "stereo/canny_edges.h"
+#include "stereo/edge_point.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/stereo_scenes.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 
 namespace vernier::test {
+
+using namespace stereo;
+using namespace stereo::internal;
 
 /// The scenes of the eleven on which limits of matchers were chosen.
 inline const std::set<std::string> tuned_scenes = {"barn2", "teddy", "Art", "motorcycle"};

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::test {

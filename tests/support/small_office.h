@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
 #include "sim/look.h"
 #include "sim/route.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
+#include "sim/world/office.h"
 
 namespace vernier::test {
+
+using namespace sim;
+using namespace sim::internal;
 
 /// An office of a few rooms, made once: small enough for unit tests, of another seed than any
 /// world that judges a method.

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/edge_images.h"
 
 namespace vernier::test {
+
+using namespace stereo;
 
 /// A straight edge that both images of a rectified pair show, with a disparity linear in the row:
 /// d(y) = disparity_px + by_y (y − centre's y). No noise, not rounded.

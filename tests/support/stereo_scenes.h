@@ -14,6 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::test {

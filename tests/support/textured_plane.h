@@ -5,10 +5,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/random.h"
+#include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/random.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 /// A plane n·X = 1 of the first camera's frame, covered with squares of random grey and random
 /// size.

@@ -10,10 +10,14 @@
 
 #include "calib/camera.h"
 #include "calib/pose.h"
-#include "calib/random.h"
+#include "calib/radial1.h"
+#include "calib/statistics/random.h"
 #include "sim/world.h"
 
 namespace vernier::test {
+
+using namespace internal;
+using namespace sim;
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;

@@ -6,9 +6,11 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
 namespace vernier::test {
+
+using namespace internal;
 
 /// A corner of known place: a bright wedge with its tip at `tip`, opening by `opening` radians
 /// about the direction `towards`.

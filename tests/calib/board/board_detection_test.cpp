@@ -5,11 +5,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr Chessboard board{9, 6, 0.025};

@@ -7,11 +7,14 @@
 
 #include <filesystem>
 
-#include "calib/atomic_file.h"
-#include "calib/kalibr_target.h"
+#include "calib/base/atomic_file.h"
+#include "calib/board/kalibr_target.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string complaint_of(const BoardTarget& target) {

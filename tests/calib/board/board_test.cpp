@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "calib/board/board_pose.h"
 #include "calib/board_observations.h"
-#include "calib/board_pose.h"
+#include "calib/camera.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string complaint_of(BoardObservations observations) {

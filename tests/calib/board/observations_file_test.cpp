@@ -6,14 +6,18 @@
 
 #include <cstdlib>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
+#include "calib/base/frame_numbering.h"
+#include "calib/board_target.h"
 #include "calib/error.h"
-#include "calib/frame_numbering.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 class ObservationsFile : public testing::Test {

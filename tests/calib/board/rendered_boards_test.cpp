@@ -7,14 +7,20 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
+#include "calib/rig_estimate.h"
 #include "tests/support/board_images.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::BoardCamera;

@@ -7,9 +7,15 @@
 #include <sstream>
 
 #include "calib/board_detection.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {

@@ -5,6 +5,9 @@
 #include <Eigen/Dense>
 
 #include "calib/calibrate.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/correlated_noise.h"

@@ -4,7 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/scenes.h"
 

@@ -5,18 +5,30 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/combine.h"
-#include "calib/rig_drift.h"
+#include "calib/covariance.h"
+#include "calib/estimate/simulated_pairs.h"
+#include "calib/joint_calibration.h"
+#include "calib/opencv_models.h"
+#include "calib/pair_observations.h"
+#include "calib/prior_agreement.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
-#include "calib/simulated_pairs.h"
+#include "calib/validation/rig_drift.h"
 #include "tests/support/bent_board.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// Largest relative difference of standard deviations.

@@ -9,15 +9,22 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/combine.h"
-#include "calib/epipolar_system.h"
-#include "calib/pairs_file.h"
-#include "calib/rig_drift.h"
+#include "calib/estimate/simulated_pairs.h"
+#include "calib/formats/pairs_file.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
-#include "calib/simulated_pairs.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
+#include "calib/validation/rig_drift.h"
 #include "tests/support/error_message.h"
 #include "tests/support/jet_sampson.h"
 #include "tests/support/pair_priors.h"
@@ -25,6 +32,9 @@
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::datasheet;

@@ -3,14 +3,27 @@
 #include <gtest/gtest.h>
 
 #include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/view_checks.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/observations_file.h"
-#include "calib/view_checks.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// A set of real pairs of a 9x6 board and what is left of it at most.

@@ -1,18 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/observation_checks.h"
+#include "calib/calibration/observation_checks.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "calib/random.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string complaint_of(BoardObservations observations) {

@@ -1,22 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/outliers.h"
+#include "calib/calibration/outliers.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
-#include "calib/random.h"
+#include "calib/camera.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/error_message.h"
 #include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::worst_sigmas;

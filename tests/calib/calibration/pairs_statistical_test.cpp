@@ -10,16 +10,26 @@
 #include <cmath>
 
 #include "calib/combine.h"
-#include "calib/distributions.h"
-#include "calib/draw_sources.h"
-#include "calib/epipolar_system.h"
-#include "calib/random.h"
-#include "calib/rig_drift.h"
-#include "calib/simulated_pairs.h"
+#include "calib/estimate/simulated_pairs.h"
+#include "calib/joint_calibration.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "calib/validation/rig_drift.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// 1280 x 960, f 1010 px, baseline 0.12 m.

@@ -1,15 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/residual_diagnosis.h"
+#include "calib/calibration/residual_diagnosis.h"
 
 #include <gtest/gtest.h>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/outliers.h"
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/minimise_reprojection.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// What is found first, and the solution as it stands, without outliers left out.

@@ -1,16 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/tilt_check.h"
+#include "calib/calibration/tilt_check.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/radial1.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string complaint_of(BoardObservations observations) {

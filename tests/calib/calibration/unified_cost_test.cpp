@@ -4,11 +4,21 @@
 
 #include <Eigen/LU>
 
-#include "calib/board_warp.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
 #include "calib/combine.h"
-#include "calib/model_nesting.h"
+#include "calib/covariance.h"
+#include "calib/held_parameters.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
 #include "tests/support/bent_board.h"
 #include "tests/support/error_message.h"
@@ -16,6 +26,9 @@
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::worst_sigmas;

@@ -1,14 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_checks.h"
+#include "calib/calibration/view_checks.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/board_observations.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/camera.h"
+#include "calib/radial1.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 ObservationDiagnosis diagnosis_of(BoardObservations observations) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/error.h"
+#include "calib/opencv_models.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 

@@ -6,16 +6,23 @@
 
 #include <Eigen/Dense>
 
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
 #include "calib/error.h"
-#include "calib/joint_information.h"
-#include "calib/scaled_root.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
-#include "calib/view_linearisation.h"
+#include "calib/statistics/scaled_root.h"
+#include "calib/uncertainty/joint_information.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// All residuals as a function of (rig tangent, pose tangents): the dense, unreduced problem.

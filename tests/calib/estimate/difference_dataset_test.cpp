@@ -5,15 +5,24 @@
 #include <algorithm>
 
 #include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
-#include "calib/covariance_choice.h"
-#include "calib/next_view.h"
-#include "calib/normal_equations.h"
-#include "calib/projection_difference.h"
+#include "calib/covariance.h"
+#include "calib/estimate/projection_difference.h"
+#include "calib/opencv_models.h"
 #include "calib/rig_difference.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/normal_equations.h"
+#include "calib/uncertainty/next_view.h"
+#include "calib/uncertainty/wanted_error.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 // No covariance covers the model: on the same 13 real pairs, two models put the right camera's

@@ -6,15 +6,19 @@
 #include <cmath>
 
 #include "calib/calibrate.h"
-#include "calib/covariance_choice.h"
-#include "calib/projection_difference.h"
+#include "calib/estimate/projection_difference.h"
+#include "calib/rig.h"
 #include "calib/rig_difference.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
 #include "tests/support/correlated_noise.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// Greatest distance between the empirical distribution and the uniform one, times √n

@@ -6,12 +6,19 @@
 
 #include <Eigen/Dense>
 
-#include "calib/epipolar_system.h"
-#include "calib/simulated_pairs.h"
+#include "calib/camera.h"
+#include "calib/estimate/simulated_pairs.h"
+#include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/solver/packed_pairs.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// The plane of `pairs` without noise, n·X = 1, from three triangulated corners.

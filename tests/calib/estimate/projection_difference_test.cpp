@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/projection_difference.h"
+#include "calib/estimate/projection_difference.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "calib/camera.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

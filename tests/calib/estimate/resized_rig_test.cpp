@@ -1,14 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/resized_rig.h"
+#include "calib/estimate/resized_rig.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/camera.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 TEST(ResizedRig, ShowsPointsWhereTheEnlargedPictureHasThem) {

@@ -8,13 +8,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
-#include "calib/chi_squared.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/chi_squared.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 RigEstimate calibrated(std::uint64_t seed, const CameraModel& model = Radial1{}) {

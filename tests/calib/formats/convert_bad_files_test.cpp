@@ -2,15 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "calib/colmap_cameras.h"
-#include "calib/kalibr_camchain.h"
-#include "calib/mrcal_cameramodel.h"
-#include "calib/opencv_calibration_file.h"
-#include "calib/ros_camera_info.h"
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/formats/colmap_cameras.h"
+#include "calib/formats/kalibr_camchain.h"
+#include "calib/formats/mrcal_cameramodel.h"
+#include "calib/formats/opencv_calibration_file.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/imported_rig.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::error_message;

@@ -4,18 +4,29 @@
 
 #include <functional>
 
-#include "calib/colmap_cameras.h"
-#include "calib/error.h"
-#include "calib/kalibr_camchain.h"
-#include "calib/mrcal_cameramodel.h"
-#include "calib/opencv_calibration_file.h"
-#include "calib/opencv_intrinsics.h"
+#include "calib/camera.h"
+#include "calib/camera/opencv_intrinsics.h"
+#include "calib/fisheye4.h"
+#include "calib/formats/colmap_cameras.h"
+#include "calib/formats/kalibr_camchain.h"
+#include "calib/formats/mrcal_cameramodel.h"
+#include "calib/formats/opencv_calibration_file.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/imported_rig.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "calib/rig_file.h"
-#include "stereo/rectified_camera_info.h"
+#include "stereo/rectification/rectified_camera_info.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 using test::error_message;

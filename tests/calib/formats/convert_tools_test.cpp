@@ -10,14 +10,22 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/persistence.hpp>
 
-#include "calib/atomic_file.h"
-#include "calib/colmap_cameras.h"
-#include "calib/mrcal_cameramodel.h"
-#include "calib/opencv_calibration_file.h"
-#include "stereo/rectified_camera_info.h"
+#include "calib/base/atomic_file.h"
+#include "calib/camera.h"
+#include "calib/formats/colmap_cameras.h"
+#include "calib/formats/mrcal_cameramodel.h"
+#include "calib/formats/opencv_calibration_file.h"
+#include "calib/formats/ros_camera_info.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
+#include "stereo/rectification/rectified_camera_info.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 using test::Folder;
@@ -31,8 +39,9 @@ int run(const std::string& command, const std::filesystem::path& output) {
 
 int mrcal(const std::string& words, const std::filesystem::path& output) {
   if (std::string(DEBIAN_PYTHON).find("NOTFOUND") != std::string::npos) return 77;
-  return run("'" DEBIAN_PYTHON "' '" VERNIER_SOURCE_DIR "/tests/calib/mrcal_side.py' " + words,
-             output);
+  return run(
+      "'" DEBIAN_PYTHON "' '" VERNIER_SOURCE_DIR "/tests/calib/formats/mrcal_side.py' " + words,
+      output);
 }
 
 /// Points before every camera of the pair, in the first one's frame.

@@ -6,7 +6,10 @@
 
 #include <limits>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"

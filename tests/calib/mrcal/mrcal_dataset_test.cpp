@@ -6,15 +6,25 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/mrcal_solver.h"
 #include "calib/mrcal/uncertainty_comparison.h"
 #include "calib/observations_file.h"
+#include "calib/rig_estimate.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/refined_minimum.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::string text(double number) {

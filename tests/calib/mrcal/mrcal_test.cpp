@@ -6,20 +6,35 @@
 #include <fstream>
 #include <limits>
 
+#include "calib/base/program_run.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/minimise_reprojection.h"
+#include "calib/fisheye4.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
+#include "calib/mrcal/mrcal_solver.h"
 #include "calib/mrcal/uncertainty_comparison.h"
-#include "calib/program_run.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/refined_minimum.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double sigma_px = 0.1;

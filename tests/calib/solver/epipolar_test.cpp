@@ -4,16 +4,27 @@
 
 #include <cmath>
 
-#include "calib/epipolar_system.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
+#include "calib/estimate/simulated_pairs.h"
 #include "calib/held_parameters.h"
-#include "calib/resolve_pairs.h"
-#include "calib/simulated_pairs.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/epipolar_system.h"
+#include "calib/solver/loss.h"
+#include "calib/solver/packed_pairs.h"
+#include "calib/solver/resolve_pairs.h"
 #include "tests/support/epipolar.h"
 #include "tests/support/jet_sampson.h"
+#include "tests/support/numeric_jacobian.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 const std::vector<std::string> model_names{"pinhole", "radial1", "opencv4",

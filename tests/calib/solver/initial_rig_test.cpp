@@ -1,16 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/initial_rig.h"
+#include "calib/solver/initial_rig.h"
 
 #include <gtest/gtest.h>
 
-#include "calib/minimise_reprojection.h"
-#include "calib/outliers.h"
-#include "calib/view_checks.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/observation_checks.h"
+#include "calib/calibration/outliers.h"
+#include "calib/calibration/view_checks.h"
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/minimise_reprojection.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// A rig and how its board is shown.

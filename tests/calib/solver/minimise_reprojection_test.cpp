@@ -1,15 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/minimise_reprojection.h"
+#include "calib/solver/minimise_reprojection.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/held_parameters.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/reprojection_problem.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using test::error_message;

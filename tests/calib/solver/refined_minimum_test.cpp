@@ -1,18 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/refined_minimum.h"
+#include "calib/solver/refined_minimum.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "calib/minimise_reprojection.h"
-#include "calib/random.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
-#include "calib/square_root_system.h"
+#include "calib/solver/initial_rig.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/square_root_system.h"
+#include "calib/statistics/random.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 Eigen::MatrixXd random_matrix(int rows, int columns, std::uint32_t feature) {

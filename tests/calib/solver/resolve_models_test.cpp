@@ -1,8 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
+#include "calib/held_parameters.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/solver/resolve.h"
 #include "tests/support/resolver_oracle.h"
+#include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using namespace test;

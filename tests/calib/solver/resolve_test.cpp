@@ -1,9 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include "calib/solver/resolve.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/fisheye4.h"
+#include "calib/held_parameters.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/reprojection_problem.h"
 #include "tests/support/resolver_oracle.h"
+#include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 using namespace test;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/bootstrap.h"
+#include "calib/statistics/bootstrap.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,14 @@
 #include <numeric>
 #include <vector>
 
-#include "calib/distributions.h"
-#include "calib/draw_sources.h"
-#include "calib/random.h"
+#include "calib/interval.h"
+#include "calib/statistics/random.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 ClusterStatistic mean_of(const std::vector<double>& values) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/chi_squared.h"
+#include "calib/statistics/chi_squared.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,9 @@
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 double relative(double value, double expected) { return std::abs(value / expected - 1); }

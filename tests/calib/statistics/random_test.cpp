@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/random.h"
+#include "calib/statistics/random.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,9 @@
 #include "calib/error.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 TEST(Draws, SamePlaceSameNumbers) {

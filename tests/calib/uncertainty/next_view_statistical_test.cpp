@@ -5,14 +5,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
-#include "calib/next_view.h"
-#include "calib/random.h"
+#include "calib/pair_observations.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
+#include "calib/uncertainty/next_view.h"
+#include "calib/uncertainty/wanted_error.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double sigma_px = 0.2;

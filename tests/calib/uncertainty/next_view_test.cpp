@@ -1,19 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/next_view.h"
+#include "calib/uncertainty/next_view.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "calib/board/board_placement.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/uncertainty/wanted_error.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double sigma_px = 0.2;

@@ -8,8 +8,12 @@
 #include <sstream>
 
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/observations_file.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 #include "tests/support/data_folder.h"
 

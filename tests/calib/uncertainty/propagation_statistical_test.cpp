@@ -5,13 +5,24 @@
 #include <limits>
 
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/depth_uncertainty.h"
-#include "calib/sampled_propagation.h"
+#include "calib/projection_uncertainty.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
+#include "calib/triangulation.h"
+#include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/sampled_propagation.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr int samples = 2000;

@@ -5,22 +5,37 @@
 #include <Eigen/Dense>
 #include <limits>
 
-#include "calib/board_warp.h"
+#include "calib/board/board_warp.h"
+#include "calib/board/view_linearisation.h"
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/error.h"
+#include "calib/estimate/rig_pair.h"
 #include "calib/held_parameters.h"
-#include "calib/minimise_reprojection.h"
+#include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
-#include "calib/rig_pair.h"
-#include "calib/sampled_propagation.h"
+#include "calib/rig.h"
+#include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
-#include "calib/view_linearisation.h"
+#include "calib/uncertainty/sampled_propagation.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -5,12 +5,18 @@
 #include <Eigen/Dense>
 
 #include "calib/calibrate.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/statistics/random.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 RigEstimate estimate() {

@@ -1,15 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/left_out_boards.h"
+#include "calib/validation/left_out_boards.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/board_observations.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 // White noise, 40 views (seed 301): the bound is true, and so must be the intervals. The lengths of

@@ -1,15 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/model_comparison.h"
+#include "calib/validation/model_comparison.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibrate.h"
+#include "calib/covariance.h"
+#include "calib/held_parameters.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 ModelComparison compared(const BoardObservations& observations, const CalibrationOptions& options) {

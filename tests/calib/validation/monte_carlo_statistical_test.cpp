@@ -6,16 +6,22 @@
 
 #include <Eigen/Dense>
 
-#include "calib/calibrate.h"
-#include "calib/covariance.h"
-#include "calib/distributions.h"
+#include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
-#include "calib/monte_carlo_check.h"
+#include "calib/radial1.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/reprojection_problem.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/random.h"
+#include "calib/validation/monte_carlo_check.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr double sigma_px = 0.2;

@@ -1,17 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/residual_structure.h"
+#include "calib/validation/residual_structure.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
 #include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/opencv_models.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 TEST(ResidualStructure, EveryCornerFallsIntoItsCell) {

@@ -4,10 +4,13 @@
 
 #include "calib/calibrate.h"
 #include "calib/simulated_board.h"
-#include "calib/view_influence.h"
+#include "calib/validation/view_influence.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 // Under white noise Σ_f |L⁻¹δ_f|² has the mean Σ_f tr(H_f − H_f²), 9.05 a trial here, and a

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/view_influence.h"
+#include "calib/validation/view_influence.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/board_observations.h"
 #include "calib/calibrate.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 constexpr int frames = 12;

@@ -38,21 +38,22 @@ int run(const char* world_file) {
   std::printf("calibrated from %d views, residual %.3f px\n", calibrated.calibration->views,
               calibrated.calibration->rms_px);
 
-  const vernier::Rectification turned = vernier::rectification(read_back.estimate.rig);
+  const vernier::stereo::Rectification turned =
+      vernier::stereo::rectification(read_back.estimate.rig);
   std::printf("rectified: first row %.4f %.4f %.4f\n", turned.R_rectified_left(0, 0),
               turned.R_rectified_left(0, 1), turned.R_rectified_left(0, 2));
 
-  const vernier::World world = vernier::build_world(vernier::read_world(world_file));
-  const vernier::Visibility visibility(world);
-  const vernier::ExperimentSettings settings{.protocol = vernier::QueryProtocol::near_path,
-                                             .map_spacing_m = 2};
-  const auto looks = std::make_shared<const vernier::MapLooks>(
-      vernier::map_looks(visibility, calibrated.rig, settings));
-  const vernier::LocalisationExperiment experiment(visibility, calibrated, looks, settings);
+  const vernier::sim::World world = vernier::sim::build_world(vernier::sim::read_world(world_file));
+  const vernier::sim::Visibility visibility(world);
+  const vernier::sim::ExperimentSettings settings{
+      .protocol = vernier::sim::QueryProtocol::near_path, .map_spacing_m = 2};
+  const auto looks = std::make_shared<const vernier::sim::MapLooks>(
+      vernier::sim::map_looks(visibility, calibrated.rig, settings));
+  const vernier::sim::LocalisationExperiment experiment(visibility, calibrated, looks, settings);
   const auto results = experiment.run_block(0, 0, 2);
-  for (const vernier::TrialResult& trial : results) {
+  for (const vernier::sim::TrialResult& trial : results) {
     std::printf("trial %u: %s, %d lines\n", trial.trial,
-                std::string(vernier::name(trial.status)).c_str(), trial.lines);
+                std::string(vernier::localise::name(trial.status)).c_str(), trial.lines);
   }
   return results.size() == 2 && results[0].lines > 0 ? 0 : 1;
 }

@@ -5,13 +5,24 @@
 // them; the limits here are wide and only say that the figures stay what docs/characterise.md has.
 #include <gtest/gtest.h>
 
-#include "sim/measured_sources.h"
+#include "sim/sources/measured_sources.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/evaluation/pair_samples.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace sim::internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 PairSamples samples_of(const StereoSceneFile& files) {

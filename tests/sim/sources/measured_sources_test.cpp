@@ -6,15 +6,43 @@
 // with a probability of 0.99986: the false-alarm rate is 1.4e-4 each. Over parts of one image they
 // hold 92 %, and 83 or fewer in 100 with a probability of 0.003. Nor may they be wider than they
 // have to be: twice as wide as t of 7 degrees of freedom, 2.36 deviations of what is measured.
-#include "sim/measured_sources.h"
+#include "sim/sources/measured_sources.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/variance_line.h"
+#include "calib/camera.h"
+#include "calib/interval.h"
+#include "calib/statistics/cluster_interval.h"
+#include "calib/statistics/random.h"
+#include "sim/look.h"
+#include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
+#include "sim/sources/variance_line.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/edge_loss.h"
+#include "stereo/evaluation/end_difference.h"
+#include "stereo/evaluation/line_match.h"
+#include "stereo/evaluation/pair_samples.h"
+#include "stereo/evaluation/segment_shift.h"
+#include "stereo/evaluation/warped_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/segment.h"
+#include "stereo/stereo_truth.h"
 #include "tests/support/drawn_edges.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+using namespace sim::internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr double point_noise_px = 0.05;

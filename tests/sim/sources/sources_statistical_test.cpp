@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "sim/route.h"
+#include "calib/statistics/random.h"
+#include "sim/look.h"
 #include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+
 namespace {
 
 const Look& seen() { return test::office_look(); }

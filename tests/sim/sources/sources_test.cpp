@@ -7,13 +7,29 @@
 #include <map>
 #include <set>
 
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/random.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/statistics/random.h"
+#include "localise/place.h"
+#include "sim/look.h"
 #include "sim/route.h"
 #include "sim/sense.h"
+#include "sim/sensed_view.h"
+#include "sim/sources.h"
+#include "sim/world.h"
+#include "stereo/rectification.h"
+#include "stereo/segment.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace localise;
+using namespace sim;
+using namespace stereo;
+
 namespace {
 
 /// A look at the office with corners, and sightings of it under given settings.

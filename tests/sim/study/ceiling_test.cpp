@@ -1,13 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/ceiling.h"
+#include "sim/study/ceiling.h"
 
 #include <gtest/gtest.h>
 
+#include "localise/place.h"
 #include "sim/route.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace localise;
+using namespace sim;
+using namespace sim::internal;
+
 namespace {
 
 /// Two closed rooms of 4 x 5 m with the same four cupboards, 10 m apart; the second may get one

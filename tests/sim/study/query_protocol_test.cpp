@@ -8,9 +8,16 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "localise/place.h"
+#include "sim/route.h"
+#include "sim/world.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace localise;
+using namespace sim;
+
 namespace {
 
 /// Least distance on the floor from the route, and least turn from the direction of travel among

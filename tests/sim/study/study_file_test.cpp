@@ -1,15 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study_file.h"
+#include "sim/study/study_file.h"
 
 #include <gtest/gtest.h>
 
-#include "calib/atomic_file.h"
-#include "sim/sources_file.h"
+#include "calib/base/atomic_file.h"
+#include "sim/experiment.h"
+#include "sim/query_protocol.h"
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
+#include "sim/sources/sources_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+using namespace sim::internal;
+
 namespace {
 
 std::string complaint_of(const std::string& text) {

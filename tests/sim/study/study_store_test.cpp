@@ -1,16 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study_store.h"
+#include "sim/study/study_store.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
 
-#include "calib/atomic_file.h"
+#include "calib/base/atomic_file.h"
 #include "calib/error.h"
+#include "localise/localiser.h"
+#include "sim/experiment.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace localise;
+using namespace sim;
+using namespace sim::internal;
+
 namespace {
 
 class Store : public testing::Test {

@@ -1,14 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study.h"
+#include "sim/study/study.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "sim/study_store.h"
+#include "localise/localiser.h"
+#include "sim/experiment.h"
+#include "sim/study/study_file.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace localise;
+using namespace sim;
+using namespace sim::internal;
+
 namespace {
 
 class StudyRuns : public testing::Test {

@@ -4,12 +4,26 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/place.h"
 #include "sim/route.h"
 #include "sim/sense.h"
-#include "stereo/triangulate.h"
+#include "sim/sources.h"
+#include "sim/world.h"
+#include "stereo/reconstruction/triangulate.h"
+#include "stereo/rectification.h"
+#include "stereo/segment.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
+
+using namespace localise;
+using namespace sim;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 double distance_to_segment(const Eigen::Vector3d& x, const WorldSegment& s) {

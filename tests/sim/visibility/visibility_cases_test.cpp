@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <set>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/statistics/random.h"
 #include "sim/visibility.h"
+#include "sim/world.h"
 #include "tests/support/walls_and_boxes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+
 namespace {
 
 using namespace test;

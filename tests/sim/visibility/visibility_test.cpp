@@ -8,9 +8,19 @@
 #include <set>
 #include <thread>
 
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/statistics/random.h"
+#include "sim/world.h"
 #include "tests/support/walls_and_boxes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace sim;
+
 namespace {
 
 using namespace test;

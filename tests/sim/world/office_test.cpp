@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/office.h"
+#include "sim/world/office.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,14 @@
 #include <set>
 
 #include "calib/error.h"
+#include "sim/world.h"
 #include "sim/world_file.h"
 
 namespace vernier {
+
+using namespace sim;
+using namespace sim::internal;
+
 namespace {
 
 using Eigen::Vector2d;

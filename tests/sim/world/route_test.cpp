@@ -7,8 +7,12 @@
 #include <numbers>
 
 #include "calib/error.h"
+#include "sim/world.h"
 
 namespace vernier {
+
+using namespace sim;
+
 namespace {
 
 const std::vector<RouteLeg> route{{{{0, 0}, {4, 0}, {4, 2}}}, {{{10, 10}, {10, 7}}}};

@@ -10,8 +10,12 @@
 #include <sstream>
 
 #include "calib/error.h"
+#include "sim/world.h"
 
 namespace vernier {
+
+using namespace sim;
+
 namespace {
 
 const std::string kHead = "format = \"vernier/world\"\nversion = 1\n";  // lines 1 and 2

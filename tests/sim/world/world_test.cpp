@@ -10,6 +10,9 @@
 #include "calib/error.h"
 
 namespace vernier {
+
+using namespace sim;
+
 namespace {
 
 using Eigen::Vector3d;

@@ -5,11 +5,16 @@
 #include <Eigen/LU>
 #include <optional>
 
-#include "stereo/harris_corners.h"
-#include "stereo/image_noise.h"
+#include "calib/statistics/random.h"
+#include "stereo/corners/harris_corners.h"
+#include "stereo/image/image_noise.h"
 #include "tests/support/wedge_image.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int side = 40;

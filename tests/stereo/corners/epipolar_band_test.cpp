@@ -1,18 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/epipolar_band.h"
+#include "stereo/corners/epipolar_band.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
-#include "calib/distributions.h"
+#include "calib/camera.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/random.h"
 #include "calib/triangulation.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 Eigen::MatrixXd covariance_of(const Rig& rig) {

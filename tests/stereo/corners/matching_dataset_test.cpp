@@ -9,13 +9,22 @@
 #include <algorithm>
 #include <set>
 
-#include "calib/grey_image.h"
-#include "stereo/corner_matching.h"
-#include "stereo/match_images.h"
+#include "calib/base/grey_image.h"
+#include "calib/covariance.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/corner_matching.h"
+#include "stereo/corners/harris_corners.h"
+#include "stereo/corners/match_images.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 const std::set<std::string> tuned = {"barn2", "teddy", "Art", "motorcycle"};

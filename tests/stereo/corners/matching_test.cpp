@@ -5,16 +5,26 @@
 #include <Eigen/LU>
 #include <map>
 
+#include "calib/camera.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/statistics/random.h"
 #include "calib/triangulation.h"
-#include "stereo/corner_matching.h"
-#include "stereo/match_support.h"
-#include "stereo/patch_alignment.h"
+#include "stereo/corners/corner_match.h"
+#include "stereo/corners/corner_matching.h"
+#include "stereo/corners/epipolar_band.h"
+#include "stereo/corners/match_support.h"
+#include "stereo/image/patch_alignment.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 #include "tests/support/textured_plane.h"
 #include "tests/support/wedge_image.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 /// The test rig at half the size, with a plane in front of it at about 2 m.

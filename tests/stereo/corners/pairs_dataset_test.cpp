@@ -8,13 +8,25 @@
 #include <cmath>
 
 #include "calib/board_detection.h"
+#include "calib/board_observations.h"
+#include "calib/board_target.h"
 #include "calib/calibrate.h"
+#include "calib/covariance.h"
 #include "calib/joint_calibration.h"
-#include "calib/packed_pairs.h"
-#include "stereo/match_images.h"
+#include "calib/opencv_models.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/packed_pairs.h"
+#include "stereo/corners/match_images.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo::internal;
+
 namespace {
 
 /// Left and right pixels of the same board corner, as pairs.

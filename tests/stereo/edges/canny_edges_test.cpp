@@ -10,10 +10,17 @@
 #include <map>
 #include <opencv2/core.hpp>
 
+#include "calib/statistics/random.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+
 namespace {
 
 constexpr int side = 56, within = 20;  // edges are judged away from the image's border

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/edge_segments.h"
+#include "stereo/edges/edge_segments.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,20 @@
 #include <cmath>
 #include <set>
 
+#include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_chains.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_chains.h"
+#include "stereo/grey_levels.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int side = 160;

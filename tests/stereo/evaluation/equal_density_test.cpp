@@ -1,14 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/equal_density.h"
+#include "stereo/evaluation/equal_density.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "stereo/matcher_evaluation.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 std::vector<CurvePoint> curve(std::initializer_list<std::pair<double, double>> points) {

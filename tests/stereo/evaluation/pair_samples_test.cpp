@@ -3,16 +3,31 @@
 //
 // Samples of whole images: rendered pairs whose edges are displaced or erased by known amounts. All
 // seeds are fixed and each test is of one drawing.
-#include "stereo/pair_samples.h"
+#include "stereo/evaluation/pair_samples.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/statistics/random.h"
+#include "stereo/disparity_file.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/edge_loss.h"
+#include "stereo/evaluation/end_difference.h"
+#include "stereo/evaluation/line_match.h"
+#include "stereo/evaluation/segment_shift.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int cell = 150, columns = 4, rows = 3, disparity = 20;

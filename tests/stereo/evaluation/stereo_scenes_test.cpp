@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/stereo_scenes.h"
+#include "stereo/evaluation/stereo_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,9 @@
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace stereo::internal;
+
 namespace {
 
 class StereoSceneList : public testing::Test {

@@ -6,12 +6,19 @@
 
 #include <cmath>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
+#include "stereo/disparity_file.h"
+#include "stereo/evaluation/stereo_scenes.h"
 #include "tests/support/edge_at.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int width = 400, height = 3;

@@ -7,12 +7,19 @@
 
 #include <cmath>
 
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 /// Median difference of grey levels between left pixels and where the truth says they are in the

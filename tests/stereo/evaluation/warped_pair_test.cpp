@@ -1,21 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/warped_pair.h"
+#include "stereo/evaluation/warped_pair.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "calib/camera.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
+#include "stereo/disparity_file.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/vertical_field.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr DisparityRange range{0, 48};

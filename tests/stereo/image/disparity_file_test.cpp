@@ -14,6 +14,9 @@
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();

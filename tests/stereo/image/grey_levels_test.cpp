@@ -10,6 +10,9 @@
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 template <typename Value>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/dense_matchers.h"
+#include "stereo/matching/dense_matchers.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,22 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "calib/random.h"
+#include "calib/statistics/random.h"
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/edge_at.h"
 #include "tests/support/error_message.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int width = 220, height = 60;

@@ -8,9 +8,15 @@
 
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 /// The Cramér–Rao bound of an edge's disparity, px: how well the two noisy patches of 9 x 7 pixels

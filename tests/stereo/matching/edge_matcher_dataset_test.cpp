@@ -13,8 +13,12 @@
 #include "tests/support/foreign_files.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/scene_scores.h"
+#include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 TEST(EdgeMatcherOnMiddlebury, DensityAndErrors) {

@@ -12,9 +12,14 @@
 
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/edge_point.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 struct PlaneScore {

@@ -9,14 +9,28 @@
 #include <bit>
 #include <cmath>
 
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_support.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_points_by_row.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/stretched_image.h"
+#include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/stretched_image.h"
+#include "stereo/matching/census.h"
+#include "stereo/matching/edge_support.h"
+#include "stereo/rectified_pair.h"
+#include "stereo/stereo_truth.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 GreyLevels random_image(int width, int height, std::uint64_t seed) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/external_matcher.h"
+#include "stereo/matching/external_matcher.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,19 @@
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
+#include "stereo/disparity_file.h"
+#include "stereo/edge_point.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/edge_sampling.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The blocks of stretch correlation against the definition, sample by sample; edges of planes.
-#include "stereo/stretch_correlation.h"
+#include "stereo/matching/stretch_correlation.h"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,21 @@
 #include <functional>
 
 #include "stereo/canny_edges.h"
-#include "stereo/stretch_filter.h"
-#include "stereo/stretch_search.h"
+#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/stretch_filter.h"
+#include "stereo/matching/stretch_search.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 #include "tests/support/plane_figures.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 using test::leaf_pair;

@@ -4,13 +4,18 @@
 // `stretch` on real pairs. Its limits were chosen on four of them (tests/support/scene_scores.h).
 #include <gtest/gtest.h>
 
-#include "stereo/stretch_correlation.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/matching/stretch_correlation.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/scene_scores.h"
+#include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace stereo::internal;
+
 namespace {
 
 const std::set<std::string> of_2001 = {"barn2", "bull", "tsukuba", "venus"};

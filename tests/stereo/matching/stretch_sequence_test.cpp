@@ -6,11 +6,18 @@
 #include <cmath>
 
 #include "stereo/canny_edges.h"
-#include "stereo/stretch_correlation.h"
+#include "stereo/edge_point.h"
+#include "stereo/matching/stretch_correlation.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
+#include "tests/support/leaf_pair.h"
 #include "tests/support/plane_figures.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 long searched(const StretchFrame& frame) {

@@ -1,20 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/segment_disparity.h"
+#include "stereo/reconstruction/segment_disparity.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/distributions.h"
-#include "calib/draw_sources.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/matcher.h"
+#include "stereo/rectified_pair.h"
+#include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"
 #include "tests/support/step_pair.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 Draws draws_of(std::uint64_t seed) {

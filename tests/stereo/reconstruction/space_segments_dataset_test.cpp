@@ -7,9 +7,18 @@
 
 #include <cmath>
 
+#include "calib/rig_estimate.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/space_segments.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
+#include "stereo/rectification.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"
@@ -17,6 +26,10 @@
 #include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 struct SegmentFigures {

@@ -7,13 +7,23 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/distributions.h"
+#include "calib/statistics/distributions.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/space_segments.h"
+#include "stereo/edge_point.h"
+#include "stereo/edges/edge_segments.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 /// Side by side, f 500 px, 0.1 m.

@@ -1,23 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/space_segments.h"
+#include "stereo/reconstruction/space_segments.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "calib/distributions.h"
-#include "calib/draw_sources.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
-#include "stereo/rectification_covariance.h"
-#include "stereo/triangulate.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/triangulate.h"
+#include "stereo/rectification/rectification_covariance.h"
+#include "stereo/rectified_geometry.h"
+#include "stereo/segment.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -104,7 +117,8 @@ TEST(SpaceSegments, DerivativesByTheRigAreThoseOfDifferences) {
 }
 
 /// The other way round: what the rig does to (d, dy) of an end in the rectified images, and the
-/// right edge's slope, which turns dy into a disparity (stereo/rectification_covariance.h).
+/// right edge's slope, which turns dy into a disparity
+/// (stereo/rectification/rectification_covariance.h).
 TEST(SpaceSegments, DepthChangesAsTheRectifiedDisparityDoes) {
   Rig rig = test::stereo_rig(Pinhole{});
   const RectifiedGeometry g = rectified_geometry(rig);

@@ -1,13 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/triangulate.h"
+#include "stereo/reconstruction/triangulate.h"
 
 #include <gtest/gtest.h>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "stereo/segment.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 ImageSegment seen_by(const Rig& rig,

@@ -1,21 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/rectification_covariance.h"
+#include "stereo/rectification/rectification_covariance.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <opencv2/imgproc.hpp>
 
-#include "calib/distributions.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/sampler.h"
-#include "stereo/vertical_disparity.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/random.h"
+#include "calib/triangulation.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/vertical_disparity.h"
+#include "stereo/rectified_geometry.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 /// (d, dy) of a raw pair in the images that a rig rectifies, at a focal length and centre.

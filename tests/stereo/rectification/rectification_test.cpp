@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/rig.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace stereo;
+
 namespace {
 
 TEST(Rectification, BothEyesSeeAPointInOneRow) {

@@ -6,15 +6,25 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
 #include "calib/triangulation.h"
-#include "stereo/rectified_camera_info.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectification/rectified_camera_info.h"
+#include "stereo/rectified_geometry.h"
 #include "tests/support/error_message.h"
 #include "tests/support/grey_levels.h"
 #include "tests/support/scenes.h"
 #include "tests/support/textured_plane.h"
 
 namespace vernier {
+
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 class RectifiedByModel : public testing::TestWithParam<const char*> {

@@ -1,18 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/vertical_disparity.h"
+#include "stereo/rectification/vertical_disparity.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace stereo::internal;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -1,21 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The vertical field of real pairs. The constants of stereo/vertical_field.cpp were chosen with
-// four of the eleven Middlebury pairs in view; the others were then looked at once.
-#include "stereo/vertical_field.h"
+// The vertical field of real pairs. The constants of stereo/rectification/vertical_field.cpp were
+// chosen with four of the eleven Middlebury pairs in view; the others were then looked at once.
+#include "stereo/rectification/vertical_field.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <set>
 
-#include "calib/grey_image.h"
+#include "calib/base/grey_image.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/grey_levels.h"
 #include "tests/support/stereo_scenes.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 const std::set<std::string> tuned = {"barn2", "teddy", "Art", "motorcycle"};

@@ -1,22 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/vertical_field.h"
+#include "stereo/rectification/vertical_field.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/random.h"
-#include "stereo/vertical_field_fit.h"
-#include "tests/support/chi_squared.h"
+#include "calib/pose.h"
+#include "calib/radial1.h"
+#include "calib/rig.h"
+#include "calib/statistics/random.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectification/vertical_field_fit.h"
+#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/grey_levels.h"
 #include "tests/support/textured_plane.h"
 #include "tests/support/wedge_image.h"
 
 namespace vernier {
+
+using namespace internal;
+using namespace stereo;
+using namespace stereo::internal;
+
 namespace {
 
 constexpr int width = 400, height = 300;

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/base/decompositions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace vernier::internal {
+
+SymmetricEigen::SymmetricEigen(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
+  values_ = eigen.eigenvalues();
+  vectors_ = eigen.eigenvectors();
+}
+
+Eigen::MatrixXd SymmetricEigen::root() const {
+  return vectors_ * values_.cwiseSqrt().asDiagonal() * vectors_.transpose();
+}
+
+Eigen::MatrixXd SymmetricEigen::inverse_root() const {
+  return vectors_ * values_.cwiseInverse().cwiseSqrt().asDiagonal() * vectors_.transpose();
+}
+
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& A) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Cholesky::Cholesky(const Eigen::MatrixXd& A) : factor_(A) {}
+
+double Cholesky::rcond() const { return factor_.rcond(); }
+
+Eigen::MatrixXd Cholesky::lower() const { return factor_.matrixL(); }
+
+Eigen::VectorXd Cholesky::solve(const Eigen::VectorXd& b) const { return factor_.solve(b); }
+
+Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& B) const { return factor_.solve(B); }
+
+Eigen::VectorXd Cholesky::solve_lower(const Eigen::VectorXd& b) const {
+  return factor_.matrixL().solve(b);
+}
+
+Eigen::MatrixXd Cholesky::solve_lower(const Eigen::MatrixXd& B) const {
+  return factor_.matrixL().solve(B);
+}
+
+Eigen::VectorXd Cholesky::solve_upper(const Eigen::VectorXd& b) const {
+  return factor_.matrixU().solve(b);
+}
+
+Eigen::MatrixXd Cholesky::inverse() const {
+  const auto n = factor_.rows();
+  return solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
+}
+
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return Eigen::LDLT<Eigen::MatrixXd>(A).solve(b);
+}
+
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return Eigen::LDLT<Eigen::MatrixXd>(A).solve(B);
+}
+
+Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& X) {
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(X).householderQ() *
+         Eigen::MatrixXd::Identity(X.rows(), X.cols());
+}
+
+}  // namespace vernier::internal

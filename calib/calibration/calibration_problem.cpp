@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/calibration_problem.h"
+
+#include "calib/calibrate.h"
+#include "calib/held_parameters.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+#include "calib/solver/reprojection_problem.h"
+
+namespace vernier::internal {
+
+ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig) {
+  ReprojectionProblem problem;
+  if (options.pixel_sigma_px > 0) problem.pixel_sigma_px = options.pixel_sigma_px;
+  problem.held = held_mask(rig, options.held);
+  problem.warp = options.warp;
+  problem.max_iterations = options.max_iterations;
+  if (options.prior) problem.priors.push_back(rig_prior(rig, *options.prior));
+  if (!options.known.empty()) problem.priors.push_back(rig_prior(rig, options.known));
+  return problem;
+}
+
+}  // namespace vernier::internal

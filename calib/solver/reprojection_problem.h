@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/pair_observations.h"
+#include "calib/rig.h"
+#include "calib/rig_prior.h"
+
+namespace vernier::internal {
+
+/// What stands in the unified cost beside the corners, and what of it is free.
+struct ReprojectionProblem {
+  double pixel_sigma_px = 1;     ///< weighs the corners against the priors
+  std::vector<bool> held;        ///< one a parameter of the rig (held_mask); empty: all free
+  std::vector<RigPrior> priors;  ///< each adds its χ²
+  BoardWarp warp = BoardWarp::known;
+  /// One weight in [0, 1] a corner of every view, in the order of the observations; empty: all 1.
+  std::vector<std::vector<double>> corner_weights;
+  PairObservations pairs;            ///< matched corners of any scene; none: a board alone
+  std::vector<double> pair_weights;  ///< one a row, 0 or above; empty: all 1
+  double pair_sigma_scale = 1;       ///< multiplies the noise that the pairs state
+  int max_iterations = 200;
+  bool must_converge = true;  ///< else the state after the last iteration will do
+};
+
+/// Throws Error where flags, priors or weights are not those of this rig and these corners, or the
+/// noise is not positive.
+void check_problem(const BoardObservations& observations,
+                   const Rig& rig,
+                   const ReprojectionProblem& problem);
+
+}  // namespace vernier::internal

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace vernier::internal {}
+namespace vernier::stereo::internal {}
+namespace vernier::localise::internal {}
+namespace vernier::sim::internal {}
+
+namespace vernier::cli {
+
+// The program uses all of the library, internals included.
+using namespace vernier::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
+using namespace vernier::localise;
+using namespace vernier::localise::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
+
+}  // namespace vernier::cli

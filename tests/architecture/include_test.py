@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Checks the include lines of the five modules against rooms.toml.
+
+    include_test.py [--graph]
+
+Fails on an include of a room that is not among those a room may include, on an arrow that runs back
+(an include of a room further down the file), on a file that belongs to no room, on a permission
+that nothing uses, on a public header that includes an internal one, and on a file that uses a name
+of the project without including the header that declares it. --graph prints the arrows.
+"""
+import argparse
+import re
+import sys
+from pathlib import Path
+
+import declared_names
+
+ROOT = Path(__file__).resolve().parents[2]
+MODULES = ("calib", "stereo", "localise", "sim", "cli")
+INCLUDE = re.compile(r'^\s*#include "([^"]+)"', re.MULTILINE)
+
+
+def read_rooms(file):
+    """The rooms in their order: a list of dictionaries (a small part of TOML suffices)."""
+    rooms = []
+    text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
+    for block in text.split("[[room]]")[1:]:
+        room = {"public": []}
+        for key, strings in re.findall(r'(\w+) = (\[[^\]]*\]|"[^"]*")', block):
+            values = re.findall(r'"([^"]*)"', strings)
+            room[key] = values if strings.startswith("[") else values[0]
+        rooms.append(room)
+    return rooms
+
+
+def sources():
+    """Paths of the modules' C++ files below the root."""
+    for module in MODULES:
+        for file in sorted((ROOT / module).rglob("*")):
+            if file.suffix in (".h", ".cpp", ".inc") and "node_modules" not in file.parts:
+                yield file.relative_to(ROOT).as_posix()
+
+
+def room_of(path, rooms):
+    """The room of a file; None if it has none. Public headers belong to the room that lists them."""
+    folder, name = path.rsplit("/", 1)
+    for room in rooms:
+        if room["name"] == folder or (
+                room["name"].startswith(folder + "/") and name in room["public"]):
+            return room["name"]
+    return None
+
+
+def faults(rooms):
+    """Every fault in words, and the arrows: (from, to) -> include lines."""
+    order = {room["name"]: place for place, room in enumerate(rooms)}
+    allowed = {room["name"]: set(room["may_include"]) for room in rooms}
+    public = {f"{room['name'].split('/')[0]}/{h}" for room in rooms for h in room["public"]}
+    found, arrows = [], {}
+    for room in rooms:
+        for other in room["may_include"]:
+            if order.get(other, len(order)) >= order[room["name"]]:
+                found.append(f"rooms.toml: {room['name']} may not include {other}: it is not below it")
+    for path in sources():
+        here = room_of(path, rooms)
+        if here is None:
+            found.append(f"{path}: belongs to no room; put it into one or list it in rooms.toml")
+            continue
+        for included in INCLUDE.findall((ROOT / path).read_text(encoding="utf-8")):
+            there = room_of(included, rooms) if (ROOT / included).exists() else None
+            if there is None:
+                found.append(f"{path}: includes {included}, which is in no room")
+                continue
+            if path in public and included not in public:
+                found.append(f"{path}: a public header includes {included}, which is internal")
+            if there != here:
+                arrows.setdefault((here, there), []).append((path, included))
+                if there not in allowed[here]:
+                    found.append(f"{path}: includes {included}, but {here} may not include {there}")
+    for room in rooms:
+        for other in room["may_include"]:
+            if (room["name"], other) not in arrows:
+                found.append(f"rooms.toml: {room['name']} does not include {other}; take it out")
+    return found, arrows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--graph", action="store_true", help="print the arrows and their number")
+    options = parser.parse_args()
+    rooms = read_rooms(Path(__file__).with_name("rooms.toml"))
+    found, arrows = faults(rooms)
+    if options.graph:
+        for (here, there), lines in sorted(arrows.items()):
+            print(f"{here} -> {there}: {len(lines)}")
+    files = list(sources())
+    missing = declared_names.uses_without_include(ROOT, files)
+    found += [f"{path}: uses {name} but does not include {header}" for path, name, header in missing]
+    for line in found:
+        print(line, file=sys.stderr)
+    print(f"{len(files)} files in {len(rooms)} rooms, {len(arrows)} arrows, {len(found)} faults")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -31,7 +31,7 @@ using namespace vernier::sim;
 /// 80 lines of a query against 80 of a node, 720 bins, as in the defaults.
 HistogramRows rows(std::uint64_t seed, int count) {
   HistogramRows H(count, 720);
-  Draws draws({.seed = seed});
+  RandomStream draws({.seed = seed});
   for (Eigen::Index i = 0; i < H.size(); ++i) H.data()[i] = static_cast<float>(draws.uniform());
   for (int r = 0; r < count; ++r) H.row(r).normalize();
   return H;
@@ -84,7 +84,7 @@ struct Scene {
 
   Scene() {
     settings.protocol = QueryProtocol::near_path;
-    auto looks = std::make_shared<MapLooks>(map_looks(visibility, rig.rig, settings));
+    auto looks = std::make_shared<MapViews>(map_views(visibility, rig.rig, settings));
     experiment = std::make_unique<LocalisationExperiment>(visibility, rig, looks, settings);
     map = experiment->record_map(0, rig.rig);
     for (int i = 0; i < 10; ++i) queries.push_back(map.nodes[17 * i].view);

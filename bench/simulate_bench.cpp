@@ -7,7 +7,7 @@
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
 #include "localise/place.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/study/ceiling.h"
@@ -33,8 +33,8 @@ const RigEstimate& rig() {
   static const RigEstimate rig = datasets::nominal();
   return rig;
 }
-const std::vector<PlanePose>& places() {
-  static const std::vector<PlanePose> places = map_places(world().route, 0.5);
+const std::vector<Pose2D>& places() {
+  static const std::vector<Pose2D> places = map_poses(world().route, 0.5);
   return places;
 }
 
@@ -42,7 +42,7 @@ void hidden_lines_of_one_eye(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const Pose T = T_left_world(places()[i++ % places().size()], {});
-    benchmark::DoNotOptimize(visibility().visible_runs(rig().rig.cameras[0], T));
+    benchmark::DoNotOptimize(visibility().visible_intervals(rig().rig.cameras[0], T));
   }
 }
 
@@ -55,7 +55,7 @@ void look_of_both_eyes(benchmark::State& state) {
 
 void all_sources(benchmark::State& state) {
   const Sensor sensor(rig().rig, {});
-  const Look seen = look(visibility(), rig().rig, places()[40]);
+  const NoiseFreeView seen = look(visibility(), rig().rig, places()[40]);
   std::uint32_t trial = 0;
   for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, 1, trial++, 0));
 }

@@ -88,8 +88,8 @@ void growth(benchmark::State& state, const Work& work) {
                                               .height_px = width * 5 / 6,
                                               .disparity_px = 0.4 * most,
                                               .by_y = 0.03,
-                                              .least_radius_px = radius,
-                                              .most_radius_px = 5 * radius},
+                                              .min_radius_px = radius,
+                                              .max_radius_px = 5 * radius},
                                              302);
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
   state.counters["edges"] = static_cast<double>(edges.size());
@@ -134,7 +134,7 @@ void field_and_repair(benchmark::State& state) {
   const RectifiedPair pair = scene(64);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        repaired_right(pair.right, vertical_field(pair, {0, 63})).values.data());
+        corrected_right(pair.right, vertical_field(pair, {0, 63})).values.data());
   }
 }
 BENCHMARK(field_and_repair)->Unit(benchmark::kMillisecond);

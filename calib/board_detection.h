@@ -12,7 +12,7 @@
 namespace vernier {
 
 /// Why a corner of a board that was found is not used.
-enum class CornerRefusal {
+enum class CornerRejection {
   at_border,      ///< too near the image's border for a window around it
   not_crossing,   ///< its surroundings do not look like a crossing of squares: something covers it
   moved_too_far,  ///< refinement left its window, or found nothing to hold on to
@@ -20,11 +20,11 @@ enum class CornerRefusal {
 };
 
 /// In words, such as "at the image's border".
-std::string text_of(CornerRefusal refusal);
+std::string text_of(CornerRejection refusal);
 
-struct RefusedCorner {
+struct RejectedCorner {
   int id = 0;
-  CornerRefusal why = CornerRefusal::at_border;
+  CornerRejection why = CornerRejection::at_border;
 };
 
 /// What became of one image.
@@ -33,15 +33,15 @@ struct BoardDetection {
   Eigen::Vector2i size_px{0, 0};
   std::vector<int> ids;  ///< index of each corner into target_points; empty: no board
   std::vector<Eigen::Vector2d> corners_px;
-  std::vector<RefusedCorner> refused_corners;  ///< seen, not used
-  std::string reason;                          ///< why there is no board, where there is none
-  bool goes_on = false;                        ///< the board has more corners than asked for
-  int camera = 0;                              ///< index of the pattern it came by
-  int frame = 0;                               ///< by the number in its name
+  std::vector<RejectedCorner> rejected_corners;  ///< seen, not used
+  std::string reason;                            ///< why there is no board, where there is none
+  bool goes_on = false;                          ///< the board has more corners than asked for
+  int camera = 0;                                ///< index of the pattern it came by
+  int frame = 0;                                 ///< by the number in its name
 };
 
 /// Its corners that were seen and not used, as "3 corners at the image's border, 1 corner …".
-std::string refused_corners_text(const BoardDetection& image);
+std::string rejected_corners_text(const BoardDetection& image);
 
 /// Finds the corners of a target in an image, then refines each by the gradient's orthogonality
 /// (Förstner and Gülch 1987, as OpenCV's cornerSubPix does it) in a window that holds no other edge

@@ -29,7 +29,7 @@ std::vector<int> frames_of(const BoardObservations& observations);
 
 /// Whether these corners of the target fix its pose: four or more, and two at least beside any line
 /// of the board. Corners in a row leave it free to turn about them.
-bool fixes_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids);
+bool determines_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids);
 
 /// Evenly spaced ones of `frames`, so many at most.
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int most);

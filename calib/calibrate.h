@@ -20,12 +20,12 @@ struct CalibrationOptions {
   std::vector<CameraModel> models;  ///< one a camera where they differ; else empty
   double pixel_sigma_px = 0;        ///< noise of a pixel coordinate; 0: from the residuals
   int max_iterations = 200;
-  std::vector<HeldParameter> held;    ///< parameters that are not estimated
-  std::vector<KnownParameter> known;  ///< parameters known beforehand, with a sigma
-  std::optional<RigKnowledge> prior;  ///< what another calibration or a datasheet says
-  BoardWarp warp = BoardWarp::known;  ///< free: the board's shape is estimated as well
-  bool reject_outliers = true;        ///< see calib/calibration/outliers.h
-  bool check_input = true;            ///< off: corners are known to be sound (repeated solves)
+  std::vector<HeldParameter> held;        ///< parameters that are not estimated
+  std::vector<ParameterPrior> known;      ///< parameters known beforehand, with a sigma
+  std::optional<GaussianRigPrior> prior;  ///< what another calibration or a datasheet says
+  BoardWarp warp = BoardWarp::known;      ///< free: the board's shape is estimated as well
+  bool reject_outliers = true;            ///< see calib/calibration/outliers.h
+  bool check_input = true;                ///< off: corners are known to be sound (repeated solves)
   /// The corner noise is known to be white (simulated corners): the covariance is the bound.
   bool white_noise = false;
 };

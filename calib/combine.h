@@ -9,7 +9,7 @@
 #include "calib/covariance.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
@@ -24,7 +24,7 @@ struct CombineInput {
 };
 
 struct CombineOptions {
-  double least_p = 1e-4;          ///< an input that disagrees more than this is left out
+  double min_p = 1e-4;            ///< an input that disagrees more than this is left out
   bool keep_disagreeing = false;  ///< … or not
   JointOptions joint;
 };
@@ -32,8 +32,8 @@ struct CombineOptions {
 /// What became of an input.
 struct CombinedInput {
   std::string name;
-  std::string kind;          ///< prior, board, pairs, or board and pairs
-  PriorAgreement agreement;  ///< with what stood before it; of the first: none
+  std::string kind;            ///< prior, board, pairs, or board and pairs
+  PriorConsistency agreement;  ///< with what stood before it; of the first: none
   bool used = true;
 };
 
@@ -50,7 +50,7 @@ struct Combination {
 /// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
 /// several files counts once, and one that is another input's calibration not at all). Before it is
 /// taken in, every input is compared with all before it:
-/// of pairs, the prior's offset (prior_agreement.h); of calibrations, their difference
+/// of pairs, the prior's offset (prior_consistency.h); of calibrations, their difference
 /// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
 /// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
 /// lens models than the first.
@@ -61,16 +61,16 @@ JointEvidence evidence_of(const CombineInput& input);
 
 /// The information filter of Thacker and Mayhew (1991): batch after batch, what is known is kept as
 /// a mean and a covariance only, linearised where each batch left it.
-struct FilteredRig {
+struct InformationFilterResult {
   Rig rig;
-  Covariance covariance;         ///< the bound that the filter believes
-  double worst_in_sigma = 0;     ///< its largest distance from the batch solution …
-  std::string worst_parameter;   ///< … in that one's bound, and of which parameter
-  double least_sigma_ratio = 1;  ///< smallest of its standard deviations over the batch's …
-  std::string least_parameter;   ///< … and of which parameter
+  Covariance covariance;        ///< the bound that the filter believes
+  double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
+  std::string worst_parameter;  ///< … in that one's bound, and of which parameter
+  double min_sigma_ratio = 1;   ///< smallest of its standard deviations over the batch's …
+  std::string min_parameter;    ///< … and of which parameter
 };
-FilteredRig information_filter(const std::vector<CombineInput>& inputs,
-                               const Combination& batch,
-                               const CombineOptions& options = {});
+InformationFilterResult information_filter(const std::vector<CombineInput>& inputs,
+                                           const Combination& batch,
+                                           const CombineOptions& options = {});
 
 }  // namespace vernier

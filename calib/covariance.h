@@ -29,7 +29,7 @@ struct CovarianceDirection {
   double variance_share = 0;   ///< s over the sum of all s, in [0, 1]
   double scaled_variance = 0;  ///< s
   Eigen::VectorXd direction;   ///< a column of U, unit, in standard deviations
-  std::string words;           ///< what it means, for a person
+  std::string description;     ///< what it means, for a person
 };
 
 /// Scaled singular value decomposition of a covariance: C = (D U √s)(D U √s)ᵀ.

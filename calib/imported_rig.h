@@ -28,7 +28,7 @@ struct ImportedRig {
 };
 
 /// A file of another tool's, to be written: a rig may need several.
-struct ForeignFile {
+struct ExportedFile {
   std::filesystem::path name;  ///< without a folder
   std::string text;
 };

@@ -9,7 +9,7 @@
 #include "calib/held_parameters.h"
 #include "calib/observability.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -24,7 +24,7 @@ struct BoardTerm {
 
 /// Everything that is known of one rig: the terms of the unified cost (Tina Memo 2017-001, Eq. 1).
 struct JointEvidence {
-  std::vector<RigKnowledge> priors;  ///< independent of each other
+  std::vector<GaussianRigPrior> priors;  ///< independent of each other
   std::vector<BoardTerm> boards;
   PairObservations pairs;
 };
@@ -50,8 +50,8 @@ struct JointCalibration {
 ///     χ²(a) = Σ (a − a_0)ᵀ C_0⁻¹ (a − a_0) + Σ_boards r(a)ᵀ r(a) / σ² + Σ_pairs ρ(r_i(a) / s)
 ///
 /// by Ceres, from `start`; r the reprojection residuals of the boards and the Sampson residual of
-/// the pairs (calib/solver/epipolar_formulas.inc). Pairs count by Huber's loss first, then by Tukey's
-/// with limit 5, both by iterated weights and balanced against the quadratic terms
+/// the pairs (calib/solver/epipolar_formulas.inc). Pairs count by Huber's loss first, then by
+/// Tukey's with limit 5, both by iterated weights and balanced against the quadratic terms
 /// (calib/solver/loss.h); one whose weight is 0 in the end is an outlier, listed and not counted.
 /// Covariance: the sandwich A⁻¹ (B + P) A⁻¹ of that minimum, A = P + m Σ J Jᵀ
 /// (calib/solver/pair_equations.h), B the scatter of the scores clustered by
@@ -70,19 +70,19 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 /// prior's rig. A parameter that the prior does not name is known exactly. `place` names the pairs
 /// in messages. Throws Error where there are fewer pairs than free parameters.
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
-                                      const RigKnowledge& prior,
+                                      const GaussianRigPrior& prior,
                                       const JointOptions& options = {},
                                       const std::string& place = "");
 
-/// Whether pairs and prior agree (calib/prior_agreement.h), of a calibration from both; where
+/// Whether pairs and prior agree (calib/prior_consistency.h), of a calibration from both; where
 /// parameters that the prior knows were held, it is the prior given these values. Nothing (p 1)
 /// where the prior does not know all that is free. The calibration may have used the prior with
 /// standard deviations `looseness` times as large.
-PriorAgreement agreement_with(const RigKnowledge& prior,
-                              const RigEstimate& estimate,
-                              double looseness = 1);
+PriorConsistency consistency_with(const GaussianRigPrior& prior,
+                                  const RigEstimate& estimate,
+                                  double looseness = 1);
 
 /// The parameters that `prior` does not name, held where its rig has them.
-std::vector<HeldParameter> held_by(const RigKnowledge& prior);
+std::vector<HeldParameter> held_by(const GaussianRigPrior& prior);
 
 }  // namespace vernier

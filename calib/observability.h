@@ -15,7 +15,7 @@ namespace vernier {
 struct ObservedDirection {
   double sd_ratio = 1;        ///< standard deviation after the data over that before
   Eigen::VectorXd direction;  ///< unit, in the prior's standard deviations
-  std::string words;
+  std::string description;
 };
 
 /// What a calibration without a target owes to its data and what to its prior.
@@ -30,7 +30,7 @@ struct Observability {
   double baseline_sd_before_m = 0, baseline_sd_after_m = 0;  ///< of the length |T|
 
   /// Whether less than half of the parameters come from the data.
-  bool mostly_prior() const { return 2 * from_data < static_cast<double>(directions.size()); }
+  bool is_prior_dominated() const { return 2 * from_data < static_cast<double>(directions.size()); }
 };
 
 /// The spectrum of C_0^(-1/2) C C_0^(-1/2), C_0 = `before` and C = `after` in the tangent of `rig`
@@ -52,6 +52,7 @@ Observability observability(const Rig& rig,
 /// and the six of the pose. Unseen is every combination that leaves E alone up to its scale, the
 /// scale T → s T always; of a scene that is the plane n·X = 1 (left frame, n in 1/m) every one that
 /// takes E to H⁻ᵀ [v]x with some v, H = R + T nᵀ the plane's homography.
-Eigen::MatrixXd unseen_directions(const Rig& rig, const std::optional<Eigen::Vector3d>& plane = {});
+Eigen::MatrixXd unobservable_directions(const Rig& rig,
+                                        const std::optional<Eigen::Vector3d>& plane = {});
 
 }  // namespace vernier

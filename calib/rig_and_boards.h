@@ -26,7 +26,7 @@ namespace vernier {
 /// each other. This is the inverse of the full normal matrix written as a chain: joint covariances
 /// of rig and boards follow without it ever being formed, whatever the covariance of a is.
 /// Tangents: calib/rig.h for a, calib/pose.h for δ_f.
-struct BoardPosesGivenRig {
+struct ConditionalBoardPoses {
   struct Frame {
     Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;  ///< −(BᵀB)⁻¹ BᵀA, 6 x parameters
     Eigen::Matrix<double, 6, 2> by_warp;              ///< −(BᵀB)⁻¹ BᵀW, a metre of warp
@@ -54,7 +54,7 @@ struct RigAndBoards {
   std::vector<int> frames;          ///< ascending
   std::vector<Pose> T_first_board;  ///< one a frame
   Eigen::MatrixXd rig_covariance;
-  BoardPosesGivenRig given_rig;
+  ConditionalBoardPoses given_rig;
   double board_sigma_px = 0;
 };
 

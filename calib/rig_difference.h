@@ -23,7 +23,7 @@ struct ParameterDifference {
 /// δ along one principal direction of its scaled covariance.
 struct DirectionDifference {
   double in_sigma = 0;  ///< standard deviations; their squares add up to d²
-  std::string words;
+  std::string description;
 };
 
 /// Whether two calibrations agree within their uncertainties. With δ = b ⊖ a over the parameters
@@ -39,8 +39,9 @@ struct RigDifference {
   std::vector<ParameterDifference> parameters;    ///< those that both have
   std::vector<std::string> only_in_a, only_in_b;  ///< the others
   std::vector<DirectionDifference> directions;    ///< largest first
-  std::vector<std::string> held_apart;            ///< in words: no variance, and yet not the same
-  double mahalanobis2 = 0;                        ///< d²; infinite where something is held apart
+  std::vector<std::string>
+      fixed_at_different_values;  ///< in words: no variance, and yet not the same
+  double mahalanobis2 = 0;        ///< d²; infinite where something is held apart
   int dof = 0;
   double p_value = 1;  ///< of a d² this large or larger
 };

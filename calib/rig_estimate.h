@@ -47,17 +47,17 @@ struct CalibrationSummary {
   std::vector<CornerOutlier> outliers;  ///< corners left out
   std::vector<PairOutlier> pair_outliers;
   std::vector<std::string> warnings;
-  std::vector<std::string> doubts;  ///< why the result may be wrong, and what to do
+  std::vector<std::string> trust_warnings;  ///< why the result may be wrong, and what to do
 };
 
 /// All that is needed to solve again, to propagate with the board poses, to compare and combine.
 struct CalibrationEvidence {
   BoardObservations observations;
-  std::vector<int> frames;           ///< ascending
-  std::vector<Pose> T_first_board;   ///< one a frame
-  Eigen::Vector2d warp_m{0, 0};      ///< of the board (calib/board/board_warp.h)
-  PairObservations pairs;            ///< matched corners, outliers and all
-  std::vector<RigKnowledge> priors;  ///< what was known before the rest
+  std::vector<int> frames;               ///< ascending
+  std::vector<Pose> T_first_board;       ///< one a frame
+  Eigen::Vector2d warp_m{0, 0};          ///< of the board (calib/board/board_warp.h)
+  PairObservations pairs;                ///< matched corners, outliers and all
+  std::vector<GaussianRigPrior> priors;  ///< what was known before the rest
 };
 
 /// A rig and how well it is known: the content of a rig.json.
@@ -80,7 +80,7 @@ std::vector<bool> held_parameters(const RigEstimate& estimate);
 
 /// The covariance over the parameters that are not held. Throws Error(`place`) where there is
 /// none.
-RigKnowledge knowledge_of(const RigEstimate& estimate, const std::string& place);
+GaussianRigPrior gaussian_prior_of(const RigEstimate& estimate, const std::string& place);
 
 /// Names the cameras otherwise, one name a camera, wherever the estimate says them: the
 /// covariance and the held parameters too. Throws Error where they are too few or many, or not

@@ -22,11 +22,11 @@ struct RigFile {
 
 /// "rig.json says of itself: ", how a warning begins that repeats a doubt of the file's
 /// calibration.
-std::string said_of_itself(const std::string& place);
+std::string stored_warning_prefix(const std::string& place);
 
 /// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it
 /// has no covariance.
-RigKnowledge rig_knowledge(const RigFile& file, const std::string& place);
+GaussianRigPrior gaussian_rig_prior(const RigFile& file, const std::string& place);
 
 /// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Needed are format,
 /// version and cameras; parameter_names, parameters and covariance come together and must agree

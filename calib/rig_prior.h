@@ -25,27 +25,27 @@ struct RigPrior {
 /// of those of `rig`, whose other values say nothing. Over a whole rotation it is in the left
 /// tangent; over a part of one it is of these components of the rotation vector, as held ones are
 /// (calib/held_parameters.h), and says nothing of the others.
-struct RigKnowledge {
+struct GaussianRigPrior {
   Rig rig;
   Covariance covariance;
 };
 
 /// Its covariance over all parameters of its rig, in the tangent: zero along what it does not name.
-Covariance whole_covariance(const RigKnowledge& known);
+Covariance full_covariance(const GaussianRigPrior& known);
 
 /// The same as a prior for a rig like `like`, whose models may be others (the named parameters
 /// must be there). Throws Error where the covariance is not symmetric or not positive
 /// semi-definite, naming the direction, and where it is singular: a direction known exactly is to
 /// be held instead.
-RigPrior rig_prior(const Rig& like, const RigKnowledge& known);
+RigPrior rig_prior(const Rig& like, const GaussianRigPrior& known);
 
 /// The prior of single parameters, independent of each other.
-struct KnownParameter {
+struct ParameterPrior {
   std::string name;
   double value = 0, sigma = 0;
 };
-RigKnowledge knowledge_of(const Rig& like, const std::vector<KnownParameter>& known);
-RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known);
+GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterPrior>& known);
+RigPrior rig_prior(const Rig& like, const std::vector<ParameterPrior>& known);
 
 /// δ at `rig` and its derivative by the left tangent at `rig`.
 struct PriorOffset {

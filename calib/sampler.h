@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// Draws rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
+/// RandomStream rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
 ///
 ///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ
 ///

@@ -6,6 +6,8 @@
 function(vernier_module name)
   set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized)
   cmake_parse_arguments(ARG "" "" "PUBLIC;ROOMS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  # In a unity build the constants of one source shadow nothing that matters in another.
+  set(vernier_shadow $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)
   add_library(${name} ${ARG_SOURCES})
   add_library(vernier::${name} ALIAS ${name})
   target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
@@ -14,7 +16,7 @@ function(vernier_module name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   # Products and sums are rounded one by one, so that results do not depend on how a compiler
   # pairs them; kernels that gain from fused operations say so themselves.
-  target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+  target_compile_options(${name} PRIVATE -Wall -Wextra ${vernier_shadow} -Wnon-virtual-dtor
                                          -ffp-contract=off
                                          # GCC 12 reports faults inside std::string and Eigen
                                          # that are none

@@ -87,7 +87,7 @@ double agreement(const Level& query, const Level& node, double position_sigma_m)
 /// refined: those near it at the start.
 class Neighbours {
  public:
-  Neighbours(const Plan& query, const Plan& node, const PlanePose& T, double position_sigma_m)
+  Neighbours(const Plan& query, const Plan& node, const Pose2D& T, double position_sigma_m)
       : query_(query), node_(node), position_sigma_m_(position_sigma_m) {
     constexpr double travel_m = 0.5;  // refinement seldom goes farther; lines beyond do not count
     const Eigen::Rotation2Dd R(T.heading_rad);
@@ -121,14 +121,14 @@ class Neighbours {
   }
 
   /// Sum over the query's lines of their best agreement with a line of the node.
-  double score(const PlanePose& T) const {
+  double score(const Pose2D& T) const {
     double sum = 0;
     visit_best(T, [&](double agreed, int) { sum += agreed; });
     return sum;
   }
 
   /// The smaller of that sum and its counterpart over the node's lines.
-  double mutual_score(const PlanePose& T) const {
+  double mutual_score(const Pose2D& T) const {
     std::vector<double> of_node(node_.uprights.size() + node_.levels.size(), 0.0);
     double of_query = 0;
     visit_best(T, [&](double agreed, int line) {
@@ -142,14 +142,14 @@ class Neighbours {
   /// Calls visit(agreement, node line) with every query line's best partner, -1 where none agrees;
   /// level lines of the node count on from its uprights.
   template <class Visit>
-  void visit_best(const PlanePose& T, Visit visit) const {
+  void visit_best(const Pose2D& T, Visit visit) const {
     const Eigen::Rotation2Dd R(T.heading_rad);
     const Eigen::Vector2d t(T.x_m, T.y_m);
-    const auto best_of = [&](const std::vector<int>& lines, int offset, auto agreement_with) {
+    const auto best_of = [&](const std::vector<int>& lines, int offset, auto consistency_with) {
       double best = 0;
       int which = -1;
       for (const int k : lines) {
-        const double agreed = agreement_with(k);
+        const double agreed = consistency_with(k);
         if (agreed > best) {
           best = agreed;
           which = offset + k;
@@ -243,14 +243,14 @@ class ShiftVotes {
 };
 
 /// Coordinate ascent with halving steps.
-PlanePose ascend(const Neighbours& lines, PlanePose T) {
+Pose2D ascend(const Neighbours& lines, Pose2D T) {
   std::array<double, 3> step{0.1, 0.1, 0.03};
   double best = lines.score(T);
   for (int round = 0; round < 14; ++round) {
     bool better = false;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {-1.0, 1.0}) {
-        PlanePose trial = T;
+        Pose2D trial = T;
         (axis == 0 ? trial.x_m : axis == 1 ? trial.y_m : trial.heading_rad) += sign * step[axis];
         const double value = lines.score(trial);
         if (value > best) {
@@ -274,7 +274,7 @@ Alignment align(const PlaceView& query_view,
                 const AlignmentOptions& options) {
   const Plan query = plan_of(query_view), node = plan_of(node_view);
   ShiftVotes votes(query, node, options);
-  PlanePose start;
+  Pose2D start;
   double most = 0;
   const int turns = static_cast<int>(std::round(options.max_turn_rad / options.turn_step_rad));
   for (int i = -turns; i <= turns; ++i) {

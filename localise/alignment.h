@@ -16,8 +16,8 @@ struct AlignmentOptions {
 
 /// A rigid motion on the floor and how much of both views it explains.
 struct Alignment {
-  PlanePose query_in_node;  ///< pose of the query in the node's robot frame
-  double score = 0;         ///< share of both views' lines that find a partner, in [0, 1)
+  Pose2D query_in_node;  ///< pose of the query in the node's robot frame
+  double score = 0;      ///< share of both views' lines that find a partner, in [0, 1)
 };
 
 /// Best placement of one view over another from the plan of their lines: a Hough vote of upright

@@ -23,8 +23,8 @@ std::string_view name(LocalisationStatus status);
 
 struct LocalisationAnswer {
   LocalisationStatus status = LocalisationStatus::too_few_lines;
-  int node = -1;   ///< the map's node, the memo's answer
-  PlanePose pose;  ///< refined from it, metric
+  int node = -1;  ///< the map's node, the memo's answer
+  Pose2D pose;    ///< refined from it, metric
   double score = 0;
   double runner_up = 0;  ///< score of the best node more than 1 m away
 };

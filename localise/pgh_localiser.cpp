@@ -24,7 +24,7 @@ LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   struct Candidate {
     int node;
     double score;
-    PlanePose pose;
+    Pose2D pose;
   };
   std::vector<Candidate> candidates;
   const std::size_t count = std::min<std::size_t>(options_.candidates, ranked.size());

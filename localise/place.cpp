@@ -37,15 +37,15 @@ LineKind kind_of(const Eigen::Vector3d& a,
 
 }  // namespace
 
-double distance_m(const PlanePose& a, const PlanePose& b) {
+double distance_m(const Pose2D& a, const Pose2D& b) {
   return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m);
 }
 
-double heading_difference_rad(const PlanePose& a, const PlanePose& b) {
+double heading_difference_rad(const Pose2D& a, const Pose2D& b) {
   return -std::remainder(b.heading_rad - a.heading_rad, 2 * std::numbers::pi);
 }
 
-PlanePose compose(const PlanePose& from, const PlanePose& step) {
+Pose2D compose(const Pose2D& from, const Pose2D& step) {
   const double c = std::cos(from.heading_rad), s = std::sin(from.heading_rad);
   return {from.x_m + c * step.x_m - s * step.y_m, from.y_m + s * step.x_m + c * step.y_m,
           from.heading_rad + step.heading_rad};
@@ -58,10 +58,10 @@ Pose T_robot_camera(const CameraMount& mount) {
   return {R_pitch * R_level, {0, 0, mount.height_m}};
 }
 
-PlaceView place_view(std::span<const SpaceSegment> segments,
-                     std::span<const StereoSegment> images,
-                     const CameraMount& mount,
-                     const PlaceLineOptions& options) {
+PlaceView select_lines(std::span<const SpaceSegment> segments,
+                       std::span<const StereoSegment> images,
+                       const CameraMount& mount,
+                       const PlaceLineOptions& options) {
   if (segments.size() != images.size()) {
     throw Error("place view", "segments and image lines differ in number", "");
   }

@@ -12,16 +12,16 @@
 namespace vernier::localise {
 
 /// Where a robot stands on the floor: world frame, metres; heading from +x, counter-clockwise.
-struct PlanePose {
+struct Pose2D {
   double x_m = 0, y_m = 0, heading_rad = 0;
 };
 
 /// Distance on the floor.
-double distance_m(const PlanePose& a, const PlanePose& b);
+double distance_m(const Pose2D& a, const Pose2D& b);
 /// Difference of headings a - b in (-pi, pi].
-double heading_difference_rad(const PlanePose& a, const PlanePose& b);
+double heading_difference_rad(const Pose2D& a, const Pose2D& b);
 /// Where `step`, given in the frame of `from`, is in the world.
-PlanePose compose(const PlanePose& from, const PlanePose& step);
+Pose2D compose(const Pose2D& from, const Pose2D& step);
 
 /// How the left camera sits on the robot. Robot frame: x forward, y left, z up, origin on the
 /// floor below the camera.
@@ -57,9 +57,9 @@ struct PlaceView {
 /// Brings triangulated segments into the robot's frame. A line that may be vertical (its image
 /// nearly so and the depths of its ends equal within their error) is made exactly vertical at its
 /// mean depth: in a building that is what it is, and its tilt would be noise.
-PlaceView place_view(std::span<const stereo::SpaceSegment> segments,
-                     std::span<const stereo::StereoSegment> images,
-                     const CameraMount& mount,
-                     const PlaceLineOptions& options = {});
+PlaceView select_lines(std::span<const stereo::SpaceSegment> segments,
+                       std::span<const stereo::StereoSegment> images,
+                       const CameraMount& mount,
+                       const PlaceLineOptions& options = {});
 
 }  // namespace vernier::localise

@@ -11,7 +11,7 @@ namespace vernier::localise {
 
 /// A place on the map: where it was recorded and what was seen from there.
 struct MapNode {
-  PlanePose pose;
+  Pose2D pose;
   PlaceView view;
 };
 

@@ -13,7 +13,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -41,11 +41,11 @@ struct ExperimentSettings {
 /// One localisation trial: where the robot was, what was answered, and what that cost.
 struct TrialResult {
   std::uint32_t trial = 0;
-  localise::PlanePose truth;
+  localise::Pose2D truth;
   localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
-  localise::PlanePose answer;  ///< refined pose
-  localise::PlanePose node;    ///< the map's node
-  double error_m = 0;          ///< of the answer on the floor; NaN without one
+  localise::Pose2D answer;  ///< refined pose
+  localise::Pose2D node;    ///< the map's node
+  double error_m = 0;       ///< of the answer on the floor; NaN without one
   double node_error_m = 0;
   double heading_error_rad = 0;
   int lines = 0;              ///< in space, as the localiser had them
@@ -60,8 +60,8 @@ struct TrialResult {
 
 /// The noise-free looks of a map's places: they depend on world, true rig and mount alone, so
 /// blocks and cells that differ in noise share them.
-using MapLooks = std::vector<Look>;
-MapLooks map_looks(const Visibility& visibility,
+using MapViews = std::vector<NoiseFreeView>;
+MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings);
 
@@ -73,7 +73,7 @@ class LocalisationExperiment {
   /// covariance where sources.calibration > 0.
   LocalisationExperiment(const Visibility& visibility,
                          const RigEstimate& rig,
-                         std::shared_ptr<const MapLooks> looks,
+                         std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings);
 
   /// The trials first, first + 1 … of one block: the map is recorded once, with draws of the
@@ -87,8 +87,8 @@ class LocalisationExperiment {
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
   /// What the estimator of a trial is told.
-  Rig told_rig(std::uint32_t trial) const;
-  Rig told_map_rig(std::uint32_t block) const;
+  Rig estimator_rig(std::uint32_t trial) const;
+  Rig map_estimator_rig(std::uint32_t block) const;
 
  private:
   TrialResult run_trial(std::uint32_t trial,
@@ -98,7 +98,7 @@ class LocalisationExperiment {
 
   const Visibility& visibility_;
   RigEstimate rig_;
-  std::shared_ptr<const MapLooks> looks_;
+  std::shared_ptr<const MapViews> map_views_;
   ExperimentSettings settings_;
   Sensor sensor_;
   std::unique_ptr<RigSampler> sampler_;  // none where calibration error is off

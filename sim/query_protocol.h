@@ -36,10 +36,10 @@ bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, d
 /// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
 /// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place
 /// from the route. Throws Error where 1000 draws find no place.
-localise::PlanePose draw_query(const Visibility& visibility,
-                               QueryProtocol protocol,
-                               double eye_height_m,
-                               std::uint64_t seed,
-                               std::uint32_t trial);
+localise::Pose2D draw_query(const Visibility& visibility,
+                            QueryProtocol protocol,
+                            double eye_height_m,
+                            std::uint64_t seed,
+                            std::uint32_t trial);
 
 }  // namespace vernier::sim

@@ -11,7 +11,7 @@ namespace vernier::sim {
 
 /// A point of a route and the direction of travel there.
 struct RoutePoint {
-  localise::PlanePose pose;
+  localise::Pose2D pose;
   double leg_position_m = 0;  ///< from the start of its leg
   int leg = 0;
 };
@@ -25,8 +25,8 @@ RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m);
 /// Places to record a map at: every leg divided evenly into steps of at most `spacing_m`, the
 /// start included and the end left to the next leg. With `headings` = 0 one a place, looking
 /// along the route; else that many all around. Throws Error for an empty route or spacing <= 0.
-std::vector<localise::PlanePose> map_places(const std::vector<RouteLeg>& route,
-                                            double spacing_m,
-                                            int headings = 0);
+std::vector<localise::Pose2D> map_poses(const std::vector<RouteLeg>& route,
+                                        double spacing_m,
+                                        int headings = 0);
 
 }  // namespace vernier::sim

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/rig.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
@@ -17,9 +17,9 @@
 namespace vernier::sim {
 
 /// What a pair of cameras hands to an estimator, with the truth beside it for scoring only.
-struct StereoSighting {
+struct StereoObservation {
   std::vector<stereo::StereoSegment> segments;
-  std::vector<SeenEdge> true_edges;  ///< one a segment
+  std::vector<VisibleEdge> true_edges;  ///< one a segment
   std::vector<SensedCorner> corners;
 };
 
@@ -30,10 +30,10 @@ class Sensor {
   Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
 
   /// The same (look, seed, trial, frame) gives the same sighting to the bit.
-  StereoSighting sense(const Look& look,
-                       std::uint64_t seed,
-                       std::uint32_t trial,
-                       std::uint32_t frame) const;
+  StereoObservation sense(const NoiseFreeView& look,
+                          std::uint64_t seed,
+                          std::uint32_t trial,
+                          std::uint32_t frame) const;
 
   const Rig& rig() const { return rig_; }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/rig.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "stereo/rectification.h"
 #include "stereo/segment.h"
 
@@ -17,7 +17,7 @@ namespace vernier::sim {
 /// each eye. Ends are projected only when asked for, so that a piece cut off an edge still has its
 /// ends exactly on it, whatever the lens.
 struct SensedEdge {
-  SeenEdge truth;
+  VisibleEdge truth;
   std::array<std::array<Eigen::Vector2d, 2>, 2> offset_px{};  ///< [eye][end]
   std::uint32_t piece = 0;  ///< which part after a gap was cut out
 
@@ -28,7 +28,7 @@ struct SensedEdge {
 
 /// A corner pair in both images.
 struct SensedCorner {
-  SeenCorner truth;
+  VisibleCorner truth;
   std::array<Eigen::Vector2d, 2> pixel_px;  ///< [eye]
   bool mismatched = false;
 };

@@ -19,7 +19,7 @@ struct VisibilityOptions {
 };
 
 /// A stretch of a segment that one camera sees, x(t) = a + t (b - a), t in [t0, t1].
-struct VisibleRun {
+struct VisibleInterval {
   int segment = 0;  ///< index into World::segments
   int run = 0;      ///< counts the runs of this segment from a to b
   double t0 = 0, t1 = 1;
@@ -42,9 +42,9 @@ class Visibility {
 
   /// What one camera at T_camera_world sees of every segment: inside the image (distortion
   /// included), between near and far, not hidden; ordered by segment, then by t.
-  std::vector<VisibleRun> visible_runs(const Camera& camera,
-                                       const Pose& T_camera_world,
-                                       const VisibilityOptions& options = {}) const;
+  std::vector<VisibleInterval> visible_intervals(const Camera& camera,
+                                                 const Pose& T_camera_world,
+                                                 const VisibilityOptions& options = {}) const;
 
   /// Indices of the corners that the camera sees, ascending.
   std::vector<int> visible_corners(const Camera& camera,

@@ -13,7 +13,7 @@ struct CannyOptions {
   double scale_px = 1.0;   ///< σ of the Gaussian that the gradient is taken behind
   double low = 2;          ///< grey levels a pixel: weaker points are none
   double high = 5;         ///< grey levels a pixel: a string needs one point as strong
-  int least_points = 10;   ///< shorter strings are dropped
+  int min_points = 10;     ///< shorter strings are dropped
   bool with_sigma = true;  ///< else it is not a number, which saves a quarter of the time
 };
 

@@ -26,7 +26,7 @@ struct DisparityMap {
 struct DisparityFileOptions {
   double scale = 1;  ///< values a pixel, in every format: disparity = value / scale (KITTI: 256)
   std::optional<bool> zero_is_unknown;  ///< unset: in files of whole numbers, not of real ones
-  double least_px = -std::numeric_limits<double>::infinity();  ///< smaller ones are unknown
+  double min_px = -std::numeric_limits<double>::infinity();  ///< smaller ones are unknown
 };
 
 /// Reads a disparity map; its content, not its name, says which format it has:

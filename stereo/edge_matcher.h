@@ -11,17 +11,17 @@
 namespace vernier::stereo {
 
 struct EdgeMatcherOptions {
-  double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
-  double least_margin = 0;          ///< of the best disparity over the next other one, relative
-  int least_points = 6;             ///< fewer points that agree with each other are dropped …
-  int agreement_reach_px = 5;       ///< … where agreeing ones are within so many pixels
+  double min_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are left out
+  double min_margin = 0;          ///< of the best disparity over the next other one, relative
+  int min_points = 6;             ///< fewer points that agree with each other are dropped …
+  int agreement_reach_px = 5;     ///< … where agreeing ones are within so many pixels
   /// Share of unmatched points, or of refined ones whose disparity changes by more than 0.2 px a
   /// pixel, from which slanted surfaces are tried.
   double slanted_above = 0.3;
-  bool refine = true;        ///< least squares, with a standard deviation for each point
-  double least_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
-  double least_slanted_score = 0.7;  ///< the same where surfaces slant
-  double unrefined_sigma_px = 0.5;   ///< … with this standard deviation
+  bool refine = true;      ///< least squares, with a standard deviation for each point
+  double min_score = 0.9;  ///< ZNCC of the refined patches; else the support's parabola stands …
+  double min_slanted_score = 0.7;   ///< the same where surfaces slant
+  double unrefined_sigma_px = 0.5;  ///< … with this standard deviation
   double sigma_floor_px =
       0.2;  ///< of refined points, added in squares: what real images have beyond noise
 };
@@ -41,8 +41,8 @@ struct EdgeMatch {
 ///     them;
 ///  2. semi-global support between edge points (stereo/matching/edge_support.h);
 ///  3. the same from the places found in the right image; a point is kept where both find the same
-///     disparity but for one, its best is `least_margin` better than any other, and at least
-///     `least_points` neighbours in a chain agree with it;
+///     disparity but for one, its best is `min_margin` better than any other, and at least
+///     `min_points` neighbours in a chain agree with it;
 ///  4. least squares of gain, offset, shift, stretch and shear
 ///  (stereo/matching/disparity_refinement.h),
 ///     then once more from the surfaces of neighbours at points where nothing was found.

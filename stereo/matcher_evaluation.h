@@ -12,19 +12,19 @@
 namespace vernier::stereo {
 
 /// What counts as right within a pixel of a step of the truth.
-enum class OutlineRule {
+enum class DiscontinuityRule {
   either,  ///< any disparity of the 3 x 3 pixels: which surface an edge is of is not known better
   foreground,  ///< the largest of them
 };
 
 struct EvaluationOptions {
-  double least_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are not asked
-  int border_px = 3;                ///< nor those nearer to the left and right border
-  OutlineRule outline = OutlineRule::either;
+  double min_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are not asked
+  int border_px = 3;              ///< nor those nearer to the left and right border
+  DiscontinuityRule outline = DiscontinuityRule::either;
 };
 
 /// Figures over some of the edges. Shares are 0 where there is nothing to share.
-struct EdgeFigures {
+struct EdgeMetrics {
   int edges = 0;       ///< with a known truth that the right image shows
   int matched = 0;     ///< of them
   double density = 0;  ///< matched over edges
@@ -35,8 +35,8 @@ struct EdgeFigures {
 
 /// How a matcher did at the left edges of a pair.
 struct MatcherScore {
-  EdgeFigures all, smooth, discontinuity;  ///< … away from steps of the truth, and at them
-  std::vector<EdgeFigures> by_angle;       ///< nine bins of 10° from the row to upright
+  EdgeMetrics all, smooth, discontinuity;  ///< … away from steps of the truth, and at them
+  std::vector<EdgeMetrics> by_angle;       ///< nine bins of 10° from the row to upright
   int occluded = 0;                        ///< edges that the right image does not show …
   int occluded_matched = 0;                ///< … and that were matched all the same
   double mismatch = 0;  ///< |error| > 3 px among all matched, occluded ones included
@@ -48,17 +48,17 @@ struct MatcherScore {
 
 /// Whether an edge is one of those that are asked about: its truth is known, it is not too near to
 /// the row nor to the border.
-bool is_asked(const EdgePoint& edge,
-              const TruthAtEdge& truth,
-              int width_px,
-              const EvaluationOptions& options);
+bool is_scored(const EdgePoint& edge,
+               const TruthAtEdge& truth,
+               int width_px,
+               const EvaluationOptions& options);
 
 /// Whether the right image does not show an edge, by the rule.
-bool is_occluded(const TruthAtEdge& truth, OutlineRule rule);
+bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule);
 
 /// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
 /// that counts. 0 between the point's and its crossing's (TruthAtEdge::crossing_px).
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule);
+double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule);
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,
@@ -68,7 +68,7 @@ MatcherScore evaluate(const std::vector<EdgePoint>& edges,
 
 /// A point of the curve of error against density.
 struct CurvePoint {
-  double least_confidence = -std::numeric_limits<double>::infinity();
+  double min_confidence = -std::numeric_limits<double>::infinity();
   double density = 0, bad_1 = 0, mismatch = 0;
 };
 

@@ -14,9 +14,9 @@ namespace vernier::stereo {
 struct RectifiedGeometryOptions {
   Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: the left camera's
   double f_px = 0;                ///< of both; 0: chosen as below
-  double most_blank = 0.01;       ///< share of either image's pixels that may have no source …
-  double least_zoom = 0.7;        ///< … by a focal length within these two,
-  double most_zoom = 1.3;         ///< in units of the cameras' mean
+  double max_blank = 0.01;        ///< share of either image's pixels that may have no source …
+  double min_zoom = 0.7;          ///< … by a focal length within these two,
+  double max_zoom = 1.3;          ///< in units of the cameras' mean
 };
 
 /// Two pinhole cameras side by side that a pair is rectified to: the same focal length f, the same
@@ -39,7 +39,7 @@ struct RectifiedGeometry {
 
 /// The geometry that a rig's images are rectified to.
 ///
-/// The focal length is the least, so the widest view, at which no more than `most_blank` of either
+/// The focal length is the least, so the widest view, at which no more than `max_blank` of either
 /// image has no source; where none within the zooms does, the most zoom. Where the cameras' mean is
 /// within 3 % of it, it is the mean, so that cameras side by side stay as they are. The centre is
 /// such that the middles of both raw images stay in the middle on average: where the axes converge
@@ -51,7 +51,7 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
 /// side that takes them: its own f and B, the left camera's centre. Where the right camera's centre
 /// lies further right by o, the images' disparities are those of the geometry less o. Nothing where
 /// the rig is none of that kind.
-std::optional<RectifiedGeometry> geometry_as_it_stands(const Rig& rig);
+std::optional<RectifiedGeometry> geometry_of_rectified_rig(const Rig& rig);
 
 /// The two pinhole cameras as a rig of the same names.
 Rig rectified_rig(const Rig& rig, const RectifiedGeometry& geometry);

@@ -13,7 +13,7 @@ struct RectifiedPair {
 
 /// Disparities u_left − u_right that are searched, both ends included.
 struct DisparityRange {
-  int least_px = 0, most_px = 64;
+  int min_px = 0, max_px = 64;
 };
 
 }  // namespace vernier::stereo

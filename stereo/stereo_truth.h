@@ -40,8 +40,8 @@ struct TruthAtEdge {
   float own_px = std::numeric_limits<float>::quiet_NaN();  ///< along the row, whatever is about it
   bool own_occluded = false;                               ///< of the edge's own pixel
   bool discontinuity = false;  ///< a step in the 5 x 5 pixels, or something unknown in the 3 x 3
-  float least_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
-  float most_px = std::numeric_limits<float>::quiet_NaN();   ///< of the 3 x 3 pixels
+  float min_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
+  float max_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   /// Where the right image's rows are wrong (stereo/evaluation/warped_pair.h): how much more
   /// disparity the edge has where it crosses the row there. All between the point's and the
   /// crossing's is right.

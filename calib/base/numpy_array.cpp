@@ -16,7 +16,7 @@ namespace vernier::internal {
 namespace {
 
 constexpr std::string_view magic{"\x93NUMPY", 6};
-constexpr double most_side = 1 << 20;
+constexpr double max_side = 1 << 20;
 
 /// The head of a .npy file and where its data begin.
 struct Head {
@@ -48,7 +48,7 @@ PythonLiteral description(std::string_view bytes, const std::string& place, std:
 
 std::size_t side_of(const PythonLiteral& side, const std::string& place) {
   const double length = side.number;
-  if (side.kind != PythonLiteral::Kind::number || !(length >= 1 && length <= most_side) ||
+  if (side.kind != PythonLiteral::Kind::number || !(length >= 1 && length <= max_side) ||
       length != std::floor(length)) {
     throw Error(place, "has a side of " + side.text + " pixels", "give a map of an image");
   }
@@ -57,10 +57,10 @@ std::size_t side_of(const PythonLiteral& side, const std::string& place) {
 
 Head head_of(std::string_view bytes, const std::string& place) {
   Head head;
-  const PythonLiteral said = description(bytes, place, head.data_at);
-  const PythonLiteral* type = said.find("descr");
-  const PythonLiteral* order = said.find("fortran_order");
-  const PythonLiteral* shape = said.find("shape");
+  const PythonLiteral header = description(bytes, place, head.data_at);
+  const PythonLiteral* type = header.find("descr");
+  const PythonLiteral* order = header.find("fortran_order");
+  const PythonLiteral* shape = header.find("shape");
   if (!type || !order || !shape) {
     throw Error(place, "has a NumPy header without descr, fortran_order or shape",
                 "write it with numpy.save");

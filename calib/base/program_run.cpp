@@ -30,7 +30,7 @@ std::string read_text(const std::filesystem::path& file) {
 /// Starts a program with its standard input empty and its output in files. Returns errno.
 int start(const std::vector<std::string>& words,
           const std::string& output,
-          const std::string& complaint,
+          const std::string& error_output,
           bool in_own_group,
           pid_t& child) {
   constexpr int make = O_WRONLY | O_CREAT | O_TRUNC;
@@ -38,7 +38,7 @@ int start(const std::vector<std::string>& words,
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), make, 0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaint.c_str(), make, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_output.c_str(), make, 0600);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   if (in_own_group) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -80,15 +80,15 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-std::string ProgramRun::last_words() const {
+std::string ProgramRun::last_output_line() const {
   const std::string& text =
-      complaint.find_first_not_of(" \r\n\t") == std::string::npos ? output : complaint;
+      error_output.find_first_not_of(" \r\n\t") == std::string::npos ? output : error_output;
   const std::size_t end = text.find_last_not_of(" \r\n\t");
   if (end == std::string::npos) return "no word of why";
   const std::size_t before = text.find_last_of("\r\n", end);
-  constexpr std::size_t most_letters = 300;
+  constexpr std::size_t max_letters = 300;
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-  std::string line = text.substr(begin, std::min(end + 1 - begin, most_letters));
+  std::string line = text.substr(begin, std::min(end + 1 - begin, max_letters));
   for (char& letter : line) {
     if (std::iscntrl(static_cast<unsigned char>(letter))) letter = ' ';
   }
@@ -97,10 +97,10 @@ std::string ProgramRun::last_words() const {
 
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s) {
   const TemporaryFolder folder;
-  const std::string output = folder.path() / "output", complaint = folder.path() / "complaint";
+  const std::string output = folder.path() / "output", error_output = folder.path() / "complaint";
   ProgramRun run;
   pid_t child = 0;
-  run.start_error = start(words, output, complaint, time_limit_s > 0, child);
+  run.start_error = start(words, output, error_output, time_limit_s > 0, child);
   if (run.start_error) return run;
   int status = -1;  // neither ended nor signalled
   if (time_limit_s > 0 && !ends_within(time_limit_s, child, status)) {
@@ -111,7 +111,7 @@ ProgramRun run_program(const std::vector<std::string>& words, double time_limit_
   if (WIFEXITED(status) && !run.timed_out) run.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
   run.output = read_text(output);
-  run.complaint = read_text(complaint);
+  run.error_output = read_text(error_output);
   return run;
 }
 

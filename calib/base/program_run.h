@@ -28,10 +28,10 @@ struct ProgramRun {
   int signal = 0;          ///< that ended it; 0: none
   int start_error = 0;     ///< errno of why it could not be run; 0: it was
   bool timed_out = false;  ///< it was ended because of the time limit
-  std::string output, complaint;
+  std::string output, error_output;
 
   /// The last line that it wrote, of its complaint if there is one, on one line of text.
-  std::string last_words() const;
+  std::string last_output_line() const;
 };
 
 /// Runs a program, found by the path, with nothing on its standard input; no shell takes part. With

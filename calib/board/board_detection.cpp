@@ -101,23 +101,23 @@ void check_found(const ImageDetections& found, const std::string& place, const s
 
 }  // namespace
 
-std::string text_of(CornerRefusal refusal) {
+std::string text_of(CornerRejection refusal) {
   switch (refusal) {
-    case CornerRefusal::at_border:
+    case CornerRejection::at_border:
       return "at the image's border";
-    case CornerRefusal::not_crossing:
+    case CornerRejection::not_crossing:
       return "covered or unlike a crossing of squares";
-    case CornerRefusal::moved_too_far:
+    case CornerRejection::moved_too_far:
       return "moved out of its window by refinement";
-    case CornerRefusal::off_neighbours:
+    case CornerRejection::off_neighbours:
       return "not where its neighbours put it";
   }
   return "";
 }
 
-std::string refused_corners_text(const BoardDetection& image) {
-  std::map<CornerRefusal, int> count;
-  for (const RefusedCorner& corner : image.refused_corners) ++count[corner.why];
+std::string rejected_corners_text(const BoardDetection& image) {
+  std::map<CornerRejection, int> count;
+  for (const RejectedCorner& corner : image.rejected_corners) ++count[corner.why];
   std::string text;
   for (const auto& [why, corners] : count) {
     text += (text.empty() ? "" : ", ") + std::to_string(corners) +

@@ -41,7 +41,7 @@ Eigen::Matrix3d centre_at_origin(const Eigen::Matrix3d& H, const Eigen::Vector2i
 }
 
 /// The w that minimises Σ |a w + b|: the median of -b/a with weights |a|.
-double least_absolute_w(std::vector<std::pair<double, double>> equations) {
+double min_absolute_w(std::vector<std::pair<double, double>> equations) {
   std::erase_if(equations, [](const auto& e) { return e.first == 0; });
   std::sort(equations.begin(), equations.end(),
             [](const auto& p, const auto& q) { return -p.second / p.first < -q.second / q.first; });
@@ -99,7 +99,7 @@ BoardHomography board_homography(const std::vector<Eigen::Vector3d>& target_m,
   }
   result.rms_px = std::sqrt(sum / (2.0 * static_cast<double>(board.size())));
   // det d(u, v)/d(X, Y) = det H / λ³, and λ = 1 at the centre
-  result.seen_from_front = result.H.determinant() > 0;
+  result.is_front_facing = result.H.determinant() > 0;
   return result;
 }
 
@@ -116,7 +116,7 @@ std::optional<double> focal_length_px(const std::vector<BoardHomography>& views,
     equations.emplace_back(scale * (h.head<2>().squaredNorm() - v.head<2>().squaredNorm()),
                            scale * (h.z() * h.z() - v.z() * v.z()));
   }
-  const double w = least_absolute_w(std::move(equations));
+  const double w = min_absolute_w(std::move(equations));
   const double f = w > 0 ? unit / std::sqrt(w) : 0;
   if (!(f > 0.05 * unit && f < 100 * unit)) return std::nullopt;
   return f;

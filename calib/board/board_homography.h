@@ -25,7 +25,7 @@ struct BoardHomography {
   double rms_px = 0;  ///< of the residuals, per coordinate; lens distortion is in it
   /// Whether x, y of the board turn into each other as u, v do: a board seen from its front, its
   /// corners numbered x right and y down. A mirrored image or a mirrored numbering turns it round.
-  bool seen_from_front = true;
+  bool is_front_facing = true;
 };
 BoardHomography board_homography(const std::vector<Eigen::Vector3d>& target_m,
                                  const BoardView& view);

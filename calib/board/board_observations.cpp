@@ -11,13 +11,13 @@
 namespace vernier {
 namespace {
 
-std::string place_of(const BoardView& view) {
+std::string view_label(const BoardView& view) {
   return "frame " + std::to_string(view.frame) + ", camera " + std::to_string(view.camera) +
          (view.image.empty() ? "" : " (" + view.image + ")");
 }
 
 void check_view(const BoardView& view, const BoardObservations& observations) {
-  const std::string place = place_of(view);
+  const std::string place = view_label(view);
   if (view.camera < 0 || view.camera >= static_cast<int>(observations.size_px.size())) {
     throw Error(place, "no image size is known for this camera", "give one size a camera");
   }
@@ -41,7 +41,7 @@ void check_view(const BoardView& view, const BoardObservations& observations) {
                   "check the image size, or that the corners belong to these images");
     }
   }
-  if (!fixes_pose(observations.target_m, view.ids)) {
+  if (!determines_pose(observations.target_m, view.ids)) {
     throw Error(place,
                 "its corners, all but one at most, lie on one line of the board, which fixes no "
                 "pose of it",
@@ -59,7 +59,7 @@ std::vector<int> frames_of(const BoardObservations& observations) {
   return frames;
 }
 
-bool fixes_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids) {
+bool determines_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids) {
   if (ids.size() < 4) return false;
   // A line that all but one are on holds two of the first three, whichever that one is.
   for (int without = 0; without < 3; ++without) {
@@ -98,7 +98,7 @@ void check_and_sort(BoardObservations& observations) {
   for (const BoardView& view : views) check_view(view, observations);
   for (std::size_t i = 1; i < views.size(); ++i) {
     if (views[i].frame == views[i - 1].frame && views[i].camera == views[i - 1].camera) {
-      throw Error(place_of(views[i]), "this camera appears twice in the frame", "remove one");
+      throw Error(view_label(views[i]), "this camera appears twice in the frame", "remove one");
     }
   }
 }

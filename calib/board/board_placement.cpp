@@ -134,7 +134,7 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
     for (int k = 0; k < options.fills * options.angles * options.angles; ++k) {
       const int fill = k / (options.angles * options.angles);
       const int turn = k / options.angles % options.angles, tilt = k % options.angles;
-      const double log_share = step_between(std::log(options.least_fill),
+      const double log_share = step_between(std::log(options.min_fill),
                                             std::log(options.greatest_fill), fill, options.fills);
       const double z = std::max(left.f_px() * left.ax() * target.extent_m[0] / size[0],
                                 left.f_px() * target.extent_m[1] / size[1]) /
@@ -161,7 +161,7 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
   return boards;
 }
 
-std::string placement_in_words(const BoardPlacement& p, const Camera& left) {
+std::string describe_placement(const BoardPlacement& p, const Camera& left) {
   return fmt::format(
       "hold the board {:.2f} m away, its centre in the {} of the {} image ({:.0f}, {:.0f}), turned "
       "{}° about the vertical axis{}, tilted {}°{}",

@@ -27,9 +27,9 @@ struct BoardPlacement {
 
 /// Which placements are considered.
 struct PlacementOptions {
-  int places = 5;            ///< of the middle along each side of the left image
-  int fills = 5;             ///< steps of the size
-  double least_fill = 0.25;  ///< of the image's width or height that the facing board takes up
+  int places = 5;          ///< of the middle along each side of the left image
+  int fills = 5;           ///< steps of the size
+  double min_fill = 0.25;  ///< of the image's width or height that the facing board takes up
   double greatest_fill = 0.95;
   int angles = 5;  ///< steps of turn and of tilt
   double greatest_angle_rad = std::numbers::pi / 4;
@@ -53,6 +53,6 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
 
 /// "hold the board 0.55 m away, its centre in the upper right of the left image (480, 120), turned
 /// 35° about the vertical axis (right edge nearer), tilted 0°"
-std::string placement_in_words(const BoardPlacement& placement, const Camera& left);
+std::string describe_placement(const BoardPlacement& placement, const Camera& left);
 
 }  // namespace vernier::internal

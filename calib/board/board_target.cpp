@@ -18,10 +18,10 @@ std::string size_text(int columns, int rows) {
 }
 
 /// Beyond it a number is a slip of the pen, and its square too many corners.
-constexpr int most_along_a_side = 1000;
+constexpr int max_along_a_side = 1000;
 
 void require_few(int columns, int rows, const std::string& place) {
-  if (columns > most_along_a_side || rows > most_along_a_side) {
+  if (columns > max_along_a_side || rows > max_along_a_side) {
     throw Error(place, "more than 1000 along a side", "check its size");
   }
 }

@@ -173,7 +173,7 @@ std::optional<CornerGrid> find_any_grid(const cv::Mat& grey) {
   return grid;
 }
 
-std::string size_text(int columns, int rows) {
+std::string grid_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
@@ -195,16 +195,16 @@ bool cut_by_border(const cv::Mat& grey, const CornerGrid& grid) {
 }
 
 std::string bigger(const Chessboard& board) {
-  return "the board seems to have more inner corners than " + size_text(board.columns, board.rows);
+  return "the board seems to have more inner corners than " + grid_text(board.columns, board.rows);
 }
 
 /// Why no board of this size was found, by what is there instead.
 std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
-  std::string reason = "no " + size_text(board.columns, board.rows) + " board found";
+  std::string reason = "no " + grid_text(board.columns, board.rows) + " board found";
   if (const auto grid = find_any_grid(grey)) {
     const auto [least, most] = std::minmax(grid->columns, grid->rows);
     const auto [short_side, long_side] = std::minmax(board.columns, board.rows);
-    const std::string seen = size_text(grid->columns, grid->rows);
+    const std::string seen = grid_text(grid->columns, grid->rows);
     if (least >= short_side && most >= long_side) {
       result.goes_on = true;
       return reason + "; " + bigger(board) + ": " + seen + " are seen";
@@ -244,14 +244,14 @@ void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetect
   }
   refine_corners(grey, std::move(guesses), target_points(board), CornerKind::crossing, result);
   const auto astray = std::count_if(
-      result.refused_corners.begin(), result.refused_corners.end(),
-      [](const RefusedCorner& corner) { return corner.why != CornerRefusal::at_border; });
+      result.rejected_corners.begin(), result.rejected_corners.end(),
+      [](const RejectedCorner& corner) { return corner.why != CornerRejection::at_border; });
   // The finders find whole boards only: several corners that are none are a board of another size.
   const bool wrong = 10 * astray > static_cast<long>(grid.corners.size());
   if (!wrong && 2 * result.ids.size() >= grid.corners.size()) return;
   const std::string fault = image_fault(grey);
-  result.reason = "a " + size_text(board.columns, board.rows) +
-                  " board does not fit: " + refused_corners_text(result) +
+  result.reason = "a " + grid_text(board.columns, board.rows) +
+                  " board does not fit: " + rejected_corners_text(result) +
                   (fault.empty() ? "" : "; " + fault);
   result.ids.clear();
   result.corners_px.clear();

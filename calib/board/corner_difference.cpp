@@ -11,14 +11,14 @@
 
 namespace vernier::internal {
 
-CornerDifference corner_difference(const BoardView& a, const BoardView& b, double most_px) {
+CornerDifference corner_difference(const BoardView& a, const BoardView& b, double max_px) {
   std::map<int, Eigen::Vector2d> pixels;
   const bool same_corners = a.ids == b.ids;
   if (!same_corners) {
     for (std::size_t i = 0; i < a.ids.size(); ++i) pixels[a.ids[i]] = a.pixels_px[i];
   }
   const auto most = static_cast<double>(std::min(a.ids.size(), b.ids.size()));
-  const double enough = 2 * most_px * most_px * most;
+  const double enough = 2 * max_px * max_px * most;
   double largest = 0, sum = 0;
   int shared = 0;
   for (std::size_t i = 0; i < b.ids.size() && sum <= enough; ++i) {

@@ -14,7 +14,7 @@ struct CornerDifference {
   double rms_px = std::numeric_limits<double>::infinity();      ///< per coordinate
 };
 
-/// Infinite as well as soon as the sum of squares tells that rms_px would be above `most_px`.
-CornerDifference corner_difference(const BoardView& a, const BoardView& b, double most_px);
+/// Infinite as well as soon as the sum of squares tells that rms_px would be above `max_px`.
+CornerDifference corner_difference(const BoardView& a, const BoardView& b, double max_px);
 
 }  // namespace vernier::internal

@@ -18,11 +18,11 @@
 namespace vernier::internal {
 namespace {
 
-constexpr int least_half_window = 2;
-constexpr double least_contrast = 12;   // grey values in a corner's window
-constexpr double most_asymmetry = 0.3;  // of that contrast
+constexpr int min_half_window = 2;
+constexpr double min_contrast = 12;    // grey values in a corner's window
+constexpr double max_asymmetry = 0.3;  // of that contrast
 constexpr std::size_t neighbours = 12;
-constexpr std::size_t least_neighbours = 8;
+constexpr std::size_t min_neighbours = 8;
 
 double grey_at(const cv::Mat& grey, const Eigen::Vector2d& p) {
   const int x = std::clamp(static_cast<int>(std::floor(p.x())), 0, grey.cols - 2);
@@ -46,7 +46,7 @@ bool is_crossing(const cv::Mat& grey, const Eigen::Vector2d& corner, double radi
     low = std::min({low, a, b});
     high = std::max({high, a, b});
   }
-  return high - low > least_contrast && difference / points < most_asymmetry * (high - low);
+  return high - low > min_contrast && difference / points < max_asymmetry * (high - low);
 }
 
 /// cornerSubPix of one corner. OpenCV puts a corner that left its window back to where it began, so
@@ -63,13 +63,13 @@ std::optional<Eigen::Vector2d> settle(const cv::Mat& grey, const Eigen::Vector2d
 }
 
 /// The refined place and the window it was found in, or why there is none.
-std::optional<CornerRefusal> refine(const cv::Mat& grey, CornerGuess& guess) {
+std::optional<CornerRejection> refine(const cv::Mat& grey, CornerGuess& guess) {
   const Eigen::Vector2d far(grey.cols - 1 - guess.pixel_px.x(), grey.rows - 1 - guess.pixel_px.y());
   const double room = std::min(guess.pixel_px.minCoeff(), far.minCoeff()) - 1;
   const int half = std::min(guess.half_window_px, static_cast<int>(std::floor(room)));
-  if (half < least_half_window) return CornerRefusal::at_border;
+  if (half < min_half_window) return CornerRejection::at_border;
   const auto moved_to = settle(grey, guess.pixel_px, half);
-  if (!moved_to) return CornerRefusal::moved_too_far;
+  if (!moved_to) return CornerRejection::moved_too_far;
   guess.pixel_px = *moved_to;
   guess.half_window_px = half;
   return std::nullopt;
@@ -86,7 +86,7 @@ double strangeness(const std::vector<CornerGuess>& corners,
     if (i != index) near.emplace_back((target_m[corners[i].id].head<2>() - own).norm(), i);
   }
   const std::size_t count = std::min(neighbours, near.size());
-  if (count < least_neighbours) return 0;
+  if (count < min_neighbours) return 0;
   std::partial_sort(near.begin(), near.begin() + static_cast<long>(count), near.end());
   std::vector<Eigen::Vector2d> from, to;
   for (std::size_t k = 0; k < count; ++k) {
@@ -110,14 +110,14 @@ double strangeness(const std::vector<CornerGuess>& corners,
 void drop_covered_corners(const cv::Mat& grey,
                           CornerKind kind,
                           std::vector<CornerGuess>& corners,
-                          std::vector<RefusedCorner>& refused) {
+                          std::vector<RejectedCorner>& refused) {
   std::vector<CornerGuess> crossings;
-  std::vector<RefusedCorner> others;
+  std::vector<RejectedCorner> others;
   for (const CornerGuess& corner : corners) {
     if (is_crossing(grey, corner.pixel_px, corner.half_window_px)) {
       crossings.push_back(corner);
     } else {
-      others.push_back({corner.id, CornerRefusal::not_crossing});
+      others.push_back({corner.id, CornerRejection::not_crossing});
     }
   }
   constexpr double most = 0.6;
@@ -129,7 +129,7 @@ void drop_covered_corners(const cv::Mat& grey,
 /// Takes out the strangest corner until none is strange.
 void drop_strange_corners(std::vector<CornerGuess>& corners,
                           const std::vector<Eigen::Vector3d>& target_m,
-                          std::vector<RefusedCorner>& refused) {
+                          std::vector<RejectedCorner>& refused) {
   while (true) {
     double most = 1;
     std::size_t worst = corners.size();
@@ -141,7 +141,7 @@ void drop_strange_corners(std::vector<CornerGuess>& corners,
       }
     }
     if (worst == corners.size()) return;
-    refused.push_back({corners[worst].id, CornerRefusal::off_neighbours});
+    refused.push_back({corners[worst].id, CornerRejection::off_neighbours});
     corners.erase(corners.begin() + static_cast<long>(worst));
   }
 }
@@ -158,13 +158,13 @@ void refine_corners(const cv::Mat& grey,
   std::vector<CornerGuess> refined;
   for (CornerGuess& guess : guesses) {
     if (const auto refusal = refine(grey, guess)) {
-      result.refused_corners.push_back({guess.id, *refusal});
+      result.rejected_corners.push_back({guess.id, *refusal});
     } else {
       refined.push_back(guess);
     }
   }
-  drop_covered_corners(grey, kind, refined, result.refused_corners);
-  drop_strange_corners(refined, target_m, result.refused_corners);
+  drop_covered_corners(grey, kind, refined, result.rejected_corners);
+  drop_strange_corners(refined, target_m, result.rejected_corners);
   for (const CornerGuess& corner : refined) {
     result.ids.push_back(corner.id);
     result.corners_px.push_back(corner.pixel_px);

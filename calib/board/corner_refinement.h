@@ -21,7 +21,7 @@ struct CornerGuess {
 enum class CornerKind { crossing, as_most };
 
 /// Refines the guesses into `result`, corner by corner, in the order of their ids. Windows shrink
-/// towards the image's border. A corner is refused for the reasons of CornerRefusal; the last of
+/// towards the image's border. A corner is refused for the reasons of CornerRejection; the last of
 /// them compares it with the homography of its nearest refined neighbours.
 void refine_corners(const cv::Mat& grey,
                     std::vector<CornerGuess> guesses,

@@ -25,7 +25,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::size_t least_corners = 6;
+constexpr std::size_t min_corners = 6;
 
 /// The largest window that holds nothing but the corner: `free_m` is the distance to the next edge
 /// of the pattern.
@@ -51,12 +51,12 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
            const std::string& name,
            BoardDetection& result) {
   const std::size_t corners = result.ids.size();
-  if (corners < least_corners) {
+  if (corners < min_corners) {
     result.reason = "only " + std::to_string(corners) + " good corners of the " + name +
-                    ", at least " + std::to_string(least_corners) + " are needed";
-    if (!result.refused_corners.empty())
-      result.reason += "; not used: " + refused_corners_text(result);
-  } else if (!span_plane(result.ids, target_m) || !fixes_pose(target_m, result.ids)) {
+                    ", at least " + std::to_string(min_corners) + " are needed";
+    if (!result.rejected_corners.empty())
+      result.reason += "; not used: " + rejected_corners_text(result);
+  } else if (!span_plane(result.ids, target_m) || !determines_pose(target_m, result.ids)) {
     result.reason = "all good corners of the " + name + ", or all but one, lie on one line";
   } else {
     return;
@@ -67,7 +67,7 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
 
 /// Why there are no markers to work with, by what was seen instead.
 std::string marker_fault(const cv::Mat& grey,
-                         const SeenMarkers& seen,
+                         const DetectedMarkers& seen,
                          const MarkerLayout& layout,
                          const std::string& name) {
   std::string reason = "no " + name + " found";
@@ -95,9 +95,9 @@ struct Mistake {
 };
 
 /// The layout that most markers agree with, and those that do.
-std::pair<std::size_t, std::vector<SeenMarker>> best_layout(
-    const std::vector<SeenMarker>& markers, const std::vector<MarkerLayout>& layouts) {
-  std::pair<std::size_t, std::vector<SeenMarker>> best;
+std::pair<std::size_t, std::vector<DetectedMarker>> best_layout(
+    const std::vector<DetectedMarker>& markers, const std::vector<MarkerLayout>& layouts) {
+  std::pair<std::size_t, std::vector<DetectedMarker>> best;
   for (std::size_t i = 0; i < layouts.size(); ++i) {
     auto good = consistent_markers(markers, layouts[i]);
     if (good.size() > best.second.size()) best = {i, std::move(good)};
@@ -107,7 +107,7 @@ std::pair<std::size_t, std::vector<SeenMarker>> best_layout(
 
 struct FoundLayout {
   MarkerLayout layout;
-  SeenMarkers seen;
+  DetectedMarkers seen;
 };
 
 /// The markers that lie as one of the layouts has them; nothing, and the reason in `result`, where
@@ -117,7 +117,7 @@ std::optional<FoundLayout> find_layout(const cv::Mat& grey,
                                        const std::vector<Mistake>& mistakes,
                                        const std::string& name,
                                        BoardDetection& result) {
-  SeenMarkers seen = find_markers(grey, layouts[0]);
+  DetectedMarkers seen = find_markers(grey, layouts[0]);
   if (seen.markers.size() < 2) {
     result.reason = marker_fault(grey, seen, layouts[0], name);
     return std::nullopt;
@@ -202,7 +202,7 @@ void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDe
   const std::string name = name_of(board);
   const auto found = find_layout(grey, {layout_of(board)}, mistakes_for(board), name, result);
   if (!found) return;
-  const std::vector<SeenMarker>& markers = found->seen.markers;
+  const std::vector<DetectedMarker>& markers = found->seen.markers;
   const double free_m = std::min(0.5 * (board.square_m - board.marker_m), 0.35 * board.square_m);
   const auto target_m = target_points(board);
   const auto points = plane_points(target_m);
@@ -232,7 +232,7 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
   const auto target_m = target_points(grid);
   const auto points = plane_points(target_m);
   std::vector<CornerGuess> guesses;
-  for (const SeenMarker& marker : found->seen.markers) {
+  for (const DetectedMarker& marker : found->seen.markers) {
     for (const int id : corners_of(grid, marker.id)) {
       const auto H = homography_near(found->seen.markers, found->layout, points[id], 9,
                                      2.3 * found->layout.pitch_m);

@@ -16,7 +16,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr double least_side_px = 10;  // below, no marker's pattern can be read
+constexpr double min_side_px = 10;  // below, no marker's pattern can be read
 
 Eigen::Vector2d centre(const MarkerCorners& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
@@ -28,16 +28,16 @@ cv::Ptr<cv::aruco::DetectorParameters> parameters(const cv::Mat& grey, int borde
   p->minDistanceToBorder = 1;
   p->adaptiveThreshWinSizeMax = std::clamp(std::min(grey.cols, grey.rows) / 12, 23, 63);
   p->minMarkerPerimeterRate =
-      std::min(p->minMarkerPerimeterRate, 4 * least_side_px / std::max(grey.cols, grey.rows));
+      std::min(p->minMarkerPerimeterRate, 4 * min_side_px / std::max(grey.cols, grey.rows));
   return p;
 }
 
-SeenMarkers find_at(const cv::Mat& grey, const MarkerLayout& layout, int border_bits) {
+DetectedMarkers find_at(const cv::Mat& grey, const MarkerLayout& layout, int border_bits) {
   std::vector<std::vector<cv::Point2f>> corners, rejected;
   std::vector<int> ids;
   cv::aruco::detectMarkers(grey, marker_dictionary(layout.dictionary), corners, ids,
                            parameters(grey, border_bits), rejected);
-  SeenMarkers seen;
+  DetectedMarkers seen;
   seen.border_bits = border_bits;
   seen.undecoded = static_cast<int>(rejected.size());
   std::map<int, int> count;
@@ -48,23 +48,23 @@ SeenMarkers find_at(const cv::Mat& grey, const MarkerLayout& layout, int border_
     } else if (count[ids[i]] > 1) {
       ++seen.repeated;
     } else {
-      SeenMarker marker{ids[i], {}};
+      DetectedMarker marker{ids[i], {}};
       for (int k = 0; k < 4; ++k) marker.corners_px[k] = {corners[i][k].x, corners[i][k].y};
       seen.markers.push_back(marker);
     }
   }
   std::sort(seen.markers.begin(), seen.markers.end(),
-            [](const SeenMarker& a, const SeenMarker& b) { return a.id < b.id; });
+            [](const DetectedMarker& a, const DetectedMarker& b) { return a.id < b.id; });
   return seen;
 }
 
 /// Markers by their distance on the board from a point.
-std::vector<std::pair<double, const SeenMarker*>> by_distance(
-    const std::vector<SeenMarker>& markers,
+std::vector<std::pair<double, const DetectedMarker*>> by_distance(
+    const std::vector<DetectedMarker>& markers,
     const MarkerLayout& layout,
     const Eigen::Vector2d& from) {
-  std::vector<std::pair<double, const SeenMarker*>> sorted;
-  for (const SeenMarker& marker : markers) {
+  std::vector<std::pair<double, const DetectedMarker*>> sorted;
+  for (const DetectedMarker& marker : markers) {
     sorted.emplace_back((centre(layout.corners_m[marker.id]) - from).norm(), &marker);
   }
   std::sort(sorted.begin(), sorted.end());
@@ -72,7 +72,7 @@ std::vector<std::pair<double, const SeenMarker*>> by_distance(
 }
 
 /// Whether b lies where a puts it.
-bool agree(const SeenMarker& a, const SeenMarker& b, const MarkerLayout& layout) {
+bool agree(const DetectedMarker& a, const DetectedMarker& b, const MarkerLayout& layout) {
   const auto& am = layout.corners_m[a.id];
   const auto& bm = layout.corners_m[b.id];
   const auto H = fit_homography({am.begin(), am.end()}, {a.corners_px.begin(), a.corners_px.end()});
@@ -113,14 +113,14 @@ std::vector<double> read_cells(const cv::Mat& grey, const MarkerCorners& corners
 /// Whether the pattern of marker `id` stands at these corners.
 bool reads_as(const cv::Mat& grey,
               const cv::aruco::Dictionary& dictionary,
-              const SeenMarker& marker,
+              const DetectedMarker& marker,
               int border_bits) {
   const int bits = dictionary.markerSize, cells = bits + 2 * border_bits;
   const std::vector<double> values = read_cells(grey, marker.corners_px, cells);
   if (values.empty()) return false;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  constexpr double least_contrast = 20;
-  if (*high - *low < least_contrast) return false;
+  constexpr double min_contrast = 20;
+  if (*high - *low < min_contrast) return false;
   const cv::Mat pattern =
       cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.row(marker.id), bits);
   int wrong = 0, wrong_border = 0;
@@ -162,16 +162,16 @@ MarkerCorners settled(const cv::Mat& grey, const MarkerCorners& corners) {
 }
 
 /// Marker `id` where the nearest few, or more, of those seen put it, if its pattern stands there.
-std::optional<SeenMarker> read_at_prediction(const cv::Mat& grey,
-                                             const cv::aruco::Dictionary& dictionary,
-                                             const MarkerLayout& layout,
-                                             const SeenMarkers& seen,
-                                             int id) {
+std::optional<DetectedMarker> read_at_prediction(const cv::Mat& grey,
+                                                 const cv::aruco::Dictionary& dictionary,
+                                                 const MarkerLayout& layout,
+                                                 const DetectedMarkers& seen,
+                                                 int id) {
   for (const std::size_t count : {3u, 6u}) {
     const auto H = homography_near(seen.markers, layout, centre(layout.corners_m[id]), count,
                                    2.3 * layout.pitch_m);
     if (!H) return std::nullopt;
-    SeenMarker marker{id, {}};
+    DetectedMarker marker{id, {}};
     for (int k = 0; k < 4; ++k) marker.corners_px[k] = map_point(*H, layout.corners_m[id][k]);
     for (int attempt = 0; attempt < 2 && inside(grey, marker.corners_px); ++attempt) {
       if (reads_as(grey, dictionary, marker, seen.border_bits)) return marker;
@@ -215,20 +215,20 @@ MarkerLayout layout_of(const AprilTagGrid& grid, int quarter_turns) {
   return layout;
 }
 
-SeenMarkers find_markers(const cv::Mat& grey, const MarkerLayout& layout) {
-  SeenMarkers best;
+DetectedMarkers find_markers(const cv::Mat& grey, const MarkerLayout& layout) {
+  DetectedMarkers best;
   for (const int border_bits : layout.border_bits) {
-    SeenMarkers seen = find_at(grey, layout, border_bits);
+    DetectedMarkers seen = find_at(grey, layout, border_bits);
     if (best.markers.empty() || seen.markers.size() > best.markers.size()) best = std::move(seen);
   }
   return best;
 }
 
-std::vector<SeenMarker> consistent_markers(const std::vector<SeenMarker>& markers,
-                                           const MarkerLayout& layout) {
+std::vector<DetectedMarker> consistent_markers(const std::vector<DetectedMarker>& markers,
+                                               const MarkerLayout& layout) {
   constexpr std::size_t asked = 4;
-  std::vector<SeenMarker> good;
-  for (const SeenMarker& marker : markers) {
+  std::vector<DetectedMarker> good;
+  for (const DetectedMarker& marker : markers) {
     const auto near = by_distance(markers, layout, centre(layout.corners_m[marker.id]));
     const std::size_t count = std::min(asked, near.size() - 1);
     std::size_t agreeing = 0;
@@ -240,7 +240,7 @@ std::vector<SeenMarker> consistent_markers(const std::vector<SeenMarker>& marker
   return good;
 }
 
-std::optional<Eigen::Matrix3d> homography_near(const std::vector<SeenMarker>& markers,
+std::optional<Eigen::Matrix3d> homography_near(const std::vector<DetectedMarker>& markers,
                                                const MarkerLayout& layout,
                                                const Eigen::Vector2d& point_m,
                                                std::size_t count,
@@ -256,10 +256,10 @@ std::optional<Eigen::Matrix3d> homography_near(const std::vector<SeenMarker>& ma
   return fit_homography(from, to);
 }
 
-void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, SeenMarkers& seen) {
+void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, DetectedMarkers& seen) {
   const auto dictionary = marker_dictionary(layout.dictionary);
   std::vector<bool> have(layout.corners_m.size(), false);
-  for (const SeenMarker& marker : seen.markers) have[marker.id] = true;
+  for (const DetectedMarker& marker : seen.markers) have[marker.id] = true;
   for (bool grown = true; grown;) {
     grown = false;
     for (int id = 0; id < static_cast<int>(have.size()); ++id) {
@@ -271,7 +271,7 @@ void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, SeenMar
     }
   }
   std::sort(seen.markers.begin(), seen.markers.end(),
-            [](const SeenMarker& a, const SeenMarker& b) { return a.id < b.id; });
+            [](const DetectedMarker& a, const DetectedMarker& b) { return a.id < b.id; });
 }
 
 }  // namespace vernier::internal

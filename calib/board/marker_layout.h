@@ -30,13 +30,13 @@ MarkerLayout layout_of(const CharucoBoard& board);
 /// turned further by `quarter_turns`.
 MarkerLayout layout_of(const AprilTagGrid& grid, int quarter_turns = 0);
 
-struct SeenMarker {
+struct DetectedMarker {
   int id = 0;
   MarkerCorners corners_px;
 };
 
-struct SeenMarkers {
-  std::vector<SeenMarker> markers;  ///< ascending by id, each id once
+struct DetectedMarkers {
+  std::vector<DetectedMarker> markers;  ///< ascending by id, each id once
   int border_bits = 1;
   int repeated = 0;   ///< ids left out because they were seen more than once
   int foreign = 0;    ///< ids left out because the board has none such
@@ -44,19 +44,19 @@ struct SeenMarkers {
 };
 
 /// All markers of the layout's dictionary, at whichever border shows more of them.
-SeenMarkers find_markers(const cv::Mat& grey, const MarkerLayout& layout);
+DetectedMarkers find_markers(const cv::Mat& grey, const MarkerLayout& layout);
 
 /// The markers at least half of whose up to four nearest neighbours lie where the layout has them.
-std::vector<SeenMarker> consistent_markers(const std::vector<SeenMarker>& markers,
-                                           const MarkerLayout& layout);
+std::vector<DetectedMarker> consistent_markers(const std::vector<DetectedMarker>& markers,
+                                               const MarkerLayout& layout);
 
 /// Adds markers of the layout that the detector missed (the squares between Kalibr's tags run into
 /// their outlines): predicted from those around, and taken where their pattern is read there.
-void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, SeenMarkers& seen);
+void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, DetectedMarkers& seen);
 
 /// The homography of the up to `count` markers nearest to a point of the board, all within
 /// `reach_m`; nothing where there is none.
-std::optional<Eigen::Matrix3d> homography_near(const std::vector<SeenMarker>& markers,
+std::optional<Eigen::Matrix3d> homography_near(const std::vector<DetectedMarker>& markers,
                                                const MarkerLayout& layout,
                                                const Eigen::Vector2d& point_m,
                                                std::size_t count,

@@ -43,8 +43,8 @@ std::optional<Eigen::Matrix3d> fit_homography(const std::vector<Eigen::Vector2d>
     A += rows.transpose() * rows;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(A);
-  constexpr double least_second = 1e-6;  // of the largest: below, the points lie on a line
-  if (eigen.eigenvalues()[1] < least_second * eigen.eigenvalues()[8]) return std::nullopt;
+  constexpr double min_second = 1e-6;  // of the largest: below, the points lie on a line
+  if (eigen.eigenvalues()[1] < min_second * eigen.eigenvalues()[8]) return std::nullopt;
   const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors().col(0);
   Eigen::Matrix3d H;
   H << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];

@@ -22,10 +22,10 @@ using namespace internal;
 
 namespace {
 
-constexpr auto source = static_cast<std::uint32_t>(DrawSource::simulated_board);
+constexpr auto board_source = static_cast<std::uint32_t>(DrawSource::simulated_board);
 
 /// The board centred near the rig's axis, tilted and turned.
-Pose draw_pose(Draws& draws,
+Pose draw_pose(RandomStream& draws,
                const Rig& rig,
                const Eigen::Vector3d& board_centre_m,
                const SimulatedBoardOptions& options) {
@@ -80,8 +80,10 @@ SimulatedBoard simulate_board(const Rig& rig,
   const Eigen::Vector3d centre =
       0.5 * (observations.target_m.front() + observations.target_m.back());
   for (int frame = 0; frame < options.frames; ++frame) {
-    Draws poses(
-        {.seed = seed, .feature = static_cast<std::uint32_t>(frame), .source = source, .eye = 3});
+    RandomStream poses({.seed = seed,
+                        .feature = static_cast<std::uint32_t>(frame),
+                        .source = board_source,
+                        .eye = 3});
     std::vector<BoardView> views;
     Pose T_first_board;
     for (int attempt = 0; views.size() != rig.cameras.size(); ++attempt) {
@@ -102,10 +104,10 @@ SimulatedBoard simulate_board(const Rig& rig,
     for (BoardView& view : views) {
       view.frame = frame;
       // feature: (frame, camera); the eye field would hold only four cameras
-      Draws noise({.seed = seed,
-                   .trial = trial,
-                   .feature = static_cast<std::uint32_t>(frame * 64 + view.camera),
-                   .source = source});
+      RandomStream noise({.seed = seed,
+                          .trial = trial,
+                          .feature = static_cast<std::uint32_t>(frame * 64 + view.camera),
+                          .source = board_source});
       for (auto& pixel : view.pixels_px) {
         pixel.x() += options.pixel_sigma_px * noise.normal();
         pixel.y() += options.pixel_sigma_px * noise.normal();

@@ -46,7 +46,7 @@ Parameters refined(Parameters a, const std::vector<PointPair>& points, double ne
 
 }  // namespace
 
-double share_on_bent_plane(const std::vector<PointPair>& points, double limit) {
+double fraction_on_distorted_plane(const std::vector<PointPair>& points, double limit) {
   std::vector<cv::Point2d> left, right;
   for (const PointPair& p : points) {
     left.emplace_back(p.left.x(), p.left.y());

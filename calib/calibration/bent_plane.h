@@ -15,6 +15,6 @@ struct PointPair {
 /// The share of points that one plane explains within `limit` (normalised units, in the right
 /// image), where each image may be bent by x (1 + c r²) besides: a homography, fitted robustly,
 /// then with the two c by least squares over what is near it. 0 where there is no homography.
-double share_on_bent_plane(const std::vector<PointPair>& points, double limit);
+double fraction_on_distorted_plane(const std::vector<PointPair>& points, double limit);
 
 }  // namespace vernier::internal

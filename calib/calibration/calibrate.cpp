@@ -15,8 +15,8 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/calibration_problem.h"
+#include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
-#include "calib/calibration/honest_covariance.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/residual_diagnosis.h"
@@ -53,10 +53,10 @@ struct Solution {
   BoardState state;
   std::vector<CornerOutlier> outliers;
   ReprojectionProblem problem;
-  ObservationDiagnosis said;   // of the observations, before they were solved
-  LinearisedCost cost;         // at the state
-  Eigen::MatrixXd bound;       // of what is free
-  double data_parameters = 0;  // how many of that the corners determine, tr(C S_data)
+  ObservationDiagnosis diagnosis;  // of the observations, before they were solved
+  LinearisedCost cost;             // at the state
+  Eigen::MatrixXd bound;           // of what is free
+  double data_parameters = 0;      // how many of that the corners determine, tr(C S_data)
 };
 
 /// The normal equations and the bound at the solution's state.
@@ -106,7 +106,7 @@ std::optional<Rig> with_richer_lenses(const Rig& rig) {
 }
 
 /// Views of one frame.
-std::vector<BoardView> views_of(const BoardObservations& observations, int frame) {
+std::vector<BoardView> views_in_frame(const BoardObservations& observations, int frame) {
   std::vector<BoardView> views;
   std::copy_if(observations.views.begin(), observations.views.end(), std::back_inserter(views),
                [&](const BoardView& view) { return view.frame == frame; });
@@ -148,7 +148,7 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
   for (std::size_t f = 0; f < whole.frames.size(); ++f) {
     const int frame = whole.frames[f];
     if (std::binary_search(fit.state.frames.begin(), fit.state.frames.end(), frame)) continue;
-    const std::vector<BoardView> views = views_of(s.observations, frame);
+    const std::vector<BoardView> views = views_in_frame(s.observations, frame);
     whole.T_first_board[f] =
         fit_board_pose(target_m, views, whole.rig, whole.T_first_board[f], 50).T_first_board;
   }
@@ -170,8 +170,9 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
     fit = std::move(*judged);
   }
   if (fit.outliers.empty()) return;
-  const auto cameras = cameras_left_out(s.observations, fit.inliers, s.state.rig);
-  s.said.doubts.insert(s.said.doubts.end(), cameras.begin(), cameras.end());
+  const auto cameras = overrejected_cameras(s.observations, fit.inliers, s.state.rig);
+  s.diagnosis.trust_warnings.insert(s.diagnosis.trust_warnings.end(), cameras.begin(),
+                                    cameras.end());
   if (!cameras.empty()) return;
   s.state = minimise_reprojection(fit.inliers, fit.state, s.problem);
   s.observations = std::move(fit.inliers);
@@ -204,11 +205,11 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
                 "give one model, or one a camera");
   }
   Solution s;
-  if (options.check_input) s.said = check_observations(observations);
+  if (options.check_input) s.diagnosis = check_observations(observations);
   s.state = initial_state(observations, models);
   if (options.check_input) {
     const bool free = options.held.empty() && options.known.empty() && !options.prior;
-    s.said.add(check_views(observations, s.state, {.tilts = free}));
+    s.diagnosis.add(check_views(observations, s.state, {.tilts = free}));
   }
   s.state.rig = with_held_values(s.state.rig, options.held);
   s.problem = problem_of(options, s.state.rig);
@@ -217,8 +218,8 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
     descend(s, options);
     linearise(s);
   } catch (const Error& error) {  // what was found before may be the reason
-    if (s.said.doubts.empty()) throw;
-    throw Error(error.what(), fmt::format("{}", fmt::join(s.said.doubts, "; ")), "");
+    if (s.diagnosis.trust_warnings.empty()) throw;
+    throw Error(error.what(), fmt::format("{}", fmt::join(s.diagnosis.trust_warnings, "; ")), "");
   }
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution
@@ -267,10 +268,10 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   summary.dof = static_cast<int>(std::lround(dof));
   summary.outliers = s.outliers;
   measure_outliers(s.observations.target_m, s.state, summary.outliers);
-  summary.warnings = s.said.warnings;
-  summary.doubts = s.said.doubts;
+  summary.warnings = s.diagnosis.warnings;
+  summary.trust_warnings = s.diagnosis.trust_warnings;
   if (summary.rms_px > largest_corner_noise_px) {
-    summary.doubts.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
+    summary.trust_warnings.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
   }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {
@@ -317,15 +318,15 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
 
 /// What the result says against itself, more strongly.
 void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimate& estimate) {
-  std::vector<std::string>& doubts = estimate.calibration->doubts;
+  std::vector<std::string>& trust_warnings = estimate.calibration->trust_warnings;
   const auto add = [&](const std::optional<std::string>& doubt) {
-    if (doubt) doubts.push_back(*doubt);
+    if (doubt) trust_warnings.push_back(*doubt);
   };
-  add(doubt_of_condition({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
+  add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
   const int clusters = options.white_noise ? 0 : estimate.calibration->views;
   for (const RigPrior& prior : s.problem.priors) {
-    add(doubt_of_prior(prior, estimate.rig, *estimate.covariance_mvb, estimate.covariance->matrix,
-                       clusters));
+    add(prior_conflict_warning(prior, estimate.rig, *estimate.covariance_mvb,
+                               estimate.covariance->matrix, clusters));
   }
 }
 
@@ -341,9 +342,9 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
     return s.cost.free * C * s.cost.free.transpose();
   };
   estimate.covariance_mvb = expand(s.bound);
-  const Covariance honest = options.white_noise
-                                ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
-                                : honest_covariance(s.cost.equations, s.bound, s.cost.names);
+  const Covariance honest =
+      options.white_noise ? Covariance{CovarianceKind::mvb, s.cost.names, s.bound}
+                          : cluster_robust_covariance(s.cost.equations, s.bound, s.cost.names);
   estimate.covariance = Covariance{honest.kind, names, expand(honest.matrix)};
   estimate.calibration = summary_of(s, options);
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
@@ -354,7 +355,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};
   if (options.prior) estimate.evidence->priors.push_back(*options.prior);
   if (!options.known.empty()) {
-    estimate.evidence->priors.push_back(knowledge_of(estimate.rig, options.known));
+    estimate.evidence->priors.push_back(gaussian_prior_of(estimate.rig, options.known));
   }
   return estimate;
 }

@@ -19,7 +19,7 @@
 #include "calib/held_parameters.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_difference.h"
 #include "calib/rig_estimate.h"
@@ -49,7 +49,7 @@ std::string kind_of(const CombineInput& input) {
 }
 
 /// The same knowledge but for the rounding of a file.
-bool same(const RigKnowledge& a, const RigKnowledge& b) {
+bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
   constexpr double rounding = 1e-9;
   if (a.covariance.names != b.covariance.names) return false;
   if (parameter_names(a.rig) != parameter_names(b.rig)) return false;
@@ -100,18 +100,18 @@ void refuse_repeated(const JointEvidence& so_far,
 }
 
 /// The priors of `more` that are not among `so_far`.
-std::vector<RigKnowledge> new_priors(const std::vector<RigKnowledge>& so_far,
-                                     const std::vector<RigKnowledge>& more) {
-  std::vector<RigKnowledge> added;
-  for (const RigKnowledge& prior : more) {
-    const auto is_same = [&](const RigKnowledge& p) { return same(p, prior); };
+std::vector<GaussianRigPrior> new_priors(const std::vector<GaussianRigPrior>& so_far,
+                                         const std::vector<GaussianRigPrior>& more) {
+  std::vector<GaussianRigPrior> added;
+  for (const GaussianRigPrior& prior : more) {
+    const auto is_same = [&](const GaussianRigPrior& p) { return same(p, prior); };
     if (std::none_of(so_far.begin(), so_far.end(), is_same)) added.push_back(prior);
   }
   return added;
 }
 
 void add(JointEvidence& to, const JointEvidence& more) {
-  const std::vector<RigKnowledge> priors = new_priors(to.priors, more.priors);
+  const std::vector<GaussianRigPrior> priors = new_priors(to.priors, more.priors);
   to.priors.insert(to.priors.end(), priors.begin(), priors.end());
   to.boards.insert(to.boards.end(), more.boards.begin(), more.boards.end());
   append(to.pairs, more.pairs);
@@ -134,47 +134,47 @@ void check_models(const Rig& first, const CombineInput& input) {
 }
 
 /// A joint calibration as a prior for what comes next.
-RigKnowledge knowledge_of(const JointCalibration& joint) {
-  return knowledge_of(joint.estimate, "combination");
+GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
+  return gaussian_prior_of(joint.estimate, "combination");
 }
 
 /// Pairs against what was known before them.
-PriorAgreement agreement_of_pairs(const RigKnowledge& before,
-                                  const PairObservations& pairs,
-                                  const CombineInput& input,
-                                  const JointOptions& options) {
+PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
+                                    const PairObservations& pairs,
+                                    const CombineInput& input,
+                                    const JointOptions& options) {
   // Against a prior so much wider that, wrong, it does not hold the rig away from the pairs; as it
   // is where they do not determine the rig against so little knowledge.
   constexpr double wider = 10;
-  RigKnowledge loose = before;
+  GaussianRigPrior loose = before;
   loose.covariance.matrix *= wider * wider;
   try {
     const JointCalibration with = calibrate_from_pairs(pairs, loose, options, input.name);
-    return agreement_with(before, with.estimate, wider);
+    return consistency_with(before, with.estimate, wider);
   } catch (const Error&) {
     const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
-    return agreement_with(before, with.estimate);
+    return consistency_with(before, with.estimate);
   }
 }
 
-PriorAgreement agreement_of_rigs(const RigKnowledge& before,
-                                 const RigEstimate& estimate,
-                                 const std::string& name) {
-  const RigDifference d = rig_difference(before.rig, whole_covariance(before), estimate.rig,
+PriorConsistency agreement_of_rigs(const GaussianRigPrior& before,
+                                   const RigEstimate& estimate,
+                                   const std::string& name) {
+  const RigDifference d = rig_difference(before.rig, full_covariance(before), estimate.rig,
                                          required_covariance(estimate, name));
-  PriorAgreement agreement{d.mahalanobis2, d.dof, 0, d.p_value, 0, ""};
+  PriorConsistency agreement{d.mahalanobis2, d.dof, 0, d.p_value, 0, ""};
   if (!d.directions.empty()) {
     agreement.in_sigma = std::abs(d.directions.front().in_sigma);
-    agreement.words = d.directions.front().words;
+    agreement.description = d.directions.front().description;
   }
   return agreement;
 }
 
-PriorAgreement agreement_of(const RigKnowledge& before,
-                            const JointEvidence& so_far,
-                            const CombineInput& input,
-                            const JointEvidence& evidence,
-                            const JointOptions& options) {
+PriorConsistency agreement_of(const GaussianRigPrior& before,
+                              const JointEvidence& so_far,
+                              const CombineInput& input,
+                              const JointEvidence& evidence,
+                              const JointOptions& options) {
   if (kind_of(input) == "pairs" && new_priors(so_far.priors, evidence.priors).empty()) {
     return agreement_of_pairs(before, evidence.pairs, input, options);
   }
@@ -183,7 +183,7 @@ PriorAgreement agreement_of(const RigKnowledge& before,
 
 /// Priors that are themselves calibrations: what they were made of may be among the inputs.
 void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) {
-  for (const RigKnowledge& prior : evidence.priors) {
+  for (const GaussianRigPrior& prior : evidence.priors) {
     if (prior.covariance.kind == CovarianceKind::prior) continue;
     summary.warnings.push_back(fmt::format(
         "a prior among the inputs is itself a calibration ({}): if what that was made of is "
@@ -209,19 +209,22 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   if (pairs.size() > 0 && combination.evidence.boards.empty()) {
     std::vector<bool> inlier(pairs.size(), true);
     for (const PairOutlier& out : summary.pair_outliers) inlier[out.row] = false;
-    const ObservationDiagnosis said =
+    const ObservationDiagnosis diagnosis =
         check_scene(selected(pairs, inlier), combination.joint.estimate.rig,
                     combination.joint.pair_sigma_scale);
-    summary.warnings.insert(summary.warnings.end(), said.warnings.begin(), said.warnings.end());
-    summary.doubts.insert(summary.doubts.end(), said.doubts.begin(), said.doubts.end());
+    summary.warnings.insert(summary.warnings.end(), diagnosis.warnings.begin(),
+                            diagnosis.warnings.end());
+    summary.trust_warnings.insert(summary.trust_warnings.end(), diagnosis.trust_warnings.begin(),
+                                  diagnosis.trust_warnings.end());
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const CombinedInput& input = combination.inputs[i];
     if (input.used && inputs[i].estimate && inputs[i].estimate->calibration) {
-      for (const std::string& doubt : inputs[i].estimate->calibration->doubts) {
-        const auto& said = summary.doubts;
-        const bool again = std::find(said.begin(), said.end(), doubt) != said.end();
-        if (!again && inputs.size() > 1) summary.doubts.push_back(input.name + ": " + doubt);
+      for (const std::string& doubt : inputs[i].estimate->calibration->trust_warnings) {
+        const auto& listed = summary.trust_warnings;
+        const bool again = std::find(listed.begin(), listed.end(), doubt) != listed.end();
+        if (!again && inputs.size() > 1)
+          summary.trust_warnings.push_back(input.name + ": " + doubt);
       }
     }
     if (input.used) {
@@ -234,10 +237,11 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
       continue;
     }
     if (input.agreement.dof == 0) {
-      summary.doubts.push_back(input.name + " was left out: " + input.agreement.words);
+      summary.trust_warnings.push_back(input.name +
+                                       " was left out: " + input.agreement.description);
       continue;
     }
-    summary.doubts.push_back(fmt::format(
+    summary.trust_warnings.push_back(fmt::format(
         "{} disagrees with what stands before it (chi² {:.1f} for {}, p {:.1g}) and was left out: "
         "the rig has changed, or one of them states too little uncertainty",
         input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
@@ -247,7 +251,7 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
 /// Parameters that no input may move: those that the first does not know.
 JointOptions with_held(JointOptions options, const CombineInput& first) {
   if (!first.estimate) return options;
-  for (const HeldParameter& held : held_by(knowledge_of(*first.estimate, first.name))) {
+  for (const HeldParameter& held : held_by(gaussian_prior_of(*first.estimate, first.name))) {
     options.held.push_back(held);
   }
   return options;
@@ -256,19 +260,19 @@ JointOptions with_held(JointOptions options, const CombineInput& first) {
 /// Evidence of the inputs, without priors that are another input's calibration: they are among the
 /// inputs themselves.
 std::vector<JointEvidence> evidence_of_all(const std::vector<CombineInput>& inputs) {
-  std::vector<RigKnowledge> calibrations;
+  std::vector<GaussianRigPrior> calibrations;
   std::vector<JointEvidence> all;
   for (const CombineInput& input : inputs) {
     all.push_back(evidence_of(input));
     const bool prior_only = all.back().boards.empty() && all.back().pairs.size() == 0;
     if (input.estimate && input.estimate->covariance && !prior_only) {
-      calibrations.push_back(knowledge_of(*input.estimate, input.name));
+      calibrations.push_back(gaussian_prior_of(*input.estimate, input.name));
     }
   }
   for (JointEvidence& evidence : all) {
-    std::erase_if(evidence.priors, [&](const RigKnowledge& prior) {
+    std::erase_if(evidence.priors, [&](const GaussianRigPrior& prior) {
       return std::any_of(calibrations.begin(), calibrations.end(),
-                         [&](const RigKnowledge& c) { return same(c, prior); });
+                         [&](const GaussianRigPrior& c) { return same(c, prior); });
     });
   }
   return all;
@@ -293,7 +297,7 @@ JointEvidence evidence_of(const CombineInput& input) {
   if (has_pairs(estimate)) evidence.pairs = estimate.evidence->pairs;
   if (estimate.evidence) evidence.priors = estimate.evidence->priors;
   if (!has_boards(estimate) && !has_pairs(estimate)) {
-    evidence.priors = {knowledge_of(estimate, input.name)};
+    evidence.priors = {gaussian_prior_of(estimate, input.name)};
   }
   return evidence;
 }
@@ -309,67 +313,67 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   Combination result;
   result.options = joint;
   const std::vector<JointEvidence> all = evidence_of_all(inputs);
-  std::optional<RigKnowledge> before;
+  std::optional<GaussianRigPrior> before;
   for (const CombineInput& input : inputs) {
     check_models(start, input);
     const JointEvidence& evidence = all[static_cast<std::size_t>(&input - inputs.data())];
-    CombinedInput& said = result.inputs.emplace_back();
-    said.name = input.name;
-    said.kind = kind_of(input);
+    CombinedInput& combined = result.inputs.emplace_back();
+    combined.name = input.name;
+    combined.kind = kind_of(input);
     refuse_repeated(result.evidence, evidence, start, input.name);
     if (before) {
       try {
-        said.agreement = agreement_of(*before, result.evidence, input, evidence, joint);
+        combined.agreement = agreement_of(*before, result.evidence, input, evidence, joint);
       } catch (const Error& error) {  // it tells nothing by itself, so it is not taken in
-        said.agreement = {0, 0, 0, 0, 0, error.what()};
+        combined.agreement = {0, 0, 0, 0, 0, error.what()};
       }
-      said.used = options.keep_disagreeing || said.agreement.p_value >= options.least_p;
-      if (!said.used) continue;
+      combined.used = options.keep_disagreeing || combined.agreement.p_value >= options.min_p;
+      if (!combined.used) continue;
     }
     add(result.evidence, evidence);
     if (&input == &inputs.back()) break;
     before = result.inputs.size() == 1
-                 ? knowledge_of(*input.estimate, input.name)
-                 : knowledge_of(calibrate_jointly(result.evidence, before->rig, joint));
+                 ? gaussian_prior_of(*input.estimate, input.name)
+                 : gaussian_prior_of(calibrate_jointly(result.evidence, before->rig, joint));
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
   judge(inputs, result);
   return result;
 }
 
-FilteredRig information_filter(const std::vector<CombineInput>& inputs,
-                               const Combination& batch,
-                               const CombineOptions& options) {
+InformationFilterResult information_filter(const std::vector<CombineInput>& inputs,
+                                           const Combination& batch,
+                                           const CombineOptions& options) {
   JointOptions joint = with_held(options.joint, inputs.front());
   joint.white_noise = true;
-  RigKnowledge known = knowledge_of(*inputs.front().estimate, inputs.front().name);
+  GaussianRigPrior known = gaussian_prior_of(*inputs.front().estimate, inputs.front().name);
   const RigEstimate& first = *inputs.front().estimate;
   if (first.covariance_mvb && has_boards(first)) {
     known.covariance.matrix =
         covariance_of_free(*first.covariance_mvb, first.rig, held_parameters(first));
   }
   const std::vector<JointEvidence> all = evidence_of_all(inputs);
-  std::vector<RigKnowledge> used = all.front().priors;
+  std::vector<GaussianRigPrior> used = all.front().priors;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     if (!batch.inputs[i].used) continue;
     JointEvidence evidence = all[i];
     evidence.priors = new_priors(used, evidence.priors);
     used.insert(used.end(), evidence.priors.begin(), evidence.priors.end());
     evidence.priors.push_back(known);
-    known = knowledge_of(calibrate_jointly(evidence, known.rig, joint));
+    known = gaussian_prior_of(calibrate_jointly(evidence, known.rig, joint));
   }
-  FilteredRig filtered{known.rig, known.covariance, 0, "", 1, ""};
+  InformationFilterResult filtered{known.rig, known.covariance, 0, "", 1, ""};
   const Eigen::MatrixXd& honest = batch.joint.estimate.covariance->matrix;
-  const Eigen::MatrixXd own = whole_covariance(known).matrix;
+  const Eigen::MatrixXd own = full_covariance(known).matrix;
   const Eigen::VectorXd d = difference(known.rig, batch.joint.estimate.rig);
   const Eigen::MatrixXd& C = *batch.joint.estimate.covariance_mvb;
   const std::vector<std::string> names = parameter_names(known.rig);
   for (Eigen::Index i = 0; i < d.size(); ++i) {
     if (!(C(i, i) > 0)) continue;
     const double ratio = std::sqrt(own(i, i) / honest(i, i));
-    if (ratio < filtered.least_sigma_ratio) {
-      filtered.least_sigma_ratio = ratio;
-      filtered.least_parameter = names[static_cast<std::size_t>(i)];
+    if (ratio < filtered.min_sigma_ratio) {
+      filtered.min_sigma_ratio = ratio;
+      filtered.min_parameter = names[static_cast<std::size_t>(i)];
     }
     const double in_sigma = std::abs(d[i]) / std::sqrt(C(i, i));
     if (in_sigma <= filtered.worst_in_sigma) continue;

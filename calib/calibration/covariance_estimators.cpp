@@ -32,7 +32,6 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
                     describe_direction(eigen.eigenvectors().col(0), names),
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }
-  const auto n = diagonal.size();
   const Eigen::MatrixXd inverse = Cholesky(scaled).inverse();
   const Eigen::MatrixXd C = scale.asDiagonal() * inverse * scale.asDiagonal();
   return 0.5 * (C + C.transpose());

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "calib/board_state.h"
+#include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
-#include "calib/calibration/honest_covariance.h"
 #include "calib/calibration/joint_minimum.h"
 #include "calib/calibration/merged_boards.h"
 #include "calib/calibration/observation_checks.h"
@@ -23,7 +23,7 @@
 #include "calib/held_parameters.h"
 #include "calib/observability.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -90,7 +90,7 @@ std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
 }
 
 /// The prior's χ² of the parameters that are held elsewhere than it has them, and their number.
-std::pair<double, int> of_held(const RigKnowledge& prior, const JointMinimum& joint) {
+std::pair<double, int> of_held(const GaussianRigPrior& prior, const JointMinimum& joint) {
   const std::vector<std::string> all = parameter_names(joint.state.rig);
   const Eigen::VectorXd x = parameters(joint.state.rig), mean = parameters(prior.rig);
   const std::vector<std::string> own = parameter_names(prior.rig);
@@ -156,14 +156,14 @@ void warn(const JointCalibration& joint,
           CalibrationSummary& summary) {
   const std::size_t out = summary.pair_outliers.size();
   if (3 * out > pairs) {
-    summary.doubts.push_back(fmt::format(
+    summary.trust_warnings.push_back(fmt::format(
         "{} of {} pairs were left out as outliers: the matches are poor, or the rig is not one",
         out, pairs));
   } else if (out > 0) {
     summary.warnings.push_back(fmt::format("{} of {} pairs were left out as outliers", out, pairs));
   }
   if (joint.observability && static_cast<double>(pairs) < 3 * joint.observability->from_data) {
-    summary.doubts.push_back(fmt::format(
+    summary.trust_warnings.push_back(fmt::format(
         "{} pairs are few for the {:.1f} parameters they determine: neither their noise nor wrong "
         "ones among them can be told; match more corners",
         pairs, joint.observability->from_data));
@@ -171,7 +171,7 @@ void warn(const JointCalibration& joint,
   const double scale = joint.pair_sigma_scale;
   if (fixed_scale == 0 && pairs > 0 && scale > 2) {
     constexpr double incredible = 5;
-    (scale > incredible ? summary.doubts : summary.warnings)
+    (scale > incredible ? summary.trust_warnings : summary.warnings)
         .push_back(fmt::format(
             "the residuals of the pairs are {:.2g} times as large as the noise they state: they "
             "are not of one rig, the prior holds the rig away from them, or their noise is larger; "
@@ -186,7 +186,7 @@ void warn(const JointCalibration& joint,
   if (summary.prior_dof > 0) {  // shrunk by the data's pull: no right prior exceeds it more often
     const double p = chi_squared_survival(summary.prior_chi2, summary.prior_dof);
     if (p < 1e-4) {
-      summary.doubts.push_back(fmt::format(
+      summary.trust_warnings.push_back(fmt::format(
           "the data move the rig farther from what was known than that allows (chi² {:.1f} for {}, "
           "p {:.1g}): the prior is of another rig or states too little uncertainty, or the data "
           "are wrong",
@@ -198,7 +198,7 @@ void warn(const JointCalibration& joint,
         "fewer than three views: the covariance is the minimum variance bound, which is too small "
         "on real images");
   }
-  if (joint.observability && joint.observability->mostly_prior()) {
+  if (joint.observability && joint.observability->is_prior_dominated()) {
     summary.warnings.push_back(fmt::format(
         "the answer is mostly what was known before the pairs: they determine {:.1f} "
         "of {} parameters",
@@ -220,7 +220,7 @@ JointMinimum start_of(const JointEvidence& evidence,
   joint.cost.held = held_mask(start, options.held);
   joint.cost.pairs = evidence.pairs;
   joint.packed = PackedPairs(evidence.pairs);
-  for (const RigKnowledge& prior : evidence.priors) {
+  for (const GaussianRigPrior& prior : evidence.priors) {
     joint.cost.priors.push_back(rig_prior(start, prior));
   }
   return joint;
@@ -252,9 +252,9 @@ int clusters_of(const RigEstimate& estimate) {
 
 }  // namespace
 
-PriorAgreement agreement_with(const RigKnowledge& prior,
-                              const RigEstimate& estimate,
-                              double looseness) {
+PriorConsistency consistency_with(const GaussianRigPrior& prior,
+                                  const RigEstimate& estimate,
+                                  double looseness) {
   const Rig& rig = estimate.rig;
   const std::vector<std::string> all = parameter_names(rig);
   if (parameter_names(prior.rig) != all) return {};
@@ -267,7 +267,7 @@ PriorAgreement agreement_with(const RigKnowledge& prior,
     if (is_known) (held[i] ? given : free).push_back(static_cast<Eigen::Index>(i));
   }
   const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
-  const Eigen::MatrixXd C = V * whole_covariance(prior).matrix * V.transpose();
+  const Eigen::MatrixXd C = V * full_covariance(prior).matrix * V.transpose();
   const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
   Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
@@ -277,13 +277,13 @@ PriorAgreement agreement_with(const RigKnowledge& prior,
     offset -= by_given * (white * moved(given));
     covariance -= by_given * by_given.transpose();
   }
-  return prior_agreement(offset, free_names(rig, held), covariance,
-                         covariance_of_free(*estimate.covariance_mvb, rig, held),
-                         covariance_of_free(estimate.covariance->matrix, rig, held),
-                         clusters_of(estimate), looseness);
+  return prior_consistency(offset, free_names(rig, held), covariance,
+                           covariance_of_free(*estimate.covariance_mvb, rig, held),
+                           covariance_of_free(estimate.covariance->matrix, rig, held),
+                           clusters_of(estimate), looseness);
 }
 
-std::vector<HeldParameter> held_by(const RigKnowledge& prior) {
+std::vector<HeldParameter> held_by(const GaussianRigPrior& prior) {
   std::vector<HeldParameter> held;
   const std::vector<std::string> names = parameter_names(prior.rig);
   const Eigen::VectorXd a = parameters(prior.rig);
@@ -300,9 +300,9 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
                                    const JointOptions& options) {
   JointMinimum joint = start_of(evidence, start, options);
   if (options.reject_outliers && evidence.pairs.size() > 0) {
-    minimise_robustly(joint, options.pair_sigma_scale);
+    minimise_robust(joint, options.pair_sigma_scale);
   } else {
-    minimise_plainly(joint, options.pair_sigma_scale);
+    minimise_least_squares(joint, options.pair_sigma_scale);
   }
   const Eigen::MatrixXd free = free_directions(joint.state.rig, joint.cost.held);
   const std::vector<std::string> names = free_names(joint.state.rig, joint.cost.held);
@@ -316,7 +316,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   if (clusters == 0) {
     honest.kind = CovarianceKind::combined;  // of priors
   } else if (!options.white_noise && clusters >= 3) {
-    honest = honest_covariance(robust, minimum_variance_bound(robust, names), names);
+    honest = cluster_robust_covariance(robust, minimum_variance_bound(robust, names), names);
   }
   const auto expand = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
     return free * C * free.transpose();
@@ -333,7 +333,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   for (const HeldParameter& held : options.held) {
     estimate.calibration->held.push_back(held.name);
   }
-  if (joint.boards.bends_taken_as_known) {
+  if (joint.boards.warps_assumed_known) {
     estimate.calibration->warnings.push_back(
         "the views are of different boards, and the bend each was found to have is taken as known");
   }
@@ -346,7 +346,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 }
 
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
-                                      const RigKnowledge& prior,
+                                      const GaussianRigPrior& prior,
                                       const JointOptions& options,
                                       const std::string& place) {
   check_pairs(pairs, prior.rig, place);
@@ -372,30 +372,33 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                 fmt::format("{} pairs for {} free parameters", pairs.size(), free),
                 "match more corners, or hold parameters");
   }
-  check_sides(pairs, prior.rig, whole_covariance(prior).matrix, place);
+  check_sides(pairs, prior.rig, full_covariance(prior).matrix, place);
   JointEvidence evidence;
   evidence.priors.push_back(prior);
   evidence.pairs = pairs;
   JointCalibration result = calibrate_jointly(evidence, prior.rig, with_held);
   std::vector<bool> inlier(pairs.size(), true);
   for (const PairOutlier& out : result.estimate.calibration->pair_outliers) inlier[out.row] = false;
-  const ObservationDiagnosis said =
+  const ObservationDiagnosis diagnosis =
       check_scene(selected(pairs, inlier), result.estimate.rig, result.pair_sigma_scale);
   auto& summary = *result.estimate.calibration;
-  const PriorAgreement agreement = agreement_with(prior, result.estimate);
+  const PriorConsistency agreement = consistency_with(prior, result.estimate);
   if (agreement.p_value < 1e-4) {
-    summary.doubts.push_back(fmt::format(
+    summary.trust_warnings.push_back(fmt::format(
         "pairs and prior disagree (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma where {}): the rig "
         "has changed, or one of them states too little uncertainty",
-        agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma, agreement.words));
+        agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma,
+        agreement.description));
   }
   if (!unlisted.empty()) {
     summary.warnings.push_back(
         fmt::format("held as known exactly, since the prior gives them no variance: {}",
                     fmt::join(unlisted, ", ")));
   }
-  summary.warnings.insert(summary.warnings.begin(), said.warnings.begin(), said.warnings.end());
-  summary.doubts.insert(summary.doubts.begin(), said.doubts.begin(), said.doubts.end());
+  summary.warnings.insert(summary.warnings.begin(), diagnosis.warnings.begin(),
+                          diagnosis.warnings.end());
+  summary.trust_warnings.insert(summary.trust_warnings.begin(), diagnosis.trust_warnings.begin(),
+                                diagnosis.trust_warnings.end());
   return result;
 }
 

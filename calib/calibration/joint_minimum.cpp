@@ -29,7 +29,7 @@ namespace {
 
 constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
 constexpr int huber_rounds = 12, tukey_rounds = 40;
-constexpr double least_scale = 0.01;  // of the stated noise: no corner is better than that
+constexpr double min_scale = 0.01;  // of the stated noise: no corner is better than that
 
 double median_length(std::vector<double> values) {
   for (double& v : values) v = std::abs(v);
@@ -122,9 +122,9 @@ ReducedNormalEquations board_equations(const JointMinimum& joint) {
   return bends ? without_warp(sum) : sum;
 }
 
-void minimise_robustly(JointMinimum& joint, double fixed_scale) {
+void minimise_robust(JointMinimum& joint, double fixed_scale) {
   const auto median_scale = [&] {
-    return std::max(least_scale, median_length(joint.residuals) / normal_median);
+    return std::max(min_scale, median_length(joint.residuals) / normal_median);
   };
   joint.residuals = joint.packed.residuals(joint.state.rig);
   joint.cost.must_converge = false;  // before the weights have settled
@@ -156,7 +156,7 @@ void minimise_robustly(JointMinimum& joint, double fixed_scale) {
   minimise(joint);
 }
 
-void minimise_plainly(JointMinimum& joint, double fixed_scale) {
+void minimise_least_squares(JointMinimum& joint, double fixed_scale) {
   joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
   constexpr int polish_rounds = 2;  // Ceres stops where χ² falls no more: 1e-6 σ off
   for (int round = 0; round < 20; ++round) {
@@ -169,7 +169,7 @@ void minimise_plainly(JointMinimum& joint, double fixed_scale) {
     for (const double r : joint.residuals) squares += r * r;
     const double dof =
         std::max(1.0, static_cast<double>(joint.residuals.size()) - determined_by_pairs(joint));
-    const double scale = std::max(least_scale, std::sqrt(squares / dof));
+    const double scale = std::max(min_scale, std::sqrt(squares / dof));
     if (std::abs(scale / joint.cost.pair_sigma_scale - 1) < 1e-9) return;
     joint.cost.pair_sigma_scale = scale;
   }

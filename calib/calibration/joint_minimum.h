@@ -29,10 +29,10 @@ struct JointMinimum {
 
 /// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
 /// The scale of the pairs' noise is `fixed_scale`, or where that is 0 comes from their residuals.
-void minimise_robustly(JointMinimum& joint, double fixed_scale);
+void minimise_robust(JointMinimum& joint, double fixed_scale);
 
 /// Least squares, with the scale likewise.
-void minimise_plainly(JointMinimum& joint, double fixed_scale);
+void minimise_least_squares(JointMinimum& joint, double fixed_scale);
 
 /// The equations of the boards at the state, in all parameters of the rig; a bend that is free is
 /// common to them.

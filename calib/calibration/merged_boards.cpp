@@ -50,7 +50,7 @@ bool take_one_board(const std::vector<BoardTerm>& terms, MergedBoards& merged) {
   const bool bent = std::any_of(terms.begin(), terms.end(), is_bent);
   for (const BoardTerm& term : terms) {
     if (term.evidence.observations.target_m == terms[0].evidence.observations.target_m) continue;
-    merged.bends_taken_as_known = bent;
+    merged.warps_assumed_known = bent;
     return false;
   }
   if (!bent) return true;

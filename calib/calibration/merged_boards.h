@@ -23,7 +23,7 @@ struct MergedBoards {
   std::vector<std::vector<double>> corner_weights;  ///< in [0, 1], or empty
   double pixel_sigma_px = 1;                        ///< of weight 1
   BoardWarp warp = BoardWarp::known;
-  bool bends_taken_as_known = false;  ///< of different boards, one of them bent
+  bool warps_assumed_known = false;  ///< of different boards, one of them bent
   struct Part {
     std::size_t first_frame = 0, frames = 0;
   };

@@ -44,7 +44,7 @@ void check_grids(const BoardObservations& observations,
     if (homographies[i].rms_px <= std::max(grid_misfit_px, grid_misfit_spacings * spacing))
       continue;
     throw Error(
-        place_of(observations.views[i]),
+        view_label(observations.views[i]),
         fmt::format("its corners do not lie like those of a flat board (they miss by {:.0f} px, at "
                     "{:.0f} px from corner to corner)",
                     homographies[i].rms_px, spacing),
@@ -77,8 +77,8 @@ void check_mirrored(const BoardObservations& observations,
   std::map<int, std::pair<int, int>> of_camera;  // mirrored, all
   for (std::size_t i = 0; i < homographies.size(); ++i) {
     auto& [wrong, all] = of_camera[observations.views[i].camera];
-    const bool front = homographies[i].seen_from_front;
-    (front ? others : mirrored).push_back(place_of(observations.views[i]));
+    const bool front = homographies[i].is_front_facing;
+    (front ? others : mirrored).push_back(view_label(observations.views[i]));
     ++all;
     wrong += !front;
   }
@@ -88,7 +88,7 @@ void check_mirrored(const BoardObservations& observations,
       "numbering round";
   if (others.empty()) {
     if (!evenly_spaced(observations.target_m)) return;
-    diagnosis.doubts.push_back(
+    diagnosis.trust_warnings.push_back(
         "every view shows the board mirrored (its corners run right to left or bottom to top): if "
         "the images are mirrored, so is the rig; " +
         cure);
@@ -116,13 +116,13 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
       if (!one_camera && views[i].frame != views[j].frame) continue;
       const CornerDifference d = corner_difference(views[i], views[j], repeated_view_px);
       if (!one_camera && d.rms_px < same_cameras_px) {
-        throw Error(place_of(views[i]) + " and camera " + std::to_string(views[j].camera),
+        throw Error(view_label(views[i]) + " and camera " + std::to_string(views[j].camera),
                     fmt::format("the images are the same (their corners differ by {:.2g} px)",
                                 d.largest_px),
                     "give the other camera's own image");
       }
       if (one_camera && d.largest_px < same_image_px) {
-        throw Error(place_of(views[j]),
+        throw Error(view_label(views[j]),
                     fmt::format("it is the same view as frame {} (their corners differ by {:.2g} "
                                 "px), and counting it twice would make the rig look better known "
                                 "than it is",
@@ -142,7 +142,7 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
 }
 
 /// Between the first point and the nearest of the others.
-double least_side_m(const std::vector<Eigen::Vector3d>& target_m) {
+double min_side_m(const std::vector<Eigen::Vector3d>& target_m) {
   double least = INFINITY;
   for (std::size_t i = 1; i < target_m.size(); ++i) {
     least = std::min(least, (target_m[i] - target_m[0]).norm());
@@ -159,7 +159,7 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
     }
     const Eigen::Vector2d size = observations.size_px[c].cast<double>();
     if ((farthest.array() < 0.52 * size.array()).all()) {
-      diagnosis.doubts.push_back(
+      diagnosis.trust_warnings.push_back(
           fmt::format("camera {}: no corner lies beyond ({:.0f}, {:.0f}) of an image of {:.0f}x"
                       "{:.0f}: check the image size, or show the board in all of the image",
                       c, farthest.x(), farthest.y(), size.x(), size.y()));
@@ -172,8 +172,8 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
   }
   const double extent = (high - low).maxCoeff();
   if (extent > 20 || extent < 0.005) {
-    const double side = least_side_m(observations.target_m);
-    diagnosis.doubts.push_back(
+    const double side = min_side_m(observations.target_m);
+    diagnosis.trust_warnings.push_back(
         fmt::format("the board measures {:.3g} m, its points stand {:.3g} m apart: did you mean "
                     "{:.3g}? Lengths "
                     "are in metres, and views of one board cannot show a wrong scale",
@@ -205,10 +205,11 @@ void count_unpaired(const BoardObservations& observations, ObservationDiagnosis&
 
 void ObservationDiagnosis::add(const ObservationDiagnosis& more) {
   warnings.insert(warnings.end(), more.warnings.begin(), more.warnings.end());
-  doubts.insert(doubts.end(), more.doubts.begin(), more.doubts.end());
+  trust_warnings.insert(trust_warnings.end(), more.trust_warnings.begin(),
+                        more.trust_warnings.end());
 }
 
-std::string place_of(const BoardView& view) {
+std::string view_label(const BoardView& view) {
   return fmt::format("frame {}, camera {}", view.frame, view.camera) +
          (view.image.empty() ? "" : " (" + view.image + ")");
 }

@@ -12,8 +12,8 @@ namespace vernier::internal {
 
 /// What a check of observations has to say that is no proof against them.
 struct ObservationDiagnosis {
-  std::vector<std::string> warnings;  ///< good to know; the result stands
-  std::vector<std::string> doubts;    ///< the result may be wrong, and what to do
+  std::vector<std::string> warnings;        ///< good to know; the result stands
+  std::vector<std::string> trust_warnings;  ///< the result may be wrong, and what to do
 
   void add(const ObservationDiagnosis& more);
 };
@@ -33,7 +33,7 @@ struct ObservationDiagnosis {
 ObservationDiagnosis check_observations(const BoardObservations& observations);
 
 /// "frame 3, camera 1 (right03.png)".
-std::string place_of(const BoardView& view);
+std::string view_label(const BoardView& view);
 
 /// "3, 5 and 9"; of many the first few and how many more.
 std::string list_of(const std::vector<std::string>& names);

@@ -30,7 +30,7 @@ namespace {
 
 using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
 
-constexpr double least_sigma_px = 1e-6;  // residuals below are rounding
+constexpr double min_sigma_px = 1e-6;  // residuals below are rounding
 
 /// Robust standard deviation of a coordinate, one a camera: lenses and images differ.
 std::vector<double> camera_sigmas(const BoardObservations& observations,
@@ -41,7 +41,7 @@ std::vector<double> camera_sigmas(const BoardObservations& observations,
   }
   std::vector<double> sigmas;
   for (const CornerResiduals& own : of_camera) {
-    sigmas.push_back(std::max(least_sigma_px, robust_pixel_sigma(own)));
+    sigmas.push_back(std::max(min_sigma_px, robust_pixel_sigma(own)));
   }
   return sigmas;
 }
@@ -145,7 +145,7 @@ bool some_view_stands_out(const BoardObservations& observations, const BoardStat
   }
   return std::any_of(rms.begin(), rms.end(), [](const std::vector<double>& own) {
     return !own.empty() &&
-           *std::max_element(own.begin(), own.end()) > 3 * std::max(least_sigma_px, median(own));
+           *std::max_element(own.begin(), own.end()) > 3 * std::max(min_sigma_px, median(own));
   });
 }
 
@@ -169,8 +169,8 @@ RobustFit separated(const BoardObservations& observations,
       inlier.ids.push_back(view.ids[i]);
       inlier.pixels_px.push_back(view.pixels_px[i]);
     }
-    const bool keep =
-        2 * inlier.ids.size() >= view.ids.size() && fixes_pose(observations.target_m, inlier.ids);
+    const bool keep = 2 * inlier.ids.size() >= view.ids.size() &&
+                      determines_pose(observations.target_m, inlier.ids);
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
       if (keep && !out[v][i]) continue;
       fit.outliers.push_back(
@@ -228,9 +228,9 @@ RobustFit outliers_at(const BoardObservations& observations,
   return fit;
 }
 
-std::vector<std::string> cameras_left_out(const BoardObservations& observations,
-                                          const BoardObservations& inliers,
-                                          const Rig& rig) {
+std::vector<std::string> overrejected_cameras(const BoardObservations& observations,
+                                              const BoardObservations& inliers,
+                                              const Rig& rig) {
   std::vector<std::string> words;
   for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
     std::set<int> kept;

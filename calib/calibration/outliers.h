@@ -53,9 +53,9 @@ RobustFit outliers_at(const BoardObservations& observations,
 
 /// Cameras that would lose more than half of their views, in words: with so many wrong, those that
 /// are left decide nothing. Empty where there is none.
-std::vector<std::string> cameras_left_out(const BoardObservations& observations,
-                                          const BoardObservations& inliers,
-                                          const Rig& rig);
+std::vector<std::string> overrejected_cameras(const BoardObservations& observations,
+                                              const BoardObservations& inliers,
+                                              const Rig& rig);
 
 /// Sets how far outliers lie from where `state` predicts them: not a number where it does not have
 /// their frame.

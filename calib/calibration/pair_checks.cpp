@@ -135,7 +135,8 @@ bool on_a_plane(const PairObservations& pairs,
   }
   if (points.size() < fewest_pairs) return false;
   // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
-  return share_on_bent_plane(points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5) / f) >= 0.95;
+  return fraction_on_distorted_plane(points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5) / f) >=
+         0.95;
 }
 
 void check_rays(const PairObservations& pairs, const Rig& rig, const std::string& place) {
@@ -193,17 +194,17 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
     ++judged;
     flat += on_a_plane(pairs, image, rig, sigma_scale);
   }
-  ObservationDiagnosis said;
+  ObservationDiagnosis diagnosis;
   if (judged > 0 && flat == judged) {
-    said.doubts.push_back(
+    diagnosis.trust_warnings.push_back(
         "the corners of every image pair lie on one plane, or too far away for parallax: they "
         "leave more of the rig to the prior; take images of a scene with depth");
   } else if (2 * flat > judged) {
-    said.warnings.push_back(fmt::format(
+    diagnosis.warnings.push_back(fmt::format(
         "in {} of {} image pairs all corners lie on one plane, or too far away for parallax", flat,
         judged));
   }
-  return said;
+  return diagnosis;
 }
 
 }  // namespace vernier::internal

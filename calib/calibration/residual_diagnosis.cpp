@@ -74,7 +74,7 @@ class Diagnosis {
     look_at_time();
     look_at_images();
     look_at_cameras();
-    std::erase_if(findings_, [&](const auto& f) { return f.share < options_.least_share; });
+    std::erase_if(findings_, [&](const auto& f) { return f.share < options_.min_share; });
     std::stable_sort(findings_.begin(), findings_.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
     look_at_pixels();
@@ -249,7 +249,7 @@ class Diagnosis {
     std::sort(poor.rbegin(), poor.rend());
     std::vector<std::string> names;
     for (const auto& [px, v] : poor) {
-      names.push_back(fmt::format("{} ({:.1f} px)", place_of(observations_.views[v]), px));
+      names.push_back(fmt::format("{} ({:.1f} px)", view_label(observations_.views[v]), px));
     }
     findings_.push_back(
         {poor_sum / sum_px2_,
@@ -297,7 +297,7 @@ class Diagnosis {
     std::map<std::pair<int, int>, std::pair<std::string, int>> out;  // by frame, camera
     for (const CornerOutlier& corner : options_.outliers) {
       auto& [image, count] = out[{corner.frame, corner.camera}];
-      image = place_of({corner.frame, corner.camera, corner.image, {}, {}});
+      image = view_label({corner.frame, corner.camera, corner.image, {}, {}});
       ++count;
     }
     std::vector<std::string> whole;

@@ -21,7 +21,7 @@ struct ResidualFinding {
 struct ResidualDiagnosisOptions {
   std::vector<CornerOutlier> outliers;  ///< corners already left out
   int images_without_board = 0;         ///< images in which no board was found
-  double least_share = 0.2;             ///< findings that account for less are not worth a word
+  double min_share = 0.2;               ///< findings that account for less are not worth a word
 };
 
 /// Where the misfit of a solved calibration sits, the finding that accounts for most first:

@@ -14,20 +14,20 @@
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/opencv_models.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {
 
-std::optional<std::string> doubt_of_condition(const Covariance& bound, const Rig& rig) {
+std::optional<std::string> ill_conditioning_warning(const Covariance& bound, const Rig& rig) {
   if (bound.matrix.rows() == 0) return {};
   double condition = INFINITY;
   std::string words;
   try {
     const ScaledDecomposition decomposition(bound);
     condition = decomposition.scaled_condition();
-    words = decomposition.directions().front().words;
+    words = decomposition.directions().front().description;
   } catch (const Error&) {  // not even positive any more
   }
   if (condition <= largest_scaled_condition) return {};
@@ -42,12 +42,12 @@ std::optional<std::string> doubt_of_condition(const Covariance& bound, const Rig
               : "use a model with fewer parameters, or add tilted views that fill the image");
 }
 
-std::optional<std::string> doubt_of_prior(const RigPrior& prior,
-                                          const Rig& rig,
-                                          const Eigen::MatrixXd& bound,
-                                          const Eigen::MatrixXd& honest,
-                                          int clusters) {
-  constexpr double least_p = 1e-4;
+std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
+                                                  const Rig& rig,
+                                                  const Eigen::MatrixXd& bound,
+                                                  const Eigen::MatrixXd& honest,
+                                                  int clusters) {
+  constexpr double min_p = 1e-4;
   std::vector<Eigen::Index> known;
   for (Eigen::Index i = 0; i < bound.rows(); ++i) {
     if (prior.information(i, i) > 0 && bound(i, i) > 0) known.push_back(i);
@@ -57,14 +57,14 @@ std::optional<std::string> doubt_of_prior(const RigPrior& prior,
   for (const Eigen::Index i : known) names.push_back(parameter_names(rig)[i]);
   const Eigen::VectorXd offset = difference(rig, prior.mean)(known);
   const Eigen::MatrixXd before = prior.information(known, known).inverse();
-  PriorAgreement agreement;
+  PriorConsistency agreement;
   try {
-    agreement =
-        prior_agreement(offset, names, before, bound(known, known), honest(known, known), clusters);
+    agreement = prior_consistency(offset, names, before, bound(known, known), honest(known, known),
+                                  clusters);
   } catch (const Error&) {  // a prior that no double can invert says nothing here
     return {};
   }
-  if (agreement.dof == 0 || agreement.p_value >= least_p) return {};
+  if (agreement.dof == 0 || agreement.p_value >= min_p) return {};
   Eigen::Index most = 0;
   const double sigmas = (offset.array() / before.diagonal().array().sqrt()).abs().maxCoeff(&most);
   return fmt::format(

@@ -19,15 +19,15 @@ namespace vernier::internal {
 inline constexpr double largest_scaled_condition = 1e11;
 
 /// Do the views determine the rig's free parameters? `bound` is over these.
-std::optional<std::string> doubt_of_condition(const Covariance& bound, const Rig& rig);
+std::optional<std::string> ill_conditioning_warning(const Covariance& bound, const Rig& rig);
 
-/// Do data and prior contradict each other, at p < 1e-4 (calib/prior_agreement.h)? `bound` and
+/// Do data and prior contradict each other, at p < 1e-4 (calib/prior_consistency.h)? `bound` and
 /// `honest` are over all parameters of the rig, zero where one is held; `clusters` as there. Names
 /// the parameter that moved most in the prior's standard deviations.
-std::optional<std::string> doubt_of_prior(const RigPrior& prior,
-                                          const Rig& rig,
-                                          const Eigen::MatrixXd& bound,
-                                          const Eigen::MatrixXd& honest,
-                                          int clusters);
+std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
+                                                  const Rig& rig,
+                                                  const Eigen::MatrixXd& bound,
+                                                  const Eigen::MatrixXd& honest,
+                                                  int clusters);
 
 }  // namespace vernier::internal

@@ -26,7 +26,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr double parallel_rad = 0.07, undetermined = 0.2, doubtful = 0.05;
+constexpr double parallel_rad = 0.07, undetermined = 0.2, untrusted = 0.05;
 constexpr double nearly_parallel_rad = 0.15;  // with too few distinct tilts
 constexpr const char* cure = "tilt the board by 20 to 45 degrees about both axes in several views";
 
@@ -124,12 +124,12 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
                               alone.normals.size(), tilts, tilts == 1 ? "" : "s"),
                   cure);
     }
-    if (known_to < doubtful) continue;
+    if (known_to < untrusted) continue;
     const std::string fault = fmt::format(
         "the boards are tilted too little to tell the focal length (to {:.0f} % at best)",
         100 * std::min(known_to, 10.0));
     if (known_to > undetermined) throw Error(place, fault, cure);
-    diagnosis.doubts.push_back(place + ": " + fault + "; " + cure);
+    diagnosis.trust_warnings.push_back(place + ": " + fault + "; " + cure);
   }
   return diagnosis;
 }

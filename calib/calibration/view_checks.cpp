@@ -40,7 +40,7 @@ Agreement agreement(const PairConsensus& consensus, PairReading reading) {
     const double together = consensus.together_px(i, reading, result.rig);
     result.together_px.push_back(together);
     result.fits.push_back(consensus.fits(i, together));
-    result.gross += consensus.misfits_grossly(together);
+    result.gross += consensus.is_gross_misfit(together);
     result.count += result.fits.back();
   }
   return result;
@@ -68,7 +68,7 @@ int odd_one(const PairConsensus& consensus, std::size_t index, const std::vector
 std::string image_place(const BoardView& view, int camera) {
   BoardView named = view;
   named.camera = camera;
-  return place_of(named);
+  return view_label(named);
 }
 
 std::string and_more(std::size_t more) {
@@ -96,7 +96,7 @@ class PairCheck {
     if (n < 2) return;
     const Agreement as_is = agreement(consensus_, PairReading::as_is);
     if (as_is.count == n) return;
-    if (consensus_.can_turn()) complain_if_turned_throughout(as_is.count);
+    if (consensus_.has_half_turn_ambiguity()) complain_if_turned_throughout(as_is.count);
     if (2 * as_is.count >= n) {
       complain_of_frames(as_is, diagnosis);
     } else {
@@ -143,7 +143,7 @@ class PairCheck {
         agreeing, n);
     const std::string cure = "check the pairing; hold the board still or trigger both at once";
     if (n >= 4) throw Error(cameras(), fault, cure);
-    diagnosis.doubts.push_back(cameras() + ": " + fault + "; " + cure);
+    diagnosis.trust_warnings.push_back(cameras() + ": " + fault + "; " + cure);
   }
 
   void complain_of_frames(const Agreement& as_is, ObservationDiagnosis& diagnosis) const {
@@ -157,11 +157,11 @@ class PairCheck {
         if (helps) list.push_back({i, together, px});
         return helps;
       };
-      if (consensus_.can_turn() && repaired(PairReading::turned, turned)) continue;
+      if (consensus_.has_half_turn_ambiguity() && repaired(PairReading::turned, turned)) continue;
       if (repaired(PairReading::exchanged, exchanged)) continue;
-      if (!consensus_.misfits_grossly(together)) continue;  // the solution will show
+      if (!consensus_.is_gross_misfit(together)) continue;  // the solution will show
       const ViewPair& pair = consensus_.pairs()[i];
-      diagnosis.doubts.push_back(fmt::format(
+      diagnosis.trust_warnings.push_back(fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
           "not simultaneous or the corners of one are numbered from another place; leave the frame "
           "out",
@@ -242,12 +242,12 @@ void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
     distance += T.t.norm() / static_cast<double>(start.T_first_board.size());
   }
   if (centre.norm() < 1e-3 * distance) {
-    diagnosis.doubts.push_back(
+    diagnosis.trust_warnings.push_back(
         fmt::format("both cameras stand at one place ({:.2g} m apart, the board at {:.2g} m): the "
                     "images may be of one camera",
                     centre.norm(), distance));
   } else if (centre.x() < 0 && -centre.x() > centre.tail<2>().cwiseAbs().maxCoeff()) {
-    diagnosis.doubts.push_back(
+    diagnosis.trust_warnings.push_back(
         fmt::format("camera 1 (\"{}\") stands {:.3g} m to the left of camera 0 (\"{}\"): the "
                     "cameras seem to be exchanged, and disparities of such a pair are negative; "
                     "give left and right the other way round",

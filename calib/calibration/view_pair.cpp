@@ -49,7 +49,7 @@ std::vector<int> half_turn_of(const std::vector<Eigen::Vector3d>& target_m, Pose
   return taken;
 }
 
-std::vector<BoardView> views_of(const BoardObservations& observations, int camera) {
+std::vector<BoardView> views_of_camera(const BoardObservations& observations, int camera) {
   std::vector<BoardView> views;
   for (const BoardView& view : observations.views) {
     if (view.camera == camera) views.push_back(view);
@@ -66,8 +66,8 @@ PairConsensus::PairConsensus(
   const std::vector<int> frames = frames_of(observations);
   std::map<int, int> position;
   for (const int frame : frames) position.emplace(frame, static_cast<int>(position.size()));
-  const std::vector<BoardView> seconds = views_of(observations, second);
-  for (const BoardView& view : views_of(observations, first)) {
+  const std::vector<BoardView> seconds = views_of_camera(observations, second);
+  for (const BoardView& view : views_of_camera(observations, first)) {
     const auto partner = std::find_if(seconds.begin(), seconds.end(), [&](const BoardView& other) {
       return position[other.frame] == position[view.frame] + shift;
     });
@@ -125,11 +125,11 @@ bool PairConsensus::fits(std::size_t pair, double together_px) const {
          std::max(sound_share * longest_px(), sound_times_alone * pairs_[pair].alone_px);
 }
 
-bool PairConsensus::misfits_grossly(double together_px) const {
+bool PairConsensus::is_gross_misfit(double together_px) const {
   return together_px > gross_share * longest_px();
 }
 
-PairConsensus::Half PairConsensus::better_half(PairReading reading, const Rig& rig) const {
+PairConsensus::Half PairConsensus::best_subset(PairReading reading, const Rig& rig) const {
   std::vector<std::pair<double, std::size_t>> order;
   std::vector<BoardPoseFit> fits;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -177,13 +177,13 @@ Rig PairConsensus::agreed_rig(PairReading reading) const {
   Rig rig{cameras_, {Pose{}, consensus_pose(candidates)}};
   // Gauss and Newton on the better half of the frames, their board poses following: both focal
   // lengths (images of one camera alone may tell them badly) and the pose between the two.
-  Half half = better_half(reading, rig);
+  Half half = best_subset(reading, rig);
   std::vector<int> free{0, intrinsics_index(rig, 1)};
   for (int i = 0; i < 6; ++i) free.push_back(pose_index(rig, 1) + i);
   for (int step = 0; step < 4 && std::isfinite(half.sum_px2); ++step) {
     const std::optional<Rig> moved = improved(half, free);
     if (!moved) break;
-    Half next = better_half(reading, *moved);
+    Half next = best_subset(reading, *moved);
     if (!(next.sum_px2 < half.sum_px2)) break;
     rig = *moved;
     half = std::move(next);

@@ -40,7 +40,7 @@ class PairConsensus {
       const BoardObservations& observations, const Rig& rig, int first, int second, int shift = 0);
 
   const std::vector<ViewPair>& pairs() const { return pairs_; }
-  bool can_turn() const { return !half_turn_.empty(); }
+  bool has_half_turn_ambiguity() const { return !half_turn_.empty(); }
 
   /// The two cameras with the pose T_second_first that most frames agree on when every frame is
   /// read so; the pose and both focal lengths improved on the better half of the frames.
@@ -54,7 +54,7 @@ class PairConsensus {
   bool fits(std::size_t pair, double together_px) const;
 
   /// Whether no rough start can excuse it: more than 1.5 % of the image's longer side.
-  bool misfits_grossly(double together_px) const;
+  bool is_gross_misfit(double together_px) const;
 
  private:
   struct Half {  ///< the frames that fit best, as a problem of their own
@@ -64,7 +64,7 @@ class PairConsensus {
   };
   ViewPair read(const ViewPair& pair, PairReading reading) const;
   BoardPoseFit together(std::size_t pair, PairReading reading, const Rig& rig) const;
-  Half better_half(PairReading reading, const Rig& rig) const;
+  Half best_subset(PairReading reading, const Rig& rig) const;
   static std::optional<Rig> improved(const Half& half, const std::vector<int>& free);
   double longest_px() const;
 

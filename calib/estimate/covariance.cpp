@@ -74,15 +74,15 @@ std::string describe_direction(const Eigen::VectorXd& direction,
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return std::abs(direction[a]) > std::abs(direction[b]); });
   // As many parameters as it takes to say four fifths of the direction, at most three.
-  double said = 0;
+  double explained = 0;
   std::string words;
-  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && said < 0.8; ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && explained < 0.8; ++k) {
     const int i = order[k];
     if (k > 0) words += direction[i] * direction[order[0]] < 0 ? " against " : " with ";
     words += parameter_in_words(names[i]);
-    said += direction[i] * direction[i];
+    explained += direction[i] * direction[i];
   }
-  return fmt::format("{:.2f} of this direction is {}", said, words);
+  return fmt::format("{:.2f} of this direction is {}", explained, words);
 }
 
 ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {

@@ -95,7 +95,8 @@ Eigen::Map<const Eigen::Matrix<double, 9, 1>> as_vector(const Eigen::Matrix3d& M
 
 }  // namespace
 
-Eigen::MatrixXd unseen_directions(const Rig& rig, const std::optional<Eigen::Vector3d>& plane) {
+Eigen::MatrixXd unobservable_directions(const Rig& rig,
+                                        const std::optional<Eigen::Vector3d>& plane) {
   const Pose& T = rig.T_camera_first[1];
   // Essential matrices that see no difference.
   Eigen::Matrix<double, 9, Eigen::Dynamic> same(9, plane ? 3 : 1);
@@ -152,7 +153,7 @@ Observability observability(const Rig& rig,
     ObservedDirection direction;
     direction.sd_ratio = std::sqrt(std::max(0.0, eigen.eigenvalues()[i]));
     direction.direction = (root * eigen.eigenvectors().col(i)).normalized();
-    direction.words = describe_direction(direction.direction, names);
+    direction.description = describe_direction(direction.direction, names);
     o.improved += direction.sd_ratio <= 0.5;
     o.unchanged += direction.sd_ratio > 0.9;
     o.from_data += 1 - eigen.eigenvalues()[i];

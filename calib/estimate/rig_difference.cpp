@@ -166,7 +166,7 @@ void measure(const Eigen::VectorXd& delta,
       result.mahalanobis2 += along * along / s[k];
       ++result.dof;
     } else if (std::abs(along) > same_in_sigma) {
-      result.held_apart.push_back("a direction without variance: " + words);
+      result.fixed_at_different_values.push_back("a direction without variance: " + words);
     }
   }
   std::stable_sort(result.directions.begin(), result.directions.end(),
@@ -241,13 +241,13 @@ RigDifference rig_difference(const Rig& a,
       known.push_back(k);
       known_names.push_back(p.name);
     } else if (std::abs(p.delta) > 1e-12 * (1 + std::abs(p.a))) {
-      result.held_apart.push_back(
+      result.fixed_at_different_values.push_back(
           fmt::format("{} is held at {} in one and at {} in the other", p.name, p.a, p.b));
     }
     result.parameters.push_back(std::move(p));
   }
   if (!known.empty()) measure(delta(known), sum(known, known), known_names, result);
-  if (!result.held_apart.empty()) {
+  if (!result.fixed_at_different_values.empty()) {
     result.mahalanobis2 = std::numeric_limits<double>::infinity();
     result.p_value = 0;
   } else if (result.dof > 0) {

@@ -57,10 +57,10 @@ Eigen::MatrixXd inverse_of(const Covariance& covariance) {
     }
   }
   if (!(decomposition.scaled_condition() < 1e13)) {
-    throw Error(
-        "prior",
-        "its covariance is singular: no variance where " + decomposition.directions().back().words,
-        "give that direction a variance, or hold its parameters");
+    throw Error("prior",
+                "its covariance is singular: no variance where " +
+                    decomposition.directions().back().description,
+                "give that direction a variance, or hold its parameters");
   }
   const Eigen::MatrixXd R =
       sd.cwiseInverse().asDiagonal() * covariance.matrix * sd.cwiseInverse().asDiagonal();
@@ -86,7 +86,7 @@ RigPrior prior_at(const Rig& like,
 
 }  // namespace
 
-Covariance whole_covariance(const RigKnowledge& known) {
+Covariance full_covariance(const GaussianRigPrior& known) {
   const std::vector<Eigen::Index> places = places_of(known.covariance.names, known.rig);
   const Eigen::MatrixXd E =
       tangent_by_values(known.rig, all_but(places, known.rig))(Eigen::all, places);
@@ -94,7 +94,7 @@ Covariance whole_covariance(const RigKnowledge& known) {
           E * known.covariance.matrix * E.transpose()};
 }
 
-RigPrior rig_prior(const Rig& like, const RigKnowledge& known) {
+RigPrior rig_prior(const Rig& like, const GaussianRigPrior& known) {
   const std::vector<Eigen::Index> places = places_of(known.covariance.names, known.rig);
   const Eigen::VectorXd a = parameters(known.rig);
   std::vector<HeldParameter> values;
@@ -104,12 +104,12 @@ RigPrior rig_prior(const Rig& like, const RigKnowledge& known) {
   return prior_at(like, values, known.covariance);
 }
 
-RigKnowledge knowledge_of(const Rig& like, const std::vector<KnownParameter>& known) {
+GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterPrior>& known) {
   Covariance covariance;
   std::vector<HeldParameter> values;
   const auto n = static_cast<Eigen::Index>(known.size());
   covariance.matrix = Eigen::MatrixXd::Zero(n, n);
-  for (const KnownParameter& k : known) {
+  for (const ParameterPrior& k : known) {
     if (!(k.sigma > 0) || !std::isfinite(k.sigma)) {
       throw Error("prior of " + k.name, fmt::format("{} is no standard deviation", k.sigma),
                   "give a number above 0, or hold the parameter");
@@ -123,8 +123,8 @@ RigKnowledge knowledge_of(const Rig& like, const std::vector<KnownParameter>& kn
   return {with_held_values(like, values), std::move(covariance)};
 }
 
-RigPrior rig_prior(const Rig& like, const std::vector<KnownParameter>& known) {
-  return rig_prior(like, knowledge_of(like, known));
+RigPrior rig_prior(const Rig& like, const std::vector<ParameterPrior>& known) {
+  return rig_prior(like, gaussian_prior_of(like, known));
 }
 
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig) {

@@ -16,10 +16,10 @@
 namespace vernier::internal {
 namespace {
 
-constexpr auto source = static_cast<std::uint32_t>(DrawSource::simulated_pairs);
+constexpr auto pair_source = static_cast<std::uint32_t>(DrawSource::simulated_pairs);
 
 /// A point seen by the left camera, in its frame: on the plane of `normal` (n·X = 1), or anywhere.
-Eigen::Vector3d draw_point(Draws& draws,
+Eigen::Vector3d draw_point(RandomStream& draws,
                            const Camera& camera,
                            const Eigen::Vector3d& normal,
                            const SimulatedPairsOptions& options) {
@@ -38,7 +38,7 @@ bool well_inside(const Camera& camera, const Eigen::Vector2d& pixel, double bord
 
 /// The plane of an image pair as a vector n with n·X = 1 on it.
 Eigen::Vector3d draw_plane(std::uint64_t seed, const SimulatedPairsOptions& options) {
-  Draws draws({.seed = seed, .source = source, .eye = 2});
+  RandomStream draws({.seed = seed, .source = pair_source, .eye = 2});
   const double inverse_z = 0.5 * (1 / options.farthest_m + 1 / options.nearest_m);
   return inverse_z * Eigen::Vector3d(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 1);
 }
@@ -52,7 +52,8 @@ Eigen::Vector4d draw_pair(const Rig& rig,
                           const SimulatedPairsOptions& options) {
   const double border = std::max(3.0, 6 * options.pixel_sigma_px) +
                         (options.wrong_share > 0 ? options.wrong_radius_px : 0);
-  Draws draws({.seed = seed, .feature = match, .source = source, .eye = 3, .frame = image});
+  RandomStream draws(
+      {.seed = seed, .feature = match, .source = pair_source, .eye = 3, .frame = image});
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const Eigen::Vector3d X = draw_point(draws, rig.cameras[0], normal, options);
     const Eigen::Vector3d right = rig.T_camera_first[1] * X;
@@ -74,7 +75,8 @@ void disturb(Eigen::Vector4d& y,
              std::uint32_t image,
              std::uint32_t match,
              const SimulatedPairsOptions& options) {
-  Draws draws({.seed = seed, .trial = trial, .feature = match, .source = source, .frame = image});
+  RandomStream draws(
+      {.seed = seed, .trial = trial, .feature = match, .source = pair_source, .frame = image});
   y += options.pixel_sigma_px * draws.normals(4);
   if (draws.uniform() >= options.wrong_share) return;
   const double radius = options.wrong_radius_px * std::sqrt(draws.uniform());

@@ -151,7 +151,7 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
   return imported;
 }
 
-std::vector<ForeignFile> colmap_cameras(const Rig& rig) {
+std::vector<ExportedFile> colmap_cameras(const Rig& rig) {
   std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]; (0, 0) is a pixel's corner\n";
   std::string images =
       "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: each stands for the pose of a camera\n";

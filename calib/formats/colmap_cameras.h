@@ -35,6 +35,6 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
 /// cameras.txt; images.txt with one image a camera that stands for its pose, and an empty
 /// points3D.txt, which together are a model that every COLMAP opens; and rig_config.json for
 /// `colmap rig_configurator` of 3.12 and later.
-std::vector<ForeignFile> colmap_cameras(const Rig& rig);
+std::vector<ExportedFile> colmap_cameras(const Rig& rig);
 
 }  // namespace vernier::internal

@@ -115,7 +115,7 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const Import
   return imported;
 }
 
-std::vector<ForeignFile> kalibr_camchain(const Rig& rig) {
+std::vector<ExportedFile> kalibr_camchain(const Rig& rig) {
   std::string text;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     std::string others;

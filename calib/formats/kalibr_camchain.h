@@ -25,6 +25,6 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file,
                                  const ImportOptions& options = {});
 
 /// camchain.yaml. Throws Error for a coefficient beyond p2 that is not zero, which radtan lacks.
-std::vector<ForeignFile> kalibr_camchain(const Rig& rig);
+std::vector<ExportedFile> kalibr_camchain(const Rig& rig);
 
 }  // namespace vernier::internal

@@ -146,8 +146,8 @@ ImportedRig read_mrcal_cameramodels(const std::vector<std::filesystem::path>& fi
   return imported;
 }
 
-std::vector<ForeignFile> mrcal_cameramodels(const Rig& rig) {
-  std::vector<ForeignFile> files;
+std::vector<ExportedFile> mrcal_cameramodels(const Rig& rig) {
+  std::vector<ExportedFile> files;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const Camera& camera = rig.cameras[i];
     const OpenCvIntrinsics in = opencv_intrinsics(camera);

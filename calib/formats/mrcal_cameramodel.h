@@ -35,6 +35,6 @@ PlacedCamera parse_mrcal_cameramodel(const std::string& text,
 
 /// NAME.cameramodel for every camera, the reference being the first camera's frame. Both keys of
 /// the pose are written, numbers in the shortest form that reads back equal.
-std::vector<ForeignFile> mrcal_cameramodels(const Rig& rig);
+std::vector<ExportedFile> mrcal_cameramodels(const Rig& rig);
 
 }  // namespace vernier::internal

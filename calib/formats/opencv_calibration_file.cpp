@@ -25,7 +25,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::size_t most_cameras = 9;
+constexpr std::size_t max_cameras = 9;
 
 /// The keys of several files as if they were one.
 class Keys {
@@ -194,7 +194,7 @@ ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& fi
     cameras.push_back({read_camera(keys, 0, options, imported.notes), Pose{}});
   } else {
     std::size_t count = 1;
-    while (count < most_cameras && keys.has_any(matrix_keys(count + 1))) ++count;
+    while (count < max_cameras && keys.has_any(matrix_keys(count + 1))) ++count;
     for (std::size_t i = 1; i <= count; ++i) {
       cameras.push_back({read_camera(keys, i, options, imported.notes),
                          i == 1 ? Pose{} : read_pose(keys, i, count, options.unit_m)});
@@ -204,9 +204,9 @@ ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& fi
   return imported;
 }
 
-std::vector<ForeignFile> opencv_intrinsics_and_extrinsics(const Rig& rig) {
+std::vector<ExportedFile> opencv_intrinsics_and_extrinsics(const Rig& rig) {
   const std::size_t count = rig.cameras.size();
-  if (count > most_cameras) {
+  if (count > max_cameras) {
     throw Error("rig", fmt::format("its {} cameras are more than OpenCV's keys count", count),
                 "nine are the most; choose another format");
   }
@@ -222,9 +222,9 @@ std::vector<ForeignFile> opencv_intrinsics_and_extrinsics(const Rig& rig) {
   return {{"intrinsics.yml", intrinsics}, {"extrinsics.yml", extrinsics}};
 }
 
-std::vector<ForeignFile> opencv_calibration(const Rig& rig) {
-  const std::vector<ForeignFile> files = opencv_intrinsics_and_extrinsics(rig);
-  ForeignFile whole{"rig.yml", files[0].text};
+std::vector<ExportedFile> opencv_calibration(const Rig& rig) {
+  const std::vector<ExportedFile> files = opencv_intrinsics_and_extrinsics(rig);
+  ExportedFile whole{"rig.yml", files[0].text};
   if (files.size() > 1) whole.text += files[1].text.substr(std::string(head).size());
   return {whole};
 }

@@ -32,10 +32,10 @@ ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& fi
                                     const ImportOptions& options = {});
 
 /// The whole rig in one file, rig.yml. Throws Error for more than nine cameras.
-std::vector<ForeignFile> opencv_calibration(const Rig& rig);
+std::vector<ExportedFile> opencv_calibration(const Rig& rig);
 
 /// The same keys in two, intrinsics.yml and extrinsics.yml, as OpenCV's stereo_calib writes them.
 /// One camera is one file.
-std::vector<ForeignFile> opencv_intrinsics_and_extrinsics(const Rig& rig);
+std::vector<ExportedFile> opencv_intrinsics_and_extrinsics(const Rig& rig);
 
 }  // namespace vernier::internal

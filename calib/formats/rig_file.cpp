@@ -206,28 +206,28 @@ void require_finite(const Json& json, const std::string& place) {
 }
 
 /// A prior as the rig file that would say as much.
-Json prior_json(const RigKnowledge& prior) {
+Json prior_json(const GaussianRigPrior& prior) {
   RigEstimate estimate;
   estimate.rig = prior.rig;
-  estimate.covariance = whole_covariance(prior);
+  estimate.covariance = full_covariance(prior);
   return Json::parse(format_rig(estimate, KeepEvidence::no));
 }
 
-std::vector<RigKnowledge> parse_priors(const Node& evidence) {
-  std::vector<RigKnowledge> priors;
+std::vector<GaussianRigPrior> parse_priors(const Node& evidence) {
+  std::vector<GaussianRigPrior> priors;
   if (!evidence.has("priors")) return priors;
   const Node list = evidence.at("priors");
   for (std::size_t i = 0; i < list.array().size(); ++i) {
     const Node prior = list.at(i);
     priors.push_back(
-        knowledge_of(parse_rig(prior.json().dump(), prior.place()).estimate, prior.place()));
+        gaussian_prior_of(parse_rig(prior.json().dump(), prior.place()).estimate, prior.place()));
   }
   return priors;
 }
 
 }  // namespace
 
-std::string said_of_itself(const std::string& place) { return place + " says of itself: "; }
+std::string stored_warning_prefix(const std::string& place) { return place + " says of itself: "; }
 
 RigFile parse_rig(const std::string& text, const std::string& place) {
   Json json;
@@ -263,8 +263,8 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (root.has("calibration")) {
     estimate.calibration = rig_json::parse_summary(root.at("calibration"), estimate.rig);
-    for (const std::string& doubt : estimate.calibration->doubts) {
-      file.warnings.push_back(said_of_itself(place) + doubt);
+    for (const std::string& doubt : estimate.calibration->trust_warnings) {
+      file.warnings.push_back(stored_warning_prefix(place) + doubt);
     }
   }
   if (root.has("evidence")) {
@@ -281,8 +281,8 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   return file;
 }
 
-RigKnowledge rig_knowledge(const RigFile& file, const std::string& place) {
-  return knowledge_of(file.estimate, place);
+GaussianRigPrior gaussian_rig_prior(const RigFile& file, const std::string& place) {
+  return gaussian_prior_of(file.estimate, place);
 }
 
 RigFile read_rig(const std::filesystem::path& file) {
@@ -317,7 +317,7 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
     json["calibration"] = rig_json::summary_json(*estimate.calibration, estimate.rig);
   if (estimate.evidence && evidence == KeepEvidence::yes) {
     json["evidence"] = rig_json::evidence_json(*estimate.evidence, estimate.rig);
-    for (const RigKnowledge& prior : estimate.evidence->priors) {
+    for (const GaussianRigPrior& prior : estimate.evidence->priors) {
       json["evidence"]["priors"].push_back(prior_json(prior));
     }
   }

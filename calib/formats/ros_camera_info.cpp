@@ -118,7 +118,7 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
   return {rig_of(std::move(cameras)), {}};
 }
 
-ForeignFile format_ros_camera_info(const RosCameraInfo& info) {
+ExportedFile format_ros_camera_info(const RosCameraInfo& info) {
   const Camera& camera = info.camera;
   const OpenCvIntrinsics in = opencv_intrinsics(camera);
   const bool rational = in.coefficients.size() == 8;

@@ -44,6 +44,6 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
 
 /// NAME.yaml in the layout of camera_calibration_parsers. For a pair,
 /// stereo/rectification/rectified_camera_info.h has the infos.
-ForeignFile format_ros_camera_info(const RosCameraInfo& info);
+ExportedFile format_ros_camera_info(const RosCameraInfo& info);
 
 }  // namespace vernier::internal

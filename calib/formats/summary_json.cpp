@@ -76,7 +76,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
     }
   }
   summary.warnings = parse_texts(node, "warnings");
-  summary.doubts = parse_texts(node, "doubts");
+  summary.trust_warnings = parse_texts(node, "doubts");
   return summary;
 }
 
@@ -102,7 +102,7 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
     json["pair_outliers"].push_back(to_json(o));
   }
   json["warnings"] = s.warnings;
-  if (!s.doubts.empty()) json["doubts"] = s.doubts;
+  if (!s.trust_warnings.empty()) json["doubts"] = s.trust_warnings;
   return json;
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double coincidence_m = 1e-9;
 
 /// For each point: a grid much larger than its points is none, but a point out of place.
-constexpr double most_cells = 4;
+constexpr double max_cells = 4;
 
 /// Smallest distance between different coordinates along an axis.
 double pitch_along(std::vector<double> values) {
@@ -53,7 +53,7 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
   const Eigen::Vector3d extent = far - grid.origin_m;
   const Eigen::Vector2d steps = (extent.head<2>() / pitch).array().round();
   const double area = (steps.array() + 1).prod();
-  if (!(steps.minCoeff() >= 1 && area <= most_cells * static_cast<double>(target_m.size())) ||
+  if (!(steps.minCoeff() >= 1 && area <= max_cells * static_cast<double>(target_m.size())) ||
       extent.z() > coincidence_m) {
     throw refused;
   }

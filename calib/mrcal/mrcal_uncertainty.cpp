@@ -193,7 +193,8 @@ ProgramRun run_script(const fs::path& script, std::vector<std::string> arguments
 
 }  // namespace
 
-MrcalUncertaintyAnswer ask_mrcal(const fs::path& script, const MrcalUncertaintyProblem& problem) {
+MrcalUncertaintyAnswer run_mrcal_uncertainty(const fs::path& script,
+                                             const MrcalUncertaintyProblem& problem) {
   MrcalUncertaintyAnswer none;
   if (!script.is_absolute() || !fs::is_regular_file(script)) {
     none.absent = "the script " + script.string() + " is missing: install Vernier again";
@@ -204,10 +205,10 @@ MrcalUncertaintyAnswer ask_mrcal(const fs::path& script, const MrcalUncertaintyP
   std::ofstream(question) << problem_json(problem);
   const ProgramRun run = run_script(script, {question.string(), reply.string()});
   if (run.exit_code == -1) none.absent = "no Python can be run";
-  if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + run.last_words();
+  if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + run.last_output_line();
   if (!none.absent.empty()) return none;
   if (run.exit_code != 0) {
-    throw Error("mrcal", "its Python failed: " + run.last_words(), "leave mrcal out");
+    throw Error("mrcal", "its Python failed: " + run.last_output_line(), "leave mrcal out");
   }
   return read_answer(reply, problem);
 }

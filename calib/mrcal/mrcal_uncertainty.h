@@ -58,8 +58,8 @@ struct MrcalUncertaintyProblem {
 /// run by /usr/bin/python3 (whose packages are Debian's), else by the first python3 of the path.
 /// The script is named by its absolute path. What mrcal has no number for is NaN. Throws Error
 /// where mrcal cannot express the problem or fails at it.
-MrcalUncertaintyAnswer ask_mrcal(const std::filesystem::path& script,
-                                 const MrcalUncertaintyProblem& problem);
+MrcalUncertaintyAnswer run_mrcal_uncertainty(const std::filesystem::path& script,
+                                             const MrcalUncertaintyProblem& problem);
 
 /// What version of mrcal a Python here has; empty where none has it.
 std::string mrcal_python_version(const std::filesystem::path& script);

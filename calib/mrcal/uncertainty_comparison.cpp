@@ -100,7 +100,7 @@ std::optional<Eigen::MatrixXd> basis_of(const RefinedMinimum& ours, const std::v
 RigAndBoards joint_of(const BoardObservations& observations,
                       const RefinedMinimum& ours,
                       double pixel_sigma_px) {
-  BoardPosesGivenRig given = board_poses_given_rig(observations, ours.state);
+  ConditionalBoardPoses given = conditional_board_poses(observations, ours.state);
   given.warp_by_rig.setZero();
   given.warp_factor.setZero();
   return {ours.state.rig,           ours.state.frames,
@@ -158,7 +158,7 @@ UncertaintyComparison compare_uncertainty(const std::filesystem::path& script,
   MrcalUncertaintyProblem problem{observations,         ours.state, pixel_sigma_px,
                                   basis_of(ours, held), {},         {}};
   add_queries(ours.state.rig, problem);
-  const MrcalUncertaintyAnswer mrcals = ask_mrcal(script, problem);
+  const MrcalUncertaintyAnswer mrcals = run_mrcal_uncertainty(script, problem);
   UncertaintyComparison result;
   result.absent = mrcals.absent;
   if (!result.absent.empty()) return result;

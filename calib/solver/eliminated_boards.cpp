@@ -59,7 +59,7 @@ EliminatedBoards::EliminatedBoards(const PackedViews& views,
 }
 
 void EliminatedBoards::sum_chunk(const BoardState& state,
-                                 const std::vector<CameraPlace>& places,
+                                 const std::vector<CameraTransform>& places,
                                  const std::vector<Eigen::VectorXd>& intrinsics,
                                  double damping,
                                  std::size_t chunk) {
@@ -116,7 +116,7 @@ ReducedSystem EliminatedBoards::reduced() const {
 }
 
 ReducedSystem EliminatedBoards::linearise(const BoardState& state, double damping) {
-  const std::vector<CameraPlace> places = camera_places(state.rig, views_.warp());
+  const std::vector<CameraTransform> places = camera_transforms(state.rig, views_.warp());
   std::vector<Eigen::VectorXd> intrinsics;
   for (const Camera& camera : state.rig.cameras) intrinsics.push_back(kernel_intrinsics(camera));
   for_each_index(chunks_.size(), threads_,

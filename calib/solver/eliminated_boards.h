@@ -36,7 +36,7 @@ class EliminatedBoards {
 
  private:
   void sum_chunk(const BoardState& state,
-                 const std::vector<CameraPlace>& places,
+                 const std::vector<CameraTransform>& places,
                  const std::vector<Eigen::VectorXd>& intrinsics,
                  double damping,
                  std::size_t chunk);

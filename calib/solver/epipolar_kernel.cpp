@@ -35,22 +35,23 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "calib/solver/pack.inc"
 
 using Constants = CameraConstants<Pack>;
-using Look = void (*)(const Constants&, Pack, Pack, Sight<Pack>&);
-using Columns = void (*)(const Constants&, const Sight<Pack>&, Pack, Pack, Pack*);
+using NoiseFreeView = void (*)(const Constants&, Pack, Pack, EpipolarRay<Pack>&);
+using Columns = void (*)(const Constants&, const EpipolarRay<Pack>&, Pack, Pack, Pack*);
 
 template <class Model>
-void look_model(const Constants& c, Pack u, Pack v, Sight<Pack>& s) {
+void look_model(const Constants& c, Pack u, Pack v, EpipolarRay<Pack>& s) {
   look_at(Model{}, c, u, v, s);
 }
 template <class Model>
-void columns_model(const Constants& c, const Sight<Pack>& s, Pack rho, Pack scale, Pack* row) {
+void columns_model(
+    const Constants& c, const EpipolarRay<Pack>& s, Pack rho, Pack scale, Pack* row) {
   camera_columns(Model{}, c, s, rho, scale, row);
 }
 
 /// One camera with its model resolved.
 struct Side {
   Constants constants;
-  Look look;
+  NoiseFreeView look;
   Columns columns;
   int count;  // of its columns
 };
@@ -83,7 +84,7 @@ struct Geometry {
 
   /// The row of one pack of pairs; returns the residual, which is also its last column.
   HWY_INLINE Pack row(const Lanes* packed, int lane, Pack* row) const {
-    Sight<Pack> l, r;
+    EpipolarRay<Pack> l, r;
     left.look(left.constants, load(packed[0].of + lane), load(packed[1].of + lane), l);
     right.look(right.constants, load(packed[2].of + lane), load(packed[3].of + lane), r);
     Pack* const pose_columns = row + left.count + right.count;
@@ -96,7 +97,7 @@ struct Geometry {
   }
 
   HWY_INLINE Pack residual(const Lanes* packed, int lane) const {
-    Sight<Pack> l, r;
+    EpipolarRay<Pack> l, r;
     left.look(left.constants, load(packed[0].of + lane), load(packed[1].of + lane), l);
     right.look(right.constants, load(packed[2].of + lane), load(packed[3].of + lane), r);
     Pack unused[6];
@@ -121,9 +122,9 @@ HWY_INLINE PackLoss loss_of(const Loss& loss, Pack r) {
   return {gain * c * c * Pack(1.0 / 3.0) * (one - t * t * t), gain * t * t};
 }
 
-constexpr int tile = 4;           // columns of a square of sums
-constexpr int chunk = 8;          // packs of rows that stand in the first cache together
-constexpr int most_columns = 32;  // two cameras of 12, a pose of 6, the residual; padded
+constexpr int tile = 4;          // columns of a square of sums
+constexpr int chunk = 8;         // packs of rows that stand in the first cache together
+constexpr int max_columns = 32;  // two cameras of 12, a pose of 6, the residual; padded
 
 /// Adds the products of columns i … i + 3 by j … j + 3 over `n` packs of rows.
 HWY_INLINE void add_tile(
@@ -151,7 +152,7 @@ double sum_pairs(const EpipolarView& view,
   const Geometry geometry(view);
   const int columns = epipolar_columns(view), stride = (columns + tile - 1) / tile * tile;
   const int tiles = stride / tile;
-  Pack rows[chunk * most_columns], weighted[chunk * most_columns];
+  Pack rows[chunk * max_columns], weighted[chunk * max_columns];
   for (Pack& p : rows) p = Pack(0.0);
   for (Pack& p : weighted) p = Pack(0.0);
   constexpr int tile_size = tile * tile * kernel_lanes;

@@ -29,7 +29,7 @@ HWY_INLINE void set(Lanes& to, int lane, Pack a) { store(a, to.of + lane); }
 HWY_INLINE void add(Lanes& to, int lane, Pack a) { store(load(to.of + lane) + a, to.of + lane); }
 
 /// row Ad: a row of derivatives by the camera's twist becomes one by the board's.
-HWY_INLINE void times_adjoint(const CameraPlace& place, const Pack (&in)[6], Pack (&out)[6]) {
+HWY_INLINE void times_adjoint(const CameraTransform& place, const Pack (&in)[6], Pack (&out)[6]) {
   if (place.pose < 0) {  // the identity
     for (int k = 0; k < 6; ++k) out[k] = in[k];
     return;
@@ -54,7 +54,7 @@ struct Frame {
 };
 
 /// Adds camera `place`: its own blocks to the total, those of the board's pose to the frame.
-void add_camera(const CameraPlace& place,
+void add_camera(const CameraTransform& place,
                 const double* sums,
                 int parameters,
                 int lane,
@@ -108,8 +108,7 @@ void factor_frame(Frame& frame, int parameters, int lane, Lanes* factor) {
     for (int i = j; i < 6; ++i) {
       Pack s = frame.C[j][i];
       for (int k = 0; k < j; ++k) s = minus_mul(L[i][k], L[j][k], s);
-      L[i][j] =
-          i == j ? inverse_root_or_nan(s, frame.C[j][j] * Pack(least_pose_pivot)) : s * L[j][j];
+      L[i][j] = i == j ? inverse_root_or_nan(s, frame.C[j][j] * Pack(min_pose_pivot)) : s * L[j][j];
     }
   }
   const auto forward = [&](Pack(&x)[6]) HWY_ATTR {
@@ -150,7 +149,7 @@ void subtract_frame(const Frame& frame, int parameters, int lane, ReducedSums& t
   set(total.frames_drop, lane, drop);
 }
 
-void eliminate_frames(const std::vector<CameraPlace>& places,
+void eliminate_frames(const std::vector<CameraTransform>& places,
                       const std::vector<const double*>& sums,
                       const Lanes& absent,
                       double damping,
@@ -185,7 +184,7 @@ namespace vernier::internal {
 
 HWY_EXPORT(eliminate_frames);
 
-void eliminate_frames(const std::vector<CameraPlace>& places,
+void eliminate_frames(const std::vector<CameraTransform>& places,
                       const std::vector<const double*>& sums,
                       const Lanes& absent,
                       double damping,
@@ -194,11 +193,11 @@ void eliminate_frames(const std::vector<CameraPlace>& places,
   HWY_DYNAMIC_DISPATCH(eliminate_frames)(places, sums, absent, damping, factor, total);
 }
 
-std::vector<CameraPlace> camera_places(const Rig& rig, bool warp) {
-  std::vector<CameraPlace> places(rig.cameras.size());
+std::vector<CameraTransform> camera_transforms(const Rig& rig, bool warp) {
+  std::vector<CameraTransform> places(rig.cameras.size());
   for (std::size_t c = 0; c < places.size(); ++c) {
     const int camera = static_cast<int>(c);
-    CameraPlace& place = places[c];
+    CameraTransform& place = places[c];
     place.intrinsics = intrinsics_index(rig, camera);
     place.count = static_cast<int>(rig.cameras[c].parameters.size());
     if (warp) place.warp = parameter_count(rig);

@@ -19,7 +19,7 @@ struct alignas(64) Lanes {
 ///
 ///     twist of T_camera_board = Ad twist of T_first_board + twist of T_camera_first
 ///     Ad = [R 0; [t]x R  R],   R, t of T_camera_first
-struct CameraPlace {
+struct CameraTransform {
   int intrinsics = 0;  ///< index of f_x
   int count = 0;       ///< of intrinsics
   int pose = -1;       ///< index of the twist of T_camera_first; the first camera has none
@@ -28,7 +28,7 @@ struct CameraPlace {
 };
 
 /// The warp, where free, stands after the rig's parameters.
-std::vector<CameraPlace> camera_places(const Rig& rig, bool warp);
+std::vector<CameraTransform> camera_transforms(const Rig& rig, bool warp);
 
 /// Sums over frames of the normal equations reduced to the rig, eight lanes each (add them up).
 struct ReducedSums {
@@ -52,7 +52,7 @@ inline std::size_t frame_factor_size(int parameters) {
 /// or null where no lane sees the board; `absent` is 1 in a lane without a frame, else 0. The
 /// diagonal of BᵀB is multiplied by 1 + damping. Derivatives are by the intrinsics
 /// (f_x f_y o_x o_y k …), the twists of T_camera_first and the warp.
-void eliminate_frames(const std::vector<CameraPlace>& places,
+void eliminate_frames(const std::vector<CameraTransform>& places,
                       const std::vector<const double*>& sums,
                       const Lanes& absent,
                       double damping,

@@ -28,8 +28,8 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
     bend += curvature_of(loss, r / sigma_scale);
     ++count;
   }
-  constexpr double least_bend = 0.3;  // below, the residuals have no shape that a loss is for
-  const double mean_bend = count > 0 ? std::max(least_bend, bend / count) : 1;
+  constexpr double min_bend = 0.3;  // below, the residuals have no shape that a loss is for
+  const double mean_bend = count > 0 ? std::max(min_bend, bend / count) : 1;
   std::vector<double> counted;
   for (const double r : residuals) {
     counted.push_back(weight_of(loss, r / sigma_scale) > 0 ? mean_bend : 0);

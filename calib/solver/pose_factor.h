@@ -7,7 +7,7 @@
 namespace vernier::internal {
 
 /// A pivot below this share of its diagonal is rounding: the corners do not fix the board's pose.
-inline constexpr double least_pose_pivot = 1e-13;
+inline constexpr double min_pose_pivot = 1e-13;
 
 /// Cholesky's factor of a frame's BᵀB, B the derivatives by the pose of its board. Throws
 /// Error("frame 3") where its corners do not fix that pose.

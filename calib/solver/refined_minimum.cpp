@@ -77,14 +77,14 @@ bool move(BoardState& state, const Linearisation& at) {
 RefinedMinimum refine_minimum(const BoardObservations& observations,
                               const BoardState& start,
                               std::vector<bool> held) {
-  constexpr int most_steps = 20;
+  constexpr int max_steps = 20;
   constexpr double enough_px = 1e-9;
   held.resize(parameter_count(start.rig), false);
   const auto target_m = warped_target(observations.target_m, start.warp_m);
   RefinedMinimum result;
   result.state = start;
   Linearisation at = linearise(observations, target_m, result.state, held);
-  for (int i = 0; i < most_steps && !result.converged; ++i) {
+  for (int i = 0; i < max_steps && !result.converged; ++i) {
     result.last_step_px = at.system.step_sigma();
     if (!move(result.state, at)) break;
     result.converged = result.last_step_px < enough_px;

@@ -20,9 +20,9 @@
 namespace vernier::internal {
 namespace {
 
-constexpr double least_rcond = 3e-14;  // of the scaled reduced system
-constexpr double far_step = 10;        // standard deviations
-constexpr double least_rate = 0.03;    // of convergence that is counted on
+constexpr double min_rcond = 3e-14;  // of the scaled reduced system
+constexpr double far_step = 10;      // standard deviations
+constexpr double min_rate = 0.03;    // of convergence that is counted on
 
 /// A step of the rig and how much it is worth.
 struct Step {
@@ -47,7 +47,7 @@ Step solve(const ReducedSystem& system, const Eigen::MatrixXd& E) {
   if (!S.allFinite() || !g.allFinite()) return step;
   const Cholesky factor(S);
   if (!factor.is_positive_definite()) return step;
-  step.sound = S.rows() == 0 || factor.rcond() > least_rcond;
+  step.sound = S.rows() == 0 || factor.rcond() > min_rcond;
   const Eigen::VectorXd half = factor.solve_lower(Eigen::VectorXd(scale.cwiseProduct(-g)));
   const Eigen::VectorXd z = scale.cwiseProduct(factor.solve_upper(half));
   step.tangent = all ? z : E * z;
@@ -59,12 +59,12 @@ Step solve(const ReducedSystem& system, const Eigen::MatrixXd& E) {
 
 /// How far the rig may still be from the minimum after a step of `length`, in units of σ̂.
 double error_after(double length, double previous) {
-  const double rate = std::max(previous > 0 ? length / previous : 0.0, least_rate);
+  const double rate = std::max(previous > 0 ? length / previous : 0.0, min_rate);
   if (rate >= 1) return std::numeric_limits<double>::infinity();
   return length * rate / (1 - rate);
 }
 
-constexpr double least_unit_px = 1e-3;  // residuals below this are taken for exact
+constexpr double min_unit_px = 1e-3;  // residuals below this are taken for exact
 
 /// Marquardt's factor: none while Gauss–Newton steps succeed, so that these converge at their own
 /// rate; in a curved valley the least that the steps accept.
@@ -113,8 +113,8 @@ class Descent {
     const Step step = solve(system_, directions(result_.state.rig, cost_.held, parameters_));
     if (!step.sound) return leave_singular_point();
     // σ̂ / σ, which a stated σ below the least that residuals show bounds from above alone
-    const double unit = std::min(
-        1.0, std::max(std::sqrt(system_.chi2 / dof_), least_unit_px / cost_.pixel_sigma_px));
+    const double unit =
+        std::min(1.0, std::max(std::sqrt(system_.chi2 / dof_), min_unit_px / cost_.pixel_sigma_px));
     const bool damped = damping_.value > 0;
     const double length = step.length / unit;
     const double left = damped ? length : error_after(length, previous_length_);
@@ -229,7 +229,7 @@ Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
   const Eigen::MatrixXd S = E.transpose() * system.information * E;
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
   const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
-  if (!factor.is_positive_definite() || !(factor.rcond() > least_rcond)) {
+  if (!factor.is_positive_definite() || !(factor.rcond() > min_rcond)) {
     throw Error("calibration", "the views leave a direction free",
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }

@@ -42,9 +42,9 @@ Interval bootstrap_interval(std::size_t clusters,
   std::vector<double> values;
   std::vector<std::size_t> drawn(clusters);
   for (int r = 0; r < options.resamples; ++r) {
-    Draws draws({.seed = options.seed,
-                 .trial = static_cast<std::uint32_t>(r),
-                 .source = static_cast<std::uint32_t>(DrawSource::cluster_bootstrap)});
+    RandomStream draws({.seed = options.seed,
+                        .trial = static_cast<std::uint32_t>(r),
+                        .source = static_cast<std::uint32_t>(DrawSource::cluster_bootstrap)});
     for (std::size_t& cluster : drawn) {
       const auto at = static_cast<std::size_t>(draws.uniform() * static_cast<double>(clusters));
       cluster = std::min(at, clusters - 1);

@@ -44,7 +44,7 @@ double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<doub
   return std::clamp(p, 0.0, 1.0);
 }
 
-double draw_chi_squared(Draws& draws, double dof) {
+double draw_chi_squared(RandomStream& draws, double dof) {
   const double d = 0.5 * dof - 1.0 / 3, c = 1 / std::sqrt(9 * d);
   for (;;) {
     const double z = draws.normal(), v = std::pow(1 + c * z, 3);

@@ -23,6 +23,6 @@ double normal_cdf(double z);
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf);
 
 /// A draw from χ² with `dof` > 2 degrees of freedom (Marsaglia and Tsang 2000).
-double draw_chi_squared(Draws& draws, double dof);
+double draw_chi_squared(RandomStream& draws, double dof);
 
 }  // namespace vernier::internal

@@ -11,7 +11,7 @@
 
 namespace vernier::internal {
 
-Draws::Draws(const DrawPlace& place)
+RandomStream::RandomStream(const RandomCounter& place)
     : key_{static_cast<std::uint32_t>(place.seed), static_cast<std::uint32_t>(place.seed >> 32)},
       counter_{place.trial, place.feature, place.source << 24 | place.eye << 22 | place.frame, 0} {
   if (place.source >= 1u << 8 || place.eye >= 1u << 2 || place.frame >= 1u << 22) {
@@ -19,7 +19,7 @@ Draws::Draws(const DrawPlace& place)
   }
 }
 
-double Draws::uniform() {
+double RandomStream::uniform() {
   if (used_ > 2) {
     const auto block = r123::Philox4x32()({{counter_[0], counter_[1], counter_[2], counter_[3]}},
                                           {{key_[0], key_[1]}});
@@ -33,15 +33,15 @@ double Draws::uniform() {
   return (static_cast<double>(bits) + 0.5) * 0x1p-53;
 }
 
-double Draws::uniform(double low, double high) { return low + (high - low) * uniform(); }
+double RandomStream::uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-double Draws::normal() { return normal_quantile(uniform()); }
+double RandomStream::normal() { return normal_quantile(uniform()); }
 
-std::uint32_t Draws::below(std::uint32_t n) {
+std::uint32_t RandomStream::below(std::uint32_t n) {
   return std::min(n - 1, static_cast<std::uint32_t>(uniform() * n));
 }
 
-Eigen::VectorXd Draws::normals(int n) {
+Eigen::VectorXd RandomStream::normals(int n) {
   Eigen::VectorXd z(n);
   for (int i = 0; i < n; ++i) z[i] = normal();
   return z;

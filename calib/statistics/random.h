@@ -10,7 +10,7 @@ namespace vernier::internal {
 
 /// Where a random draw belongs. The generator has no state beyond this: the same place draws the
 /// same numbers whatever else is drawn, in whatever order, on any number of threads.
-struct DrawPlace {
+struct RandomCounter {
   std::uint64_t seed = 0;
   std::uint32_t trial = 0;
   std::uint32_t feature = 0;  ///< identity of the thing, never its position in a list
@@ -22,10 +22,10 @@ struct DrawPlace {
 /// Stream of random numbers at one place: Philox4x32-10 (Salmon et al., "Parallel random numbers:
 /// as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye · frame,
 /// draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples monotonically.
-class Draws {
+class RandomStream {
  public:
   /// Throws Error where source, eye or frame exceed their bits.
-  explicit Draws(const DrawPlace& place);
+  explicit RandomStream(const RandomCounter& place);
 
   double uniform();                         ///< in (0, 1), 53 bits
   double uniform(double low, double high);  ///< in (low, high)

@@ -55,12 +55,12 @@ Eigen::Matrix<double, N, N> inverse_factor(const Eigen::LLT<Eigen::Matrix<double
 
 }  // namespace
 
-BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
-                                         const BoardState& state) {
+ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
+                                              const BoardState& state) {
   const auto n = parameter_count(state.rig);
   const std::vector<Eigen::Vector3d> target_m = warped_target(observations.target_m, state.warp_m);
   const auto shapes = warp_shapes(observations.target_m);
-  BoardPosesGivenRig result;
+  ConditionalBoardPoses result;
   Eigen::Matrix<double, 2, Eigen::Dynamic> S_wa = Eigen::MatrixXd::Zero(2, n);
   Eigen::Matrix2d S_ww = Eigen::Matrix2d::Zero();
   auto view = observations.views.begin();

@@ -10,7 +10,7 @@ namespace vernier::internal {
 
 /// Linearised at `state`. A board whose warp is not zero had its warp estimated; that of a flat one
 /// was held. Throws Error where the corners of a frame do not fix the pose of its board.
-BoardPosesGivenRig board_poses_given_rig(const BoardObservations& observations,
-                                         const BoardState& state);
+ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
+                                              const BoardState& state);
 
 }  // namespace vernier::internal

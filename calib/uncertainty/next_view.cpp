@@ -18,7 +18,7 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/solver/normal_equations.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 
 namespace vernier::internal {
 namespace {
@@ -30,7 +30,7 @@ Cholesky gain(const Eigen::MatrixXd& F, const Eigen::MatrixXd& S, double n) {
   return Cholesky(M);
 }
 
-double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const WantedError& wanted) {
+double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const TargetQuantity& wanted) {
   // g F (L Lᵀ)⁻¹ Fᵀ gᵀ = |L⁻¹ Fᵀ gᵀ|²
   const Eigen::MatrixXd half =
       gain(F, view.information, 1).solve_lower(Eigen::MatrixXd((wanted.gradient * F).transpose()));
@@ -40,7 +40,7 @@ double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const Wante
 /// Standard deviations after each candidate alone.
 std::vector<double> ratings(const Eigen::MatrixXd& F,
                             const std::vector<CandidateView>& candidates,
-                            const WantedError& wanted) {
+                            const TargetQuantity& wanted) {
   std::vector<double> sd;
   sd.reserve(candidates.size());
   for (const CandidateView& view : candidates) sd.push_back(sd_after(F, view, wanted));
@@ -56,20 +56,20 @@ bool beside(const BoardPlacement& a, const BoardPlacement& b) {
 }
 
 /// The best views that are not beside the first nor beside one another.
-std::vector<RatedView> distinct_best(const std::vector<CandidateView>& candidates,
-                                     const std::vector<double>& sd,
-                                     double sd_before,
-                                     int count) {
+std::vector<ScoredView> distinct_best(const std::vector<CandidateView>& candidates,
+                                      const std::vector<double>& sd,
+                                      double sd_before,
+                                      int count) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return sd[i] < sd[j]; });
-  std::vector<RatedView> best;
+  std::vector<ScoredView> best;
   for (const std::size_t i : order) {
     if (static_cast<int>(best.size()) > count) break;
     const BoardPlacement& p = candidates[i].placement;
     if (std::any_of(best.begin(), best.end(),
-                    [&](const RatedView& v) { return beside(v.placement, p); })) {
+                    [&](const ScoredView& v) { return beside(v.placement, p); })) {
       continue;
     }
     best.push_back({p, sd_before, sd[i]});
@@ -110,7 +110,7 @@ Eigen::MatrixXd updated_factor(const Eigen::MatrixXd& factor,
 
 ViewAdvice advise_views(const Eigen::MatrixXd& factor,
                         const std::vector<CandidateView>& candidates,
-                        const WantedError& wanted,
+                        const TargetQuantity& wanted,
                         const ViewAdviceOptions& options) {
   if (candidates.empty()) throw Error("advice", "there is no view to choose from", "");
   Eigen::MatrixXd F = factor;
@@ -126,7 +126,7 @@ ViewAdvice advise_views(const Eigen::MatrixXd& factor,
     const auto best = std::min_element(sd.begin(), sd.end()) - sd.begin();
     if (step == 0) {
       const auto worst = std::max_element(sd.begin(), sd.end()) - sd.begin();
-      advice.least_helpful = {candidates[worst].placement, before, sd[worst]};
+      advice.worst_candidate = {candidates[worst].placement, before, sd[worst]};
       advice.alternatives = distinct_best(candidates, sd, before, options.alternatives);
     }
     if (step < options.views) {

@@ -6,7 +6,7 @@
 
 #include "calib/board/board_placement.h"
 #include "calib/rig.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 
 namespace vernier::internal {
 
@@ -18,16 +18,16 @@ struct CandidateView {
 };
 
 /// A view with what it would do to the wanted error.
-struct RatedView {
+struct ScoredView {
   BoardPlacement placement;
   double sd_before = 0, sd_after = 0;  ///< in the wanted error's unit
 };
 
 struct ViewAdvice {
-  std::vector<RatedView> views;         ///< to take one after the other, each given the former
-  std::vector<RatedView> alternatives;  ///< to the first, best first, none next to another
-  RatedView least_helpful;              ///< of all the candidates, as a first view
-  std::vector<double> sd_after_more;    ///< after 1, 2, … more views chosen in the same way
+  std::vector<ScoredView> views;         ///< to take one after the other, each given the former
+  std::vector<ScoredView> alternatives;  ///< to the first, best first, none next to another
+  ScoredView worst_candidate;            ///< of all the candidates, as a first view
+  std::vector<double> sd_after_more;     ///< after 1, 2, … more views chosen in the same way
 };
 
 struct ViewAdviceOptions {
@@ -61,7 +61,7 @@ Eigen::MatrixXd updated_factor(const Eigen::MatrixXd& factor,
 /// no candidate, or where the wanted error is already zero (what it depends on is held).
 ViewAdvice advise_views(const Eigen::MatrixXd& factor,
                         const std::vector<CandidateView>& candidates,
-                        const WantedError& wanted,
+                        const TargetQuantity& wanted,
                         const ViewAdviceOptions& options = {});
 
 }  // namespace vernier::internal

@@ -24,7 +24,7 @@ Matrix6 motion_at_origin(const Pose& T_first_board, double frames) {
 }
 
 /// Derivative of frame f's pose by the rig with the warp carried along.
-Eigen::Matrix<double, 6, Eigen::Dynamic> total_by_rig(const BoardPosesGivenRig& given,
+Eigen::Matrix<double, 6, Eigen::Dynamic> total_by_rig(const ConditionalBoardPoses& given,
                                                       std::size_t f) {
   return given.frames[f].by_rig + given.frames[f].by_warp * given.warp_by_rig;
 }
@@ -46,7 +46,7 @@ Eigen::MatrixXd chained(const Eigen::MatrixXd& C,
 }  // namespace
 
 Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint) {
-  const BoardPosesGivenRig& given = joint.given_rig;
+  const ConditionalBoardPoses& given = joint.given_rig;
   const auto n = joint.rig_covariance.rows();
   const auto frames = static_cast<double>(given.frames.size());
   Eigen::MatrixXd by_rig = Eigen::MatrixXd::Zero(6, n);
@@ -66,7 +66,7 @@ Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint) {
 }
 
 Eigen::MatrixXd rig_and_poses_covariance(const RigAndBoards& joint) {
-  const BoardPosesGivenRig& given = joint.given_rig;
+  const ConditionalBoardPoses& given = joint.given_rig;
   const auto frames = static_cast<Eigen::Index>(given.frames.size());
   Eigen::MatrixXd K(6 * frames, joint.rig_covariance.rows()), W(6 * frames, 2);
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6 * frames, 6 * frames);
@@ -85,21 +85,21 @@ MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               double psi_c,
                               std::uint64_t seed,
                               std::uint32_t trial) {
-  const BoardPosesGivenRig& given = joint.given_rig;
+  const ConditionalBoardPoses& given = joint.given_rig;
   const auto place = [&](int feature) {
-    return DrawPlace{.seed = seed,
-                     .trial = trial,
-                     .feature = static_cast<std::uint32_t>(feature),
-                     .source = static_cast<std::uint32_t>(DrawSource::monte_carlo)};
+    return RandomCounter{.seed = seed,
+                         .trial = trial,
+                         .feature = static_cast<std::uint32_t>(feature),
+                         .source = static_cast<std::uint32_t>(DrawSource::monte_carlo)};
   };
   const double sigma = psi_c * joint.board_sigma_px;
-  const Eigen::Vector2d z_warp = Draws(place(-1)).normals(2);
+  const Eigen::Vector2d z_warp = RandomStream(place(-1)).normals(2);
   const Eigen::Vector2d warp =
       given.warp_by_rig * rig_deviation + sigma * given.warp_factor * z_warp;
   MeanBoardMap map{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
   for (std::size_t f = 0; f < given.frames.size(); ++f) {
     const auto& frame = given.frames[f];
-    const Eigen::Matrix<double, 6, 1> z = Draws(place(joint.frames[f])).normals(6);
+    const Eigen::Matrix<double, 6, 1> z = RandomStream(place(joint.frames[f])).normals(6);
     const Eigen::Matrix<double, 6, 1> delta =
         frame.by_rig * rig_deviation + frame.by_warp * warp + sigma * frame.factor * z;
     const Pose moved = retract(joint.T_first_board[f], delta) * joint.T_first_board[f].inverse();

@@ -30,7 +30,7 @@ struct MeanBoardMap {
 };
 
 /// One draw of the boards given that the rig deviates by `rig_deviation`: the mean of T_f′ T_f⁻¹,
-/// all of it and not only its linear part. Draws are those of (seed, trial), frame by frame.
+/// all of it and not only its linear part. RandomStream are those of (seed, trial), frame by frame.
 MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               const Eigen::VectorXd& rig_deviation,
                               double psi_c,

@@ -23,8 +23,8 @@ using namespace internal;
 
 namespace {
 
-constexpr int most_columns = core_parameter_count + 8 + 6 + 6;  // opencv8, pose, motion
-using Sensitivity = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, most_columns>;
+constexpr int max_columns = core_parameter_count + 8 + 6 + 6;  // opencv8, pose, motion
+using Sensitivity = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, max_columns>;
 
 void check_camera(const Rig& rig, int camera) {
   if (camera >= 0 && camera < static_cast<int>(rig.cameras.size())) return;

@@ -61,7 +61,7 @@ RigAndBoards rig_and_boards(const RigEstimate& estimate,
   joint.frames = evidence.frames;
   joint.T_first_board = evidence.T_first_board;
   joint.rig_covariance = required_covariance(estimate, choice, place).matrix;
-  joint.given_rig = board_poses_given_rig(
+  joint.given_rig = conditional_board_poses(
       evidence.observations,
       {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m});
   double inflation = 1;

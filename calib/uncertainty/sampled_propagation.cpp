@@ -90,10 +90,10 @@ Eigen::Vector3d carried(const Pose& told,
 }
 
 Eigen::Vector4d pair_noise(const SamplingOptions& options, std::uint32_t trial) {
-  Draws draws({.seed = options.seed,
-               .trial = trial,
-               .source = static_cast<std::uint32_t>(DrawSource::monte_carlo),
-               .frame = 1});
+  RandomStream draws({.seed = options.seed,
+                      .trial = trial,
+                      .source = static_cast<std::uint32_t>(DrawSource::monte_carlo),
+                      .frame = 1});
   return draws.normals(4);
 }
 

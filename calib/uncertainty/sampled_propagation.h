@@ -38,8 +38,8 @@ struct SampledPixel {
 };
 
 /// The sampled side of calib/projection_uncertainty.h: every draw is projected in full, nothing is
-/// linearised. Draws of the rig are those of `vernier sample`; where the point is fixed to the
-/// boards their poses are drawn given the rig, so `boards` must be there and of the same
+/// linearised. RandomStream of the rig are those of `vernier sample`; where the point is fixed to
+/// the boards their poses are drawn given the rig, so `boards` must be there and of the same
 /// covariance as the sampler's. One result a point. Throws Error where it is not, or unless
 /// samples >= 2.
 std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,

@@ -20,9 +20,9 @@ RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
 }
 
 Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
-  Draws draws({.seed = seed,
-               .trial = trial,
-               .source = static_cast<std::uint32_t>(DrawSource::calibration)});
+  RandomStream draws({.seed = seed,
+                      .trial = trial,
+                      .source = static_cast<std::uint32_t>(DrawSource::calibration)});
   const Eigen::MatrixXd& factor = decomposition_.factor();
   const Eigen::VectorXd unit = factor * draws.normals(static_cast<int>(factor.cols()));
   return psi_c * unit;

@@ -33,8 +33,8 @@
 namespace vernier::internal {
 namespace {
 
-constexpr int fewest_frames = 6;
-constexpr int most_groups = 8;
+constexpr int min_frames_to_compare = 6;
+constexpr int max_groups = 8;
 constexpr double clear_gain_sigmas = 3;  // a false warning once in 700 models, were gains normal
 constexpr double clear_move_sigmas = 3;
 
@@ -60,7 +60,7 @@ std::vector<std::vector<int>> dealt(const BoardObservations& observations) {
   for (const BoardView& view : observations.views) cameras_of[view.frame].push_back(view.camera);
   std::map<std::vector<int>, std::vector<int>> seen_by;  // frames by cameras
   for (const auto& [frame, cameras] : cameras_of) seen_by[cameras].push_back(frame);
-  std::vector<std::vector<int>> groups(std::min<std::size_t>(cameras_of.size(), most_groups));
+  std::vector<std::vector<int>> groups(std::min<std::size_t>(cameras_of.size(), max_groups));
   std::size_t next = 0;
   for (const auto& [cameras, frames] : seen_by) {
     for (const int frame : frames) groups[next++ % groups.size()].push_back(frame);
@@ -238,7 +238,7 @@ ModelScore score_of(const std::vector<CameraModel>& richer,
 
 ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,
-                               int most_frames) {
+                               int max_frames) {
   ModelComparison comparison;
   if (!estimate.evidence || !estimate.covariance || !estimate.calibration) {
     throw Error("model comparison", "the calibration has no evidence or covariance",
@@ -251,13 +251,13 @@ ModelComparison compare_models(const RigEstimate& estimate,
         "there is none richer than " + name_of(models_of(estimate.rig)) + " here";
     return comparison;
   }
-  if (evidence.frames.size() < fewest_frames) {
-    comparison.not_compared =
-        fmt::format("{} frames are too few, it takes {}", evidence.frames.size(), fewest_frames);
+  if (evidence.frames.size() < min_frames_to_compare) {
+    comparison.not_compared = fmt::format("{} frames are too few, it takes {}",
+                                          evidence.frames.size(), min_frames_to_compare);
     return comparison;
   }
 
-  const std::vector<int> frames = evenly_spaced(evidence.frames, most_frames);
+  const std::vector<int> frames = evenly_spaced(evidence.frames, max_frames);
   const BoardState whole{estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
   const BoardState state = at_frames(whole, frames);
   const BoardObservations observations = at_frames(evidence.observations, frames);

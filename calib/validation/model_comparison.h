@@ -29,7 +29,7 @@ struct ModelScore {
 /// (calib/camera/model_nesting.h) predicts better, by leaving views out. The frames are dealt into
 /// at most eight groups, those that the same cameras saw evenly; each group is left out in turn,
 /// every model calibrated on the rest (which must determine it), and a left-out frame's squared
-/// error taken after fitting its board's pose alone. With more than `most_frames`, evenly spaced
+/// error taken after fitting its board's pose alone. With more than `max_frames`, evenly spaced
 /// ones stand for all.
 struct ModelComparison {
   ModelScore in_use;
@@ -45,6 +45,6 @@ struct ModelComparison {
 /// evidence, covariance or summary.
 ModelComparison compare_models(const RigEstimate& estimate,
                                const CalibrationOptions& options,
-                               int most_frames = 60);
+                               int max_frames = 60);
 
 }  // namespace vernier::internal

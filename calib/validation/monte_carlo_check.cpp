@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
 constexpr int wishart_draws = 2000;
-constexpr double least_p = 0.005;
+constexpr double min_p = 0.005;
 
 /// Makes the noisy copies of one calibration.
 class Copies {
@@ -54,7 +54,7 @@ class Copies {
     ReprojectionProblem problem = problem_;
     for (std::size_t k = 0; k < priors_.size(); ++k) {
       // P = root rootᵀ: the mean's covariance is the pseudo-inverse, of root whiteᵀ z.
-      Draws draws(place(trial, prior_feature + static_cast<std::uint32_t>(k)));
+      RandomStream draws(place(trial, prior_feature + static_cast<std::uint32_t>(k)));
       const Eigen::MatrixXd& white = priors_[k].white;
       problem.priors[k].mean =
           retract(state_.rig, white.transpose() * draws.normals(static_cast<int>(white.rows())));
@@ -63,7 +63,7 @@ class Copies {
   }
 
  private:
-  DrawPlace place(std::uint32_t trial, std::uint32_t feature) const {
+  RandomCounter place(std::uint32_t trial, std::uint32_t feature) const {
     return {.seed = seed_,
             .trial = trial,
             .feature = feature,
@@ -75,7 +75,7 @@ class Copies {
     Eigen::Index at = 0;
     for (std::size_t v = 0; v < predicted_.size(); ++v) {
       const BoardView& view = observations_.views[v];
-      Draws draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
+      RandomStream draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
       for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
         const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
         const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);
@@ -101,9 +101,9 @@ class Copies {
 std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
   std::vector<double> least(wishart_draws), largest(wishart_draws);
   for (int k = 0; k < wishart_draws; ++k) {
-    Draws draws({.seed = seed,
-                 .trial = static_cast<std::uint32_t>(k),
-                 .source = static_cast<std::uint32_t>(DrawSource::wishart)});
+    RandomStream draws({.seed = seed,
+                        .trial = static_cast<std::uint32_t>(k),
+                        .source = static_cast<std::uint32_t>(DrawSource::wishart)});
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(q, q);
     for (int i = 0; i < q; ++i) {
       A(i, i) = std::sqrt(draw_chi_squared(draws, n - i));
@@ -164,12 +164,12 @@ void judge(const Eigen::MatrixXd& errors,
 
 }  // namespace
 
-bool MonteCarloCheck::copies_solved() const { return 100 * failed <= trials + failed; }
+bool MonteCarloCheck::enough_trials_solved() const { return 100 * failed <= trials + failed; }
 
-bool MonteCarloCheck::scatter_as_stated() const {
+bool MonteCarloCheck::scatter_matches_covariance() const {
   return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
          eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
-         ks_p > least_p && ks_p_components > least_p;
+         ks_p > min_p && ks_p_components > min_p;
 }
 
 MonteCarloCheck monte_carlo_check(const BoardObservations& observations,

@@ -39,11 +39,11 @@ struct MonteCarloCheck {
       0;  ///< the least of q tests of W δ against N(0, 1), times q (Bonferroni)
 
   /// At most 1 % of the copies failed. Those that do are not a random part of all.
-  bool copies_solved() const;
+  bool enough_trials_solved() const;
   /// Nothing in the scatter speaks against C: the mean NEES in its 99 % interval, the eigenvalues
   /// in their band, both ks_p above 0.005. A right covariance fails in at most 3 % of checks.
-  bool scatter_as_stated() const;
-  bool consistent() const { return copies_solved() && scatter_as_stated(); }
+  bool scatter_matches_covariance() const;
+  bool consistent() const { return enough_trials_solved() && scatter_matches_covariance(); }
 };
 
 /// Solves copies of the calibration with predicted corners at `state` plus noise N(0, σ²),

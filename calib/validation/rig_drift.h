@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/combine.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 
 namespace vernier::internal {
 
@@ -16,10 +16,10 @@ struct MonitoredBatch {
   std::string name;
   std::size_t pairs = 0, outliers = 0;
   double rms_px = 0;
-  Eigen::VectorXd offset;    ///< from the combined rig, in its tangent
-  Eigen::VectorXd sigma;     ///< standard deviation of that offset; 0 where the batch says nothing
-  PriorAgreement agreement;  ///< with the inputs before it
-  bool is_all = false;       ///< no other batch is in the combination: there is no drift to see
+  Eigen::VectorXd offset;  ///< from the combined rig, in its tangent
+  Eigen::VectorXd sigma;   ///< standard deviation of that offset; 0 where the batch says nothing
+  PriorConsistency agreement;  ///< with the inputs before it
+  bool is_all = false;         ///< no other batch is in the combination: there is no drift to see
 };
 
 /// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the

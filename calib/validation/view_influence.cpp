@@ -34,12 +34,12 @@ std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equation
     one.largest_share = h.size() > 0 ? h.maxCoeff() : 0;
     one.delta = L * u;
     one.influence = u.norm();
-    one.influence_noise = std::sqrt((h * (1 - h)).sum());
-    one.influence_left_out = std::numeric_limits<double>::infinity();
+    one.expected_influence = std::sqrt((h * (1 - h)).sum());
+    one.leave_one_out_influence = std::numeric_limits<double>::infinity();
     if (one.largest_share < decides_alone) {
       const Eigen::VectorXd without = V * ((V.transpose() * u).array() / (1 - h)).matrix();
-      one.influence_left_out = without.norm();
-      one.move_if_left_out = L * without;
+      one.leave_one_out_influence = without.norm();
+      one.leave_one_out_delta = L * without;
     }
     influences.push_back(std::move(one));
   }

@@ -29,10 +29,11 @@ struct ViewInfluence {
   double leverage = 0;       ///< tr(C S_f); in sum the parameters that the views determine
   double largest_share = 0;  ///< largest eigenvalue of H_f: of what is known in its best direction
   double influence = 0;      ///< |L⁻¹ δ_f|
-  double influence_noise = 0;        ///< (tr(H_f − H_f²))^½, what independent noise gives (rms)
-  double influence_left_out = 0;     ///< |L⁻¹ (move without)|; infinite where largest_share is 1
-  Eigen::VectorXd delta;             ///< δ_f, in the tangent of calib/rig.h
-  Eigen::VectorXd move_if_left_out;  ///< "move without"; empty where influence_left_out is infinite
+  double expected_influence = 0;  ///< (tr(H_f − H_f²))^½, what independent noise gives (rms)
+  double leave_one_out_influence = 0;  ///< |L⁻¹ (move without)|; infinite where largest_share is 1
+  Eigen::VectorXd delta;               ///< δ_f, in the tangent of calib/rig.h
+  Eigen::VectorXd
+      leave_one_out_delta;  ///< "move without"; empty where leave_one_out_influence is infinite
 };
 
 /// One a frame, in the equations' order, `bound` their C (rows of held parameters zero), without

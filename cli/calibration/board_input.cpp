@@ -216,8 +216,8 @@ BoardObservations load(const BoardInput& input, Session& session) {
     session.warn(image.image.string() + ": " + image.reason);
   }
   for (const BoardDetection& image : found.used) {
-    if (image.refused_corners.empty()) continue;
-    session.warn(image.image.string() + ": not used: " + refused_corners_text(image));
+    if (image.rejected_corners.empty()) continue;
+    session.warn(image.image.string() + ": not used: " + rejected_corners_text(image));
   }
   return std::move(found.observations);
 }

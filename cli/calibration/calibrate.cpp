@@ -13,14 +13,14 @@
 #include "cli/calibration/calibrate_pairs.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct CalibrateArguments {
   BoardInput board;
   SolverInput solver;
   std::string output, pairs;
@@ -62,10 +62,10 @@ std::string comparison_table(const ModelComparison& comparison) {
 void judge(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
-  for (const std::string& doubt : summary.doubts) session.doubt(doubt);
+  for (const std::string& doubt : summary.trust_warnings) session.doubt(doubt);
 }
 
-void run(const Options& options, Session& session) {
+void run(const CalibrateArguments& options, Session& session) {
   if (!options.pairs.empty()) {
     refuse_options(*options.board.app, board_options, "pairs are of no board");
     refuse_options(*options.board.app, std::array{"--model", "--know"},
@@ -77,8 +77,8 @@ void run(const Options& options, Session& session) {
     calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
     return;
   }
-  spare_inputs(files_named(options.board), options.output);
-  spare_inputs({options.solver.prior}, options.output);
+  check_output_is_not_input(files_named(options.board), options.output);
+  check_output_is_not_input({options.solver.prior}, options.output);
   const CalibrationOptions calibration = calibration_options(options.solver, session);
   RigEstimate estimate = calibrate(load(options.board, session), calibration);
   ModelComparison comparison;
@@ -105,7 +105,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CalibrateArguments>();
   CLI::App* verb =
       add_verb(app, session, "calibrate",
                "calibrate a rig from images or corners of a board, or from matched corners of any "

@@ -11,10 +11,10 @@
 #include "calib/rig_file.h"
 #include "cli/calibration/observability_report.h"
 #include "cli/calibration/solver_input.h"
+#include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 
@@ -28,7 +28,7 @@ void calibrate_pairs(const std::string& pairs_file,
                 "give --prior with a rig file, a calibration or a datasheet's values");
   }
   const std::filesystem::path prior_file = find_rig(solver.prior);
-  spare_inputs({pairs_file, prior_file}, output);
+  check_output_is_not_input({pairs_file, prior_file}, output);
   const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
   SolverInput rest = solver;
@@ -48,7 +48,7 @@ void calibrate_pairs(const std::string& pairs_file,
       rig_table(joint.estimate) + seen.text + fmt::format("written to {}\n", output);
   write_rig(joint.estimate, output, keep_evidence ? KeepEvidence::yes : KeepEvidence::no);
   for (const std::string& warning : joint.estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : joint.estimate.calibration->doubts) session.doubt(doubt);
+  for (const std::string& doubt : joint.estimate.calibration->trust_warnings) session.doubt(doubt);
   session.result(json, text);
 }
 

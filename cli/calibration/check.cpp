@@ -21,9 +21,9 @@
 #include "calib/solver/initial_rig.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/check_file.h"
-#include "cli/calibration/check_left_out.h"
+#include "cli/calibration/check_held_out.h"
 #include "cli/calibration/check_mrcal.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
@@ -32,17 +32,17 @@
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct CheckArguments {
   std::string rig;
   BoardInput board;
   SolverInput solver;
-  NoisyCopies copies;
+  MonteCarloResult copies;
   bool no_mrcal = false, holdout = false;
   int splits = 100, training_frames = 0;
 };
 
-/// Options that nothing would come of.
-void refuse_idle_options(const Options& options) {
+/// CheckArguments that nothing would come of.
+void refuse_idle_options(const CheckArguments& options) {
   const CLI::App& app = *options.board.app;
   if (!options.rig.empty()) {
     const std::string remedy = "leave it out, or give the corners instead of the rig file";
@@ -56,7 +56,7 @@ void refuse_idle_options(const Options& options) {
 }
 
 /// Before anything is solved: boards left out need a pair and some frames.
-void check_holdout(const Options& options, const BoardObservations& observations) {
+void check_holdout(const CheckArguments& options, const BoardObservations& observations) {
   constexpr int fewest_frames = 6, fewest_to_calibrate = 3;
   if (!options.holdout) return;
   const auto frames = static_cast<int>(frames_of(observations).size());
@@ -82,11 +82,11 @@ struct Solved {
 };
 
 /// The calibration that a rig file's evidence is of, solved again from its corners.
-Solved solve_again(const Options& options, Session& session) {
+Solved solve_again(const CheckArguments& options, Session& session) {
   const std::filesystem::path path = find_rig(options.rig);
   RigFile file = read_rig(path);
   for (const std::string& warning : file.warnings) {
-    const bool doubt = warning.starts_with(said_of_itself(path.string()));
+    const bool doubt = warning.starts_with(stored_warning_prefix(path.string()));
     doubt ? session.doubt(warning) : session.warn(warning);
   }
   if (!file.estimate.evidence || !file.estimate.calibration) {
@@ -108,14 +108,14 @@ Solved solve_again(const Options& options, Session& session) {
   return solved;
 }
 
-Solved solve(const Options& options, Session& session) {
+Solved solve(const CheckArguments& options, Session& session) {
   refuse_idle_options(options);
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   BoardObservations observations = load(options.board, session);
   check_holdout(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
-  for (const std::string& doubt : solved.estimate.calibration->doubts) session.doubt(doubt);
+  for (const std::string& doubt : solved.estimate.calibration->trust_warnings) session.doubt(doubt);
   return solved;
 }
 
@@ -137,7 +137,7 @@ CheckedProblem problem_to_check(const Solved& solved) {
   return p;
 }
 
-void run(const Options& options, Session& session) {
+void run(const CheckArguments& options, Session& session) {
   const Solved solved = solve(options, session);
   const CheckedProblem problem = problem_to_check(solved);
   Json json{{"model", model_name(problem.state.rig.cameras[0].model)},
@@ -145,7 +145,7 @@ void run(const Options& options, Session& session) {
             {"frames", problem.state.frames.size()},
             {"pixel_sigma_px", problem.problem.pixel_sigma_px}};
   std::string text;
-  const auto add = [&](const std::string& name, const CheckPart& part) {
+  const auto add = [&](const std::string& name, const CheckSection& part) {
     json[name] = part.json;
     if (!part.reason.empty()) {
       json[name + "_reason"] = part.reason;
@@ -161,12 +161,12 @@ void run(const Options& options, Session& session) {
   } else {
     add("mrcal", check_by_mrcal(problem, session));
   }
-  add("monte_carlo", check_by_noisy_copies(problem, options.copies));
+  add("monte_carlo", check_by_monte_carlo(problem, options.copies));
   if (options.holdout) {
     CalibrationOptions how = solved.how;
     how.reject_outliers = false;  // they are out already
     how.check_input = false;      // and so is what does not fit
-    add("holdout", check_boards_left_out(problem.observations,
+    add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
                                           .splits = options.splits,
                                           .seed = options.copies.seed,
@@ -179,7 +179,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_check(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CheckArguments>();
   CLI::App* verb =
       add_verb(app, session, "check",
                "check a calibration: the same problem by mrcal, and by solving noisy copies of it",

@@ -18,7 +18,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 
 namespace vernier::cli {
 namespace {
@@ -27,8 +27,9 @@ namespace {
 /// bound has five digits.
 constexpr double gate = 1e-4;
 
-Gate parameter_gate(const Rig& stated, const RigEstimate& again) {
-  Gate worst{"parameters, in standard deviations", "max_parameter_diff_sigma", "", 0, gate};
+ToleranceCheck parameter_gate(const Rig& stated, const RigEstimate& again) {
+  ToleranceCheck worst{"parameters, in standard deviations", "max_parameter_diff_sigma", "", 0,
+                       gate};
   const std::vector<std::string> names = parameter_names(stated);
   const Eigen::VectorXd delta = difference(stated, again.rig);
   const Eigen::VectorXd sd = again.covariance_mvb->diagonal().cwiseSqrt();
@@ -42,7 +43,7 @@ Gate parameter_gate(const Rig& stated, const RigEstimate& again) {
   return worst;
 }
 
-Gate covariance_gate_of(const RigEstimate& stated, const RigEstimate& again) {
+ToleranceCheck covariance_gate_of(const RigEstimate& stated, const RigEstimate& again) {
   const Eigen::MatrixXd &A = *stated.covariance_mvb, &B = *again.covariance_mvb;
   CovarianceDifference worst = normalised_difference(A, B);
   for (int i = 0; i < static_cast<int>(B.rows()); ++i) {  // what is held has no variance
@@ -68,10 +69,10 @@ CalibrationOptions options_of_file(const RigEstimate& estimate) {
   // A noise estimated from the residuals makes χ² the degrees of freedom.
   const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
   options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
-  const std::vector<RigKnowledge>& priors = estimate.evidence->priors;
+  const std::vector<GaussianRigPrior>& priors = estimate.evidence->priors;
   if (!priors.empty()) options.prior = priors[0];
   if (priors.size() > 1) {  // single parameters (--know) stand after a file's
-    const RigKnowledge& known = priors[1];
+    const GaussianRigPrior& known = priors[1];
     const std::vector<std::string> all = parameter_names(known.rig);
     for (std::size_t i = 0; i < known.covariance.names.size(); ++i) {
       const std::string& name = known.covariance.names[i];
@@ -97,8 +98,8 @@ RigEstimate with_default_names(RigEstimate estimate) {
   return estimate;
 }
 
-CheckPart check_file(const RigEstimate& stated, const RigEstimate& again) {
-  CheckPart part;
+CheckSection check_file(const RigEstimate& stated, const RigEstimate& again) {
+  CheckSection part;
   if (stated.calibration->prior_dof > 0 && stated.evidence->priors.empty()) {
     part.reason =
         "the file holds no prior, so what it states is not compared with solving again; the rest "
@@ -106,7 +107,7 @@ CheckPart check_file(const RigEstimate& stated, const RigEstimate& again) {
     part.text = part.reason + "\n";
     return part;
   }
-  std::vector<Gate> gates{parameter_gate(stated.rig, again)};
+  std::vector<ToleranceCheck> gates{parameter_gate(stated.rig, again)};
   if (stated.covariance_mvb) gates.push_back(covariance_gate_of(stated, again));
   add_gates("file against solving again", "solving again", gates, part);
   if (!stated.covariance_mvb) part.text += "  the file has no covariance_mvb to compare\n";

@@ -4,7 +4,7 @@
 
 #include "calib/calibrate.h"
 #include "calib/rig_estimate.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 
 #include "cli/program/namespaces.h"
 
@@ -21,6 +21,6 @@ RigEstimate with_default_names(RigEstimate estimate);
 
 /// What a file states, parameters and minimum variance bound, against `again`, the solution of the
 /// problem that its evidence is. Where there was a prior, the reason why they are not compared.
-CheckPart check_file(const RigEstimate& stated, const RigEstimate& again);
+CheckSection check_file(const RigEstimate& stated, const RigEstimate& again);
 
 }  // namespace vernier::cli

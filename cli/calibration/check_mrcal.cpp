@@ -18,7 +18,7 @@
 #include "calib/solver/refined_minimum.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/solver/resolve.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 
@@ -73,8 +73,9 @@ struct MrcalAnswers {
   std::string failure;  ///< why its Python has no answer though it is there
 };
 
-std::vector<Gate> gates_of(const MrcalComparison& solved, const UncertaintyComparison& propagated) {
-  std::vector<Gate> gates{
+std::vector<ToleranceCheck> gates_of(const MrcalComparison& solved,
+                                     const UncertaintyComparison& propagated) {
+  std::vector<ToleranceCheck> gates{
       {"parameters, in standard deviations", "max_parameter_diff_sigma", solved.worst_parameter,
        solved.max_parameter_diff_sigma, parameter_gate_sigma},
       {"covariance, normalised", "max_covariance_diff", solved.worst_covariance,
@@ -107,9 +108,9 @@ MrcalAnswers ask_both(const CheckedProblem& p, const LikeWithLike& like) {
   return answers;
 }
 
-CheckPart part_of(const MrcalAnswers& answers, double vernier_ms, double resolve_ms) {
+CheckSection part_of(const MrcalAnswers& answers, double vernier_ms, double resolve_ms) {
   const auto& [solved, propagated, failure] = answers;
-  CheckPart part;
+  CheckSection part;
   part.json["max_projection_covariance_diff"] = nullptr;
   add_gates(fmt::format("against mrcal {}", mrcal_version()), "mrcal's",
             gates_of(solved.comparison, propagated), part);
@@ -138,8 +139,8 @@ CheckPart part_of(const MrcalAnswers& answers, double vernier_ms, double resolve
 
 }  // namespace
 
-CheckPart check_by_mrcal(const CheckedProblem& p, const Session& session) {
-  CheckPart part;
+CheckSection check_by_mrcal(const CheckedProblem& p, const Session& session) {
+  CheckSection part;
   if (!mrcal_available()) {
     part.reason = "this build has no libmrcal (Debian's libmrcal-dev, then build again)";
   } else {

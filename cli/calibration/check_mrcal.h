@@ -7,7 +7,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/solver/reprojection_problem.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {
@@ -23,13 +23,13 @@ struct CheckedProblem {
 
 /// The same problem by mrcal: its parameters, covariance, projection and triangulation uncertainty
 /// and solving time beside ours, against the gates.
-CheckPart check_by_mrcal(const CheckedProblem& problem, const Session& session);
+CheckSection check_by_mrcal(const CheckedProblem& problem, const Session& session);
 
 /// Noisy copies of the calibration, solved again: errors against the covariance.
-struct NoisyCopies {
+struct MonteCarloResult {
   int trials = 200, threads = 0;
   std::uint64_t seed = 1;
 };
-CheckPart check_by_noisy_copies(const CheckedProblem& problem, const NoisyCopies& copies);
+CheckSection check_by_monte_carlo(const CheckedProblem& problem, const MonteCarloResult& copies);
 
 }  // namespace vernier::cli

@@ -13,22 +13,22 @@
 #include "calib/covariance.h"
 #include "calib/formats/pairs_file.h"
 #include "calib/joint_calibration.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/rig_prior.h"
 #include "calib/validation/rig_drift.h"
 #include "cli/calibration/observability_report.h"
+#include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct CombineArguments {
   std::vector<std::string> inputs;
   std::string prior, mode = "batch", output, drift;
   bool keep_disagreeing = false, monitor = false, no_evidence = false, keep_outliers = false;
@@ -38,7 +38,7 @@ bool is_pairs_file(const std::string& name) {
   return std::filesystem::path(name).extension() == ".csv";
 }
 
-std::vector<CombineInput> load(const Options& options, Session& session) {
+std::vector<CombineInput> load(const CombineArguments& options, Session& session) {
   std::vector<std::string> names = options.inputs;
   if (!options.prior.empty()) names.insert(names.begin(), options.prior);
   std::vector<CombineInput> inputs;
@@ -51,7 +51,8 @@ std::vector<CombineInput> load(const Options& options, Session& session) {
     }
     RigFile file = read_rig(find_rig(name));
     for (const std::string& warning : file.warnings) {  // its doubts come with the result
-      if (!warning.starts_with(said_of_itself(find_rig(name).string()))) session.warn(warning);
+      if (!warning.starts_with(stored_warning_prefix(find_rig(name).string())))
+        session.warn(warning);
     }
     input.estimate = std::move(file.estimate);
   }
@@ -69,17 +70,17 @@ std::string input_table(const Combination& combination) {
       fmt::format("{:<{}} {:>15} {:>10} {:>5} {:>8} {:>10}  {}\n", "input", width, "kind", "chi²",
                   "dof", "clusters", "p", "most against what stood before");
   for (const CombinedInput& input : combination.inputs) {
-    const PriorAgreement& a = input.agreement;
+    const PriorConsistency& a = input.agreement;
     text += fmt::format("{:<{}} {:>15} ", input.name, width, input.kind);
     const std::string out = input.used ? "" : "LEFT OUT: ";
     if (&input == &combination.inputs.front()) {
       text += fmt::format("{:>10} {:>5} {:>8} {:>10}  stands first\n", "", "", "", "");
     } else if (a.dof == 0) {
-      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  {}{}\n", "", "", "", "", out, a.words);
+      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  {}{}\n", "", "", "", "", out, a.description);
     } else {
       text += fmt::format("{:>10.1f} {:>5} {:>8} {:>10.2g}  {}{:.1f} sigma where {}\n", a.chi2,
                           a.dof, a.clusters > 0 ? fmt::format("{}", a.clusters) : "-", a.p_value,
-                          out, a.in_sigma, a.words);
+                          out, a.in_sigma, a.description);
     }
   }
   if (by_f) {
@@ -102,7 +103,7 @@ Json inputs_json(const Combination& combination) {
                     {"clusters", input.agreement.clusters},
                     {"p_value", input.agreement.p_value},
                     {"in_sigma", input.agreement.in_sigma},
-                    {"words", input.agreement.words}});
+                    {"words", input.agreement.description}});
   }
   return json;
 }
@@ -182,7 +183,10 @@ Json drift_json(const std::vector<MonitoredBatch>& batches) {
   return json;
 }
 
-void say_filter(const FilteredRig& filtered, Json& json, std::string& text, Session& session) {
+void say_filter(const InformationFilterResult& filtered,
+                Json& json,
+                std::string& text,
+                Session& session) {
   text += fmt::format(
       "information filter: {} ends {:.2g} of the batch solution's standard deviations from it; "
       "parameters and covariance above are the filter's, residuals and what the pairs brought the "
@@ -190,24 +194,24 @@ void say_filter(const FilteredRig& filtered, Json& json, std::string& text, Sess
       filtered.worst_parameter.empty() ? "no parameter" : filtered.worst_parameter,
       filtered.worst_in_sigma);
   constexpr double overconfident = 0.8;
-  if (filtered.least_sigma_ratio < overconfident) {
+  if (filtered.min_sigma_ratio < overconfident) {
     session.warn(fmt::format(
         "the filter states {:.2g} times the batch solution's sigma for {}: it takes noise for "
         "white and its linearisations for exact",
-        filtered.least_sigma_ratio, filtered.least_parameter));
+        filtered.min_sigma_ratio, filtered.min_parameter));
   }
   json["information_filter"] = {{"worst_in_sigma", filtered.worst_in_sigma},
                                 {"worst_parameter", filtered.worst_parameter},
-                                {"least_sigma_ratio", filtered.least_sigma_ratio},
-                                {"least_parameter", filtered.least_parameter}};
+                                {"least_sigma_ratio", filtered.min_sigma_ratio},
+                                {"least_parameter", filtered.min_parameter}};
 }
 
-void run(const Options& options, Session& session) {
+void run(const CombineArguments& options, Session& session) {
   std::vector<std::filesystem::path> files(options.inputs.begin(), options.inputs.end());
   files.emplace_back(options.prior);
-  spare_inputs(files, options.output);
+  check_output_is_not_input(files, options.output);
   if (!options.drift.empty()) {
-    spare_inputs(files, options.drift);
+    check_output_is_not_input(files, options.drift);
     check_different("--drift", options.drift, options.output);
   }
   const std::vector<CombineInput> inputs = load(options, session);
@@ -219,10 +223,10 @@ void run(const Options& options, Session& session) {
   Json json = Json::object();
   std::string text = input_table(combination), tail;
   if (options.mode == "information") {
-    const FilteredRig filtered = information_filter(inputs, combination, how);
+    const InformationFilterResult filtered = information_filter(inputs, combination, how);
     say_filter(filtered, json, tail, session);
     estimate.rig = filtered.rig;
-    estimate.covariance = whole_covariance({filtered.rig, filtered.covariance});
+    estimate.covariance = full_covariance({filtered.rig, filtered.covariance});
     estimate.covariance->kind = CovarianceKind::combined;
     estimate.covariance_mvb = estimate.covariance->matrix;
     estimate.evidence.reset();
@@ -249,14 +253,14 @@ void run(const Options& options, Session& session) {
   }
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   for (const std::string& warning : estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : estimate.calibration->doubts) session.doubt(doubt);
+  for (const std::string& doubt : estimate.calibration->trust_warnings) session.doubt(doubt);
   session.result(whole, text + tail + fmt::format("written to {}\n", options.output));
 }
 
 }  // namespace
 
 void add_combine(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CombineArguments>();
   CLI::App* verb =
       add_verb(app, session, "combine",
                "one calibration from several: boards, batches of matched pairs, priors",

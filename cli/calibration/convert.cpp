@@ -16,9 +16,9 @@
 #include "calib/rig_estimate.h"
 #include "cli/calibration/convert_formats.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
@@ -28,13 +28,13 @@ constexpr double far_m = 10;
 
 using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>;
 
-struct Options {
+struct ConvertArguments {
   std::vector<std::string> inputs;
   std::string output, from, to, model, names, size;
   double unit_m = 1;
 };
 
-ImportOptions import_options(const Options& options) {
+ImportOptions import_options(const ConvertArguments& options) {
   ImportOptions import;
   import.unit_m = options.unit_m;
   if (!options.model.empty()) import.model = camera_model(options.model);
@@ -84,8 +84,8 @@ std::vector<std::filesystem::path> files_read(RigFormat from,
   return inputs;
 }
 
-/// Options that say what the input itself says.
-void check_options(const Options& options, RigFormat from) {
+/// ConvertArguments that say what the input itself says.
+void check_options(const ConvertArguments& options, RigFormat from) {
   if (!options.size.empty() && from != RigFormat::opencv) {
     throw Error("--size", fmt::format("the files of {} say how large the images are", name(from)),
                 "leave it out");
@@ -142,7 +142,7 @@ void say_all(const ReadRig& read,
   for (const std::string& line : losses) session.say(line);
 }
 
-void run(const Options& options, Session& session) {
+void run(const ConvertArguments& options, Session& session) {
   const std::vector<std::filesystem::path> inputs(options.inputs.begin(), options.inputs.end());
   const RigFormat from = format_of(inputs, options.from);
   const RigFormat to =
@@ -152,7 +152,8 @@ void run(const Options& options, Session& session) {
   rename(read.estimate, options.names);
   const Rig& rig = read.estimate.rig;
   const auto files = files_of(to, read.estimate, options.output);
-  for (const auto& [file, content] : files) spare_inputs(files_read(from, inputs), file);
+  for (const auto& [file, content] : files)
+    check_output_is_not_input(files_read(from, inputs), file);
   if (to == RigFormat::colmap) spare_reconstruction(files);
   write_all(files, options.output);
   const std::vector<std::string> losses = lost(to, read.estimate);
@@ -184,7 +185,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_convert(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ConvertArguments>();
   CLI::App* verb = add_verb(
       app, session, "convert", "rigs to and from mrcal, OpenCV, Kalibr, ROS and COLMAP",
       "vernier convert rig.json --to mrcal -o models/\n"

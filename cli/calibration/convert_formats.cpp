@@ -77,7 +77,7 @@ ReadRig read_vernier(const std::filesystem::path& input, const ImportOptions& op
   return read;
 }
 
-std::vector<ForeignFile> foreign_files(RigFormat format, const Rig& rig, bool folder) {
+std::vector<ExportedFile> foreign_files(RigFormat format, const Rig& rig, bool folder) {
   switch (format) {
     case RigFormat::mrcal:
       return mrcal_cameramodels(rig);
@@ -88,7 +88,7 @@ std::vector<ForeignFile> foreign_files(RigFormat format, const Rig& rig, bool fo
     case RigFormat::colmap:
       return colmap_cameras(rig);
     case RigFormat::ros: {
-      std::vector<ForeignFile> files;
+      std::vector<ExportedFile> files;
       for (const RosCameraInfo& info : rectified_camera_info(rig)) {
         files.push_back(format_ros_camera_info(info));
       }
@@ -180,14 +180,14 @@ std::vector<std::pair<std::filesystem::path, std::string>> files_of(
     return {{folder ? output / "rig.json" : output, format_rig(estimate)}};
   }
   std::vector<std::pair<std::filesystem::path, std::string>> named;
-  const std::vector<ForeignFile> files = foreign_files(format, estimate.rig, folder);
+  const std::vector<ExportedFile> files = foreign_files(format, estimate.rig, folder);
   const bool beside = format == RigFormat::colmap && output.filename() == "cameras.txt";
   if (files.size() > 1 && !folder && !beside) {
     throw Error(output.string(),
                 fmt::format("{} keeps this rig in {} files", name(format), files.size()),
                 "name a folder, with a slash at its end if it is not there yet");
   }
-  for (const ForeignFile& file : files) {
+  for (const ExportedFile& file : files) {
     named.emplace_back(folder   ? output / file.name
                        : beside ? output.parent_path() / file.name
                                 : output,

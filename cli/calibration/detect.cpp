@@ -7,20 +7,20 @@
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "cli/calibration/board_input.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct DetectArguments {
   BoardInput input;
   std::string output;
 };
 
 Json corners_json(const BoardDetection& image) {
   Json refused = Json::array();
-  for (const RefusedCorner& corner : image.refused_corners) {
+  for (const RejectedCorner& corner : image.rejected_corners) {
     refused.push_back({{"corner", corner.id}, {"reason", text_of(corner.why)}});
   }
   return {{"image", image.image.string()},
@@ -37,10 +37,10 @@ BoardTarget shape_of(BoardInput input) {
   return target_of(input);
 }
 
-void run(const Options& options, Session& session) {
+void run(const DetectArguments& options, Session& session) {
   const BoardTarget target = shape_of(options.input);
   check_target(target);
-  spare_inputs(files_named(options.input), options.output);
+  check_output_is_not_input(files_named(options.input), options.output);
   const ImageDetections found = detect_images(image_patterns(options.input), target);
   write_corners(found, target, options.output);
   Json used = Json::array(), refused = Json::array();
@@ -48,9 +48,9 @@ void run(const Options& options, Session& session) {
                                  frames_of(found.observations).size(), options.output);
   for (const BoardDetection& image : found.used) {
     used.push_back(corners_json(image));
-    if (image.refused_corners.empty()) continue;
+    if (image.rejected_corners.empty()) continue;
     text += fmt::format("  {}: {} corners used; not used: {}\n", image.image.string(),
-                        image.ids.size(), refused_corners_text(image));
+                        image.ids.size(), rejected_corners_text(image));
   }
   for (const BoardDetection& image : found.refused) {
     refused.push_back({{"image", image.image.string()}, {"reason", image.reason}});
@@ -68,7 +68,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_detect(CLI::App& app, Session& session) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DetectArguments>();
   CLI::App* verb =
       add_verb(app, session, "detect", "find the corners of a board in images",
                "vernier detect --left 'left*.png' --right 'right*.png' --board 9x6 "

@@ -44,7 +44,7 @@ ObservabilityReport report_observability(const JointCalibration& joint,
   std::string& text = report.text;
   text += "what the pairs brought (standard deviation after over before; 1 is nothing):\n";
   for (const ObservedDirection& d : o.directions) {
-    text += fmt::format("  {:8.4f}  {}\n", d.sd_ratio, d.words);
+    text += fmt::format("  {:8.4f}  {}\n", d.sd_ratio, d.description);
   }
   text += fmt::format(
       "the pairs determine {:.1f} of {} parameters: {} directions are known at least twice as well "
@@ -64,7 +64,7 @@ ObservabilityReport report_observability(const JointCalibration& joint,
   json = {{"from_data", o.from_data},
           {"improved", o.improved},
           {"unchanged", o.unchanged},
-          {"mostly_prior", o.mostly_prior()},
+          {"mostly_prior", o.is_prior_dominated()},
           {"scale_information_ratio", o.scale_information_ratio},
           {"baseline_sd_m", {o.baseline_sd_before_m, o.baseline_sd_after_m}},
           {"range_m", range_m},
@@ -72,7 +72,7 @@ ObservabilityReport report_observability(const JointCalibration& joint,
           {"depth_sigma_m", {before.depth_m, after.depth_m}}};
   json["directions"] = Json::array();
   for (const ObservedDirection& d : o.directions) {
-    json["directions"].push_back({{"sd_ratio", d.sd_ratio}, {"words", d.words}});
+    json["directions"].push_back({{"sd_ratio", d.sd_ratio}, {"words", d.description}});
   }
   return report;
 }

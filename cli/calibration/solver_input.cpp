@@ -41,7 +41,7 @@ HeldParameter held_parameter(const std::string& text) {
 }
 
 /// "left.f_px=525,3".
-KnownParameter known_parameter(const std::string& text) {
+ParameterPrior known_parameter(const std::string& text) {
   const std::size_t equals = text.find('='), comma = text.find(',');
   const std::string option = "--know " + text;
   if (equals == std::string::npos || comma == std::string::npos || comma < equals) {
@@ -84,8 +84,8 @@ void add_solver_options(CLI::App* verb, SolverInput& input) {
   verb->add_flag("--keep-outliers", input.keep_outliers, "leave no corner out");
 }
 
-RigKnowledge usable_prior(const RigFile& file, const std::string& place) {
-  RigKnowledge known = rig_knowledge(file, place);
+GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {
+  GaussianRigPrior known = gaussian_rig_prior(file, place);
   try {
     rig_prior(known.rig, known);
   } catch (const Error& error) {

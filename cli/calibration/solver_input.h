@@ -35,6 +35,6 @@ CalibrationOptions calibration_options(const SolverInput& input, Session& sessio
 
 /// What a rig file says as a prior. Throws Error, naming the file at `place`, where it can be none:
 /// no covariance, or one that is not positive semi-definite or is singular.
-RigKnowledge usable_prior(const RigFile& file, const std::string& place);
+GaussianRigPrior usable_prior(const RigFile& file, const std::string& place);
 
 }  // namespace vernier::cli

@@ -73,7 +73,7 @@ std::string direction_lines(const ScaledDecomposition& decomposition, std::size_
   for (std::size_t k = 0; k < std::min(most, decomposition.directions().size()); ++k) {
     const CovarianceDirection& direction = decomposition.directions()[k];
     text += fmt::format("  {:>2}. {:4.1f} % of the scaled variance; {}\n", k + 1,
-                        100 * direction.variance_share, direction.words);
+                        100 * direction.variance_share, direction.description);
   }
   return text;
 }
@@ -107,7 +107,7 @@ std::string rig_table(const RigEstimate& estimate) {
   }
   text += parameter_lines(estimate);
   if (estimate.covariance) {
-    const ScaledDecomposition decomposition(knowledge_of(estimate, "rig").covariance);
+    const ScaledDecomposition decomposition(gaussian_prior_of(estimate, "rig").covariance);
     text += fmt::format("covariance: {}; condition {:.1e}, scaled {:.1e}; directions:\n",
                         name(estimate.covariance->kind), decomposition.raw_condition(),
                         decomposition.scaled_condition());
@@ -156,11 +156,11 @@ Json rig_json(const RigEstimate& estimate) {
     json["covariance_kind"] = name(estimate.covariance->kind);
     json["sigma"] = list(deviations(estimate.covariance->matrix));
     json["directions"] = Json::array();
-    const ScaledDecomposition decomposition(knowledge_of(estimate, "rig").covariance);
+    const ScaledDecomposition decomposition(gaussian_prior_of(estimate, "rig").covariance);
     json["raw_condition"] = decomposition.raw_condition();
     json["scaled_condition"] = decomposition.scaled_condition();
     for (const CovarianceDirection& d : decomposition.directions()) {
-      json["directions"].push_back({{"share", d.variance_share}, {"words", d.words}});
+      json["directions"].push_back({{"share", d.variance_share}, {"words", d.description}});
     }
   }
   return json;

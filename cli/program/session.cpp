@@ -35,14 +35,14 @@ void Session::say(const std::string& line) const {
 }
 
 void Session::doubt(const std::string& reason) {
-  doubts_.push_back(reason);
+  trust_warnings_.push_back(reason);
   fmt::print(stderr, "vernier: doubtful: {}\n", reason);
 }
 
 void Session::result(const Json& object, const std::string& text) const {
   if (json) {
     Json out = object;
-    if (!doubts_.empty()) out["doubts"] = doubts_;
+    if (!trust_warnings_.empty()) out["doubts"] = trust_warnings_;
     // a file name may hold any bytes
     print_whole(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   } else {
@@ -69,8 +69,8 @@ void Progress::update(int done, int total) {
     return;
   }
   const int tenths = 10 * done / total;
-  if (tenths == tenths_said_) return;
-  tenths_said_ = tenths;
+  if (tenths == tenths_reported_) return;
+  tenths_reported_ = tenths;
   fmt::print(stderr, "{}: {} of {}, {:.0f} s\n", what_, done, total, elapsed);
 }
 

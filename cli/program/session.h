@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 Json json_number(double value);
 
 /// Exit codes of the program (docs/conventions.md).
-enum class Exit { done = 0, internal_error = 1, bad_input = 2, doubtful = 3 };
+enum class Exit { done = 0, internal_error = 1, bad_input = 2, untrusted = 3 };
 
 /// One call of the program: what the verbs share.
 class Session {
@@ -41,14 +41,14 @@ class Session {
   /// The result: the JSON object with --json, else the text, to standard output.
   void result(const Json& object, const std::string& text) const;
 
-  Exit exit_code() const { return doubts_.empty() ? Exit::done : Exit::doubtful; }
-  const std::vector<std::string>& doubts() const { return doubts_; }
+  Exit exit_code() const { return trust_warnings_.empty() ? Exit::done : Exit::untrusted; }
+  const std::vector<std::string>& trust_warnings() const { return trust_warnings_; }
 
   /// The verb to run once the command line has been read.
   std::function<void()> action;
 
  private:
-  std::vector<std::string> doubts_;
+  std::vector<std::string> trust_warnings_;
 };
 
 /// How far a long job is, on standard error: a bar with the time left on a terminal, a plain line
@@ -64,7 +64,7 @@ class Progress {
 
   std::string what_;
   bool quiet_, terminal_, drawn_ = false;
-  int tenths_said_ = -1;
+  int tenths_reported_ = -1;
   std::chrono::steady_clock::time_point start_;
 };
 

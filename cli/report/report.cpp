@@ -11,9 +11,9 @@
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/report/report_calibration.h"
 #include "cli/report/report_data.h"
 #include "cli/report/report_evaluation.h"
@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportArguments {
   std::vector<std::string> inputs, calibrations;
   std::string title, output;
   bool no_proof = false;
@@ -38,7 +38,7 @@ struct Inputs {
   std::vector<std::string> rigs;
 };
 
-Inputs inputs_of(const Options& options) {
+Inputs inputs_of(const ReportArguments& options) {
   Inputs inputs;
   for (const std::string& name : options.inputs) {
     if (!fs::is_directory(name)) {
@@ -61,7 +61,7 @@ Inputs inputs_of(const Options& options) {
   return inputs;
 }
 
-void add_study(const std::string& folder, Session& session, Proof proof, Json& data) {
+void add_study(const std::string& folder, Session& session, Validation proof, Json& data) {
   const Study study = open_folder(folder, session);
   const StudyResults results = study_results(study, folder);
   if (results.blocks_done == 0) {
@@ -111,7 +111,7 @@ std::vector<NamedRig> read_rigs(const std::vector<std::string>& names, Session& 
   return rigs;
 }
 
-void add_rig(const NamedRig& rig, const Session& session, Proof proof, Json& data) {
+void add_rig(const NamedRig& rig, const Session& session, Validation proof, Json& data) {
   data["rigs"].push_back(report_rig(rig.estimate, rig.file, proof, session));
   const Json& calibration = data["rigs"].back()["calibration"];
   if (!calibration.is_object()) return;
@@ -120,7 +120,7 @@ void add_rig(const NamedRig& rig, const Session& session, Proof proof, Json& dat
   }
 }
 
-std::string title_of(const Options& options, const Inputs& inputs) {
+std::string title_of(const ReportArguments& options, const Inputs& inputs) {
   if (!options.title.empty()) return options.title;
   if (!inputs.study.empty()) return "Localisation under calibration error";
   if (!inputs.evaluation.empty()) return "Stereo matchers at edges";
@@ -137,7 +137,7 @@ std::string command_of(const Inputs& inputs) {
   return command + " -o report.html";
 }
 
-void run(const Options& options, Session& session) {
+void run(const ReportArguments& options, Session& session) {
   const fs::path page_folder = shipped_file("page/report.html").parent_path();
   if (page_folder.empty()) {
     throw Error("report", "the page's files are not installed beside the program",
@@ -145,8 +145,8 @@ void run(const Options& options, Session& session) {
   }
   const Inputs inputs = inputs_of(options);
   const std::vector<NamedRig> rigs = read_rigs(inputs.rigs, session);
-  spare_inputs(files_read(inputs), options.output);
-  const Proof proof = options.no_proof ? Proof::skip : Proof::make;
+  check_output_is_not_input(files_read(inputs), options.output);
+  const Validation proof = options.no_proof ? Validation::skip : Validation::make;
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},
                      {"instruction_set", instruction_set()},
@@ -165,7 +165,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_report(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReportArguments>();
   CLI::App* verb =
       add_verb(app, session, "report",
                "one self-contained HTML page of a study, an evaluation or calibrations",

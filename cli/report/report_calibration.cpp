@@ -64,7 +64,7 @@ Json summary_json(const RigEstimate& estimate) {
             {"prior_dof", s.prior_dof},
             {"prior_chi2", s.prior_chi2},
             {"warnings", s.warnings},
-            {"doubts", s.doubts}};
+            {"doubts", s.trust_warnings}};
   if (estimate.evidence) {
     const CalibrationEvidence& evidence = *estimate.evidence;
     std::size_t corners = 0;
@@ -101,7 +101,7 @@ void add_warnings(const Json& more, Json& warnings) {
 
 Json report_rig(const RigEstimate& estimate,
                 const std::string& file,
-                Proof proof,
+                Validation proof,
                 const Session& session) {
   Json json{{"file", file}, {"cameras", Json::array()}};
   std::set<std::string> models;
@@ -131,8 +131,8 @@ Json report_rig(const RigEstimate& estimate,
       json["view_influence"] = report_views(estimate);
     }
   }
-  if (proof == Proof::make) {
-    json["proof"] = report_proof(estimate, file, session);
+  if (proof == Validation::make) {
+    json["proof"] = report_validation(estimate, file, session);
     add_warnings(json["proof"]["warnings"], json["calibration"]["warnings"]);
   }
   return json;

@@ -10,13 +10,13 @@
 namespace vernier::cli {
 
 /// Whether models are compared and boards left out for the page, which calibrates many times.
-enum class Proof { make, skip };
+enum class Validation { make, skip };
 
 /// One rig for the report's page: parameters, covariance, and all that its evidence shows of the
 /// calibration. Where there is no evidence, "missing" says so.
 Json report_rig(const RigEstimate& estimate,
                 const std::string& file,
-                Proof proof,
+                Validation proof,
                 const Session& session);
 
 /// Its parts, from the evidence. Corners and residuals, a list a camera.
@@ -27,6 +27,8 @@ Json report_projection(const RigEstimate& estimate);
 Json report_views(const RigEstimate& estimate);
 /// Richer lens models on views left out, and lengths on boards left out; notes say why one is
 /// missing.
-Json report_proof(const RigEstimate& estimate, const std::string& file, const Session& session);
+Json report_validation(const RigEstimate& estimate,
+                       const std::string& file,
+                       const Session& session);
 
 }  // namespace vernier::cli

@@ -10,11 +10,11 @@
 
 #include "calib/base/atomic_file.h"
 #include "cli/program/session.h"
-#include "cli/simulation/sighting_json.h"
+#include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sensed_view.h"
@@ -142,14 +142,14 @@ Json report_world(const World& world) {
 Json report_view(const Study& study) {
   const ExperimentSettings& settings = study.file.cells[study.file.cells.size() / 2].experiment;
   const Visibility visibility(study.world);
-  const PlanePose pose =
+  const Pose2D pose =
       draw_query(visibility, settings.protocol, settings.mount.height_m, settings.seed, 0);
-  LookOptions options;
+  NoiseFreeViewOptions options;
   options.mount = settings.mount;
   options.with_corners = true;
-  const Look seen = look(visibility, study.rig.rig, pose, options);
+  const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);
-  const StereoSighting sighting = sensor.sense(seen, settings.seed, 0, 0);
+  const StereoObservation sighting = sensor.sense(seen, settings.seed, 0, 0);
   const Json both = sighting_json(study.rig.rig, seen, sighting);
   // A line counts as mismatched where its true and sensed disparity differ by more than shifts do.
   Json sensed = Json::array();

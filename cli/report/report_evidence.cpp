@@ -229,7 +229,7 @@ Json report_views(const RigEstimate& estimate) {
       if (view.frame != one.frame || view.image.empty()) continue;
       images.insert(std::filesystem::path(view.image).filename().string());
     }
-    const bool alone = !std::isfinite(one.influence_left_out);
+    const bool alone = !std::isfinite(one.leave_one_out_influence);
     views.push_back({{"frame", one.frame},
                      {"images", images},
                      {"corners", one.corners},
@@ -237,9 +237,9 @@ Json report_views(const RigEstimate& estimate) {
                      {"leverage", rounded(one.leverage, 4)},
                      {"largest_share", rounded(one.largest_share, 4)},
                      {"influence", rounded(one.influence, 4)},
-                     {"influence_noise", rounded(one.influence_noise, 4)},
-                     {"influence_left_out", rounded(one.influence_left_out, 4)},
-                     {"largest_move", largest_move(alone ? one.delta : one.move_if_left_out,
+                     {"influence_noise", rounded(one.expected_influence, 4)},
+                     {"influence_left_out", rounded(one.leave_one_out_influence, 4)},
+                     {"largest_move", largest_move(alone ? one.delta : one.leave_one_out_delta,
                                                    *estimate.covariance, names)}});
   }
   return views;

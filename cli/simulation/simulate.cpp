@@ -12,9 +12,9 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/simulation/sighting_json.h"
+#include "cli/simulation/observation_json.h"
 #include "localise/place.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
@@ -24,7 +24,7 @@
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct SimulateArguments {
   std::string world = "workshop", rig = "nominal", pose;
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
@@ -58,21 +58,21 @@ SourceSettings sources_of(const std::vector<std::string>& words) {
   return settings;
 }
 
-void run(const Options& options, Session& session) {
+void run(const SimulateArguments& options, Session& session) {
   const World world = build_world(read_world(find_world(options.world)));
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   constexpr double degree = std::numbers::pi / 180;
-  const PlanePose pose{at[0], at[1], at[2] * degree};
+  const Pose2D pose{at[0], at[1], at[2] * degree};
 
   const Visibility visibility(world);
-  LookOptions looking;
+  NoiseFreeViewOptions looking;
   looking.mount = {options.height_m, options.pitch_deg * degree};
   looking.with_corners = true;
-  const Look seen = look(visibility, rig.estimate.rig, pose, looking);
+  const NoiseFreeView seen = look(visibility, rig.estimate.rig, pose, looking);
   const Sensor sensor(rig.estimate.rig, sources_of(options.sources));
-  const StereoSighting sighting = sensor.sense(seen, options.seed, options.trial, 0);
+  const StereoObservation sighting = sensor.sense(seen, options.seed, options.trial, 0);
   const Json json = sighting_json(rig.estimate.rig, seen, sighting);
   session.result(json, fmt::format("at ({:.2f}, {:.2f}) m heading {:.1f} deg: {} edges in view of "
                                    "both eyes, {} sensed; {} corners, {} sensed\n"
@@ -84,7 +84,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SimulateArguments>();
   CLI::App* verb =
       add_verb(app, session, "simulate", "what a rig sees at a pose, through all sources of error",
                "vernier simulate --world workshop --rig nominal --pose 10,7.5,0 "

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct StudyArguments {
   std::vector<std::string> words;  ///< FILE, or status DIR, or merge DIR…
   std::string folder, shard;
   int threads = 0;
@@ -56,7 +56,7 @@ void print(const Study& study, const fs::path& folder, Session& session) {
   session.result(study_json(study, results), study_table(study, results));
 }
 
-void run(const Options& options, Session& session) {
+void run(const StudyArguments& options, Session& session) {
   if (options.folder.empty()) {
     throw Error("study", "no folder for the results is given", "give -o DIR");
   }
@@ -98,7 +98,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Ses
 }
 
 /// Brings the stores of several folders into one and says whether anything is missing.
-void merge(const Options& options, Session& session) {
+void merge(const StudyArguments& options, Session& session) {
   if (options.folder.empty() || options.words.size() < 2) {
     throw Error("study merge", "give the folders to merge and -o DIR", "");
   }
@@ -127,7 +127,7 @@ void merge(const Options& options, Session& session) {
   }
   StudyStore merged(target / "results.sqlite");
   for (const auto& [key, block] : blocks) merged.put(block);
-  for (const auto& [key, value] : notes) merged.put_note(key, value);
+  for (const auto& [key, value] : notes) merged.set_metadata(key, value);
 
   const Study study = open_folder(target, session);
   const StudyResults results = study_results(study, target);
@@ -138,7 +138,7 @@ void merge(const Options& options, Session& session) {
   session.result(study_json(study, results), study_table(study, results));
 }
 
-void dispatch(const Options& options, Session& session) {
+void dispatch(const StudyArguments& options, Session& session) {
   const std::string& first = options.words[0];
   if (first == "status") {
     if (options.words.size() != 2) throw Error("study status", "give one folder", "");
@@ -154,7 +154,7 @@ void dispatch(const Options& options, Session& session) {
 }  // namespace
 
 void add_study(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<StudyArguments>();
   CLI::App* verb =
       add_verb(app, session, "study", "run localisation trials by the thousand; resume, merge",
                "vernier study FILE.toml -o DIR        # run, or resume what DIR holds\n"

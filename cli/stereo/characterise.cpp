@@ -7,8 +7,8 @@
 
 #include "calib/base/atomic_file.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/stereo/characterise_report.h"
 #include "cli/stereo/evaluate_scene.h"
 #include "cli/stereo/matcher_names.h"
@@ -23,7 +23,7 @@
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct CharacteriseArguments {
   SceneOptions scenes;
   MatcherOptions matcher{"edge", {}, 0};
   std::string output, lateral_shift = "common";
@@ -33,15 +33,15 @@ struct Options {
 };
 
 /// What the figures depend on beside the pairs.
-std::string how_measured(const Options& options, const Matcher& matcher) {
+std::string how_measured(const CharacteriseArguments& options, const Matcher& matcher) {
   return fmt::format("matcher {}, {} corners an image, segments from {:g} px{}", matcher.name,
-                     options.sampling.corners, options.sampling.warp.least_length_px,
+                     options.sampling.corners, options.sampling.warp.min_length_px,
                      options.repair ? ", rows repaired" : "");
 }
 
 PairSamples samples_of(const StereoSceneFile& file,
                        const Matcher& matcher,
-                       const Options& options,
+                       const CharacteriseArguments& options,
                        Session& session) {
   const Scene scene = read_scene(file, options.repair, session);
   PairSamples samples = pair_samples(scene.pair, scene.map, file.range, matcher, options.sampling);
@@ -88,10 +88,11 @@ bool say_doubts(const MeasuredSources& sources, Session& session) {
   return any;
 }
 
-void run(const Options& options, Session& session) {
+void run(const CharacteriseArguments& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
-  if (!options.output.empty()) spare_inputs(inputs_of(options.scenes, files), options.output);
-  const Matcher matcher = one_matcher(options.matcher);
+  if (!options.output.empty())
+    check_output_is_not_input(inputs_of(options.scenes, files), options.output);
+  const Matcher matcher = single_matcher(options.matcher);
   const ShiftMode mode =
       options.lateral_shift == "common" ? ShiftMode::common : ShiftMode::independent;
   std::vector<PairSamples> samples;
@@ -122,7 +123,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_characterise(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CharacteriseArguments>();
   CLI::App* verb = add_verb(app, session, "characterise",
                             "the simulator's sources of error, from pairs with truth",
                             "vernier characterise --scenes pairs.toml -o sources.toml\n"
@@ -138,7 +139,7 @@ void add_characterise(CLI::App& app, Session& session) {
                    "differ by")
       ->check(CLI::IsMember({"common", "independent"}))
       ->capture_default_str();
-  verb->add_option("--least-length", o->sampling.warp.least_length_px,
+  verb->add_option("--least-length", o->sampling.warp.min_length_px,
                    "pixels: shorter segments are no features; the simulator's are 10 px and more")
       ->check(finite_and_positive)
       ->capture_default_str();

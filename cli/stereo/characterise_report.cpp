@@ -16,7 +16,7 @@
 namespace vernier::cli {
 namespace {
 
-Json measured_json(const Measured& measured) {
+Json measured_json(const MeasuredValue& measured) {
   return {
       {"value", json_number(measured.value)},
       {"interval_95", {json_number(measured.interval.low), json_number(measured.interval.high)}},
@@ -100,7 +100,7 @@ Json matches_json(const MeasuredSources& s) {
             {"by_disparity", bins}}}};
 }
 
-std::string number(double value) {
+std::string figure_or_dash(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
@@ -119,13 +119,14 @@ std::string details(const MeasuredSources& s) {
       "views: shifted by {} px (rms) against each other, by {} px towards the brighter side; "
       "{:.1f} "
       "% of segments by far more; the truth errs by {} px along the row\n",
-      number(s.lateral_shift.relative_px.value), number(s.lateral_shift.towards_px.value),
-      100 * s.lateral_shift.beyond, number(s.lateral_shift.truth_px));
+      figure_or_dash(s.lateral_shift.relative_px.value),
+      figure_or_dash(s.lateral_shift.towards_px.value), 100 * s.lateral_shift.beyond,
+      figure_or_dash(s.lateral_shift.truth_px));
   text += fmt::format(
       "ends: {} px across, {} px along; {:.0f} % of segments cut short in one view, {:.1f} % of "
       "the "
       "others outliers\n",
-      number(s.endpoints.across_px.value), number(s.endpoints.along_px.value),
+      figure_or_dash(s.endpoints.across_px.value), figure_or_dash(s.endpoints.along_px.value),
       100 * s.endpoints.broken, 100 * s.endpoints.outliers);
   text += fmt::format("lines: {:.1f} % not matched; {} wrong, {} of them not in the right image\n",
                       100 * s.stereo_mismatch.unmatched, s.stereo_mismatch.wrong,
@@ -165,10 +166,11 @@ std::string report_text(const CharacteriseReport& report) {
   const std::vector<SourceEntry> entries = source_entries(report.sources, report.mode);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const SourceEntry& entry = entries[i];
-    text += fmt::format(
-        "{:<20} {:>9} {:>18} {:>18} {:>7} {:>8}  {}{}\n", entry.key, number(entry.measured.value),
-        range(entry.measured.interval), range(over_pairs(report, i)), entry.measured.samples,
-        number(entry.otherwise), entry.written ? "" : "default stays: ", entry.note);
+    text += fmt::format("{:<20} {:>9} {:>18} {:>18} {:>7} {:>8}  {}{}\n", entry.key,
+                        figure_or_dash(entry.measured.value), range(entry.measured.interval),
+                        range(over_pairs(report, i)), entry.measured.samples,
+                        figure_or_dash(entry.otherwise),
+                        entry.written ? "" : "default stays: ", entry.note);
   }
   return text +
          fmt::format("intervals: bootstrap over {} {}\n", report.sources.clusters,

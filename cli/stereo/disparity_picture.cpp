@@ -45,10 +45,10 @@ std::string disparity_picture(const GreyLevels& image,
                               const std::vector<EdgeDisparity>& found,
                               const DisparityRange& range) {
   cv::Mat canvas = faded(image);
-  const double span = std::max(1, range.most_px - range.least_px);
+  const double span = std::max(1, range.max_px - range.min_px);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     mark(canvas, edges[i],
-         found[i].matched() ? blue_to_red((found[i].disparity_px - range.least_px) / span)
+         found[i].matched() ? blue_to_red((found[i].disparity_px - range.min_px) / span)
                             : cv::Scalar(120, 120, 120));
   }
   return png_of(canvas);

@@ -14,8 +14,8 @@
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/stereo/disparity_picture.h"
 #include "cli/stereo/evaluate_draws.h"
 #include "cli/stereo/evaluate_equal_density.h"
@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct EvaluateArguments {
   SceneOptions scenes;
   MatcherOptions matchers{"edge,sgbm", {}, 0};
   std::string outline = "either", picture, error_picture;
@@ -47,7 +47,7 @@ struct Pictures {
   std::string disparity, error;
 };
 
-Pictures pictures_of(const Scene& scene, const Run& run, OutlineRule rule) {
+Pictures pictures_of(const Scene& scene, const Run& run, DiscontinuityRule rule) {
   std::vector<double> errors_px;
   for (std::size_t i = 0; i < scene.edges.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
@@ -76,10 +76,10 @@ Pictures picture_names(std::size_t number, const StereoSceneFile& file) {
 }
 
 /// Refuses outputs that are inputs or each other before any work is done.
-void check_outputs(const Options& options, const std::vector<StereoSceneFile>& files) {
+void check_outputs(const EvaluateArguments& options, const std::vector<StereoSceneFile>& files) {
   const std::vector<fs::path> inputs = inputs_of(options.scenes, files);
   for (const std::string& output : {options.picture, options.error_picture}) {
-    if (!output.empty()) spare_inputs(inputs, output);
+    if (!output.empty()) check_output_is_not_input(inputs, output);
   }
   if (!options.picture.empty() && !options.error_picture.empty()) {
     check_different("--error-picture", options.error_picture, options.picture);
@@ -92,22 +92,22 @@ void check_outputs(const Options& options, const std::vector<StereoSceneFile>& f
   if (fs::exists(folder / "study.toml")) {
     throw Error(options.output, "holds a study", "give the evaluation a folder of its own");
   }
-  spare_inputs(inputs, folder / evaluation_file);
+  check_output_is_not_input(inputs, folder / evaluation_file);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Pictures names = picture_names(i, files[i]);
-    spare_inputs(inputs, folder / names.disparity);
-    spare_inputs(inputs, folder / names.error);
+    check_output_is_not_input(inputs, folder / names.disparity);
+    check_output_is_not_input(inputs, folder / names.error);
   }
 }
 
 using Outputs = std::vector<std::pair<fs::path, std::string>>;
 
 /// What is written of a scene, in the end: nothing where a later one fails.
-void add_outputs(const Options& options,
+void add_outputs(const EvaluateArguments& options,
                  std::size_t number,
                  const Scene& scene,
                  const Run& run,
-                 OutlineRule rule,
+                 DiscontinuityRule rule,
                  Json& of_scene,
                  Outputs& outputs) {
   const bool first = number == 0;
@@ -125,11 +125,11 @@ void add_outputs(const Options& options,
   of_scene["pictures"] = {{"matcher", of_scene["matchers"].begin().key()},
                           {"disparity", names.disparity},
                           {"error", names.error},
-                          {"least_px", scene.file.range.least_px},
-                          {"most_px", scene.file.range.most_px}};
+                          {"least_px", scene.file.range.min_px},
+                          {"most_px", scene.file.range.max_px}};
 }
 
-void write_outputs(const Options& options, const Json& json, Outputs outputs) {
+void write_outputs(const EvaluateArguments& options, const Json& json, Outputs outputs) {
   if (!options.output.empty()) {
     std::error_code failed;
     fs::create_directories(options.output, failed);
@@ -156,14 +156,14 @@ std::vector<Run> run_scene(const Scene& scene,
             {"truth", scene.file.truth.string()},
             {"truth_scale", scene.file.truth_scale},
             {"truth_kind", name(scene.file.truth_kind)},
-            {"least_px", scene.file.range.least_px},
-            {"most_px", scene.file.range.most_px},
+            {"least_px", scene.file.range.min_px},
+            {"most_px", scene.file.range.max_px},
             {"edges", scene.edges.size()},
             {"matchers", Json::object()}};
   std::vector<Run> runs;
   for (std::size_t m = 0; m < matchers.size(); ++m) {
     runs.push_back(run_matcher(matchers[m], scene, how));
-    if (m == 0) check_not_exchanged(matchers[m], scene, runs[m]);
+    if (m == 0) check_not_swapped(matchers[m], scene, runs[m]);
     const Json figures = figures_json(runs[m].score, runs[m].time_ms);
     report.figures[m].push_back(figures);
     report.text += figures_line(scene.file.name, matchers[m].name, figures);
@@ -175,7 +175,9 @@ std::vector<Run> run_scene(const Scene& scene,
 }
 
 /// The means, and the whole as JSON.
-Json concluded(const Options& options, const std::vector<Matcher>& matchers, Report& report) {
+Json concluded(const EvaluateArguments& options,
+               const std::vector<Matcher>& matchers,
+               Report& report) {
   Json json{{"matchers", Json::object()}, {"outline", options.outline}};
   for (std::size_t m = 0; m < matchers.size(); ++m) {
     const std::string& name = matchers[m].name;
@@ -189,9 +191,9 @@ Json concluded(const Options& options, const std::vector<Matcher>& matchers, Rep
   return json;
 }
 
-constexpr double most_psi_c = 1000;  // as of a study's sources
+constexpr double max_psi_c = 1000;  // as of a study's sources
 
-DrawOptions draw_options(const Options& options) {
+DrawOptions draw_options(const EvaluateArguments& options) {
   DrawOptions draws = options.draws;
   const auto list = [](const std::string& text, const std::string& option) {
     const auto count = static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1;
@@ -204,15 +206,15 @@ DrawOptions draw_options(const Options& options) {
     values->erase(std::unique(values->begin(), values->end()), values->end());
   }
   for (const double psi_c : draws.psi_c) {
-    if (psi_c >= 0 && psi_c <= most_psi_c) continue;
-    throw Error("--psi-c", fmt::format("{:g} is not within 0 and {:g}", psi_c, most_psi_c),
+    if (psi_c >= 0 && psi_c <= max_psi_c) continue;
+    throw Error("--psi-c", fmt::format("{:g} is not within 0 and {:g}", psi_c, max_psi_c),
                 "give factors of the standard deviations, such as 0.1,1,10");
   }
   return draws;
 }
 
 /// The call as it would be typed, but for where it writes.
-std::string command_of(const Options& o) {
+std::string command_of(const EvaluateArguments& o) {
   std::string command = "vernier evaluate";
   const auto add = [&](const char* option, const std::string& value) {
     if (!value.empty()) command += fmt::format(" {} '{}'", option, value);
@@ -225,7 +227,7 @@ std::string command_of(const Options& o) {
   add("--right-truth", one.right_truth.string());
   if (o.scenes.scenes.empty()) {
     command += fmt::format(" --truth-scale {:g} --min-disparity {} --max-disparity {}",
-                           one.truth_scale, one.range.least_px, one.range.most_px);
+                           one.truth_scale, one.range.min_px, one.range.max_px);
   }
   add("--rig", one.rig.string());
   add("--matcher", o.matchers.names);
@@ -242,7 +244,7 @@ std::string command_of(const Options& o) {
 }
 
 /// What the figures depend on beside the pairs, which stand with their scores.
-Json settings_json(const Options& options, const std::vector<Matcher>& matchers) {
+Json settings_json(const EvaluateArguments& options, const std::vector<Matcher>& matchers) {
   Json names = Json::array();
   for (const Matcher& matcher : matchers) names.push_back(matcher.name);
   return {{"command", command_of(options)},
@@ -272,7 +274,7 @@ void judge(const Scene& scene, const std::vector<Run>& runs, Session& session) {
   }
 }
 
-void run(const Options& options, Session& session) {
+void run(const EvaluateArguments& options, Session& session) {
   const std::vector<StereoSceneFile> files = scene_files(options.scenes);
   check_outputs(options, files);
   const std::vector<Matcher> matchers = matchers_named(options.matchers);
@@ -280,7 +282,7 @@ void run(const Options& options, Session& session) {
     throw Error("--equal-density", "there is one matcher only", "name another to compare with");
   }
   EvaluationOptions how;
-  if (options.outline == "foreground") how.outline = OutlineRule::foreground;
+  if (options.outline == "foreground") how.outline = DiscontinuityRule::foreground;
   cv::setNumThreads(1);  // CPU times are of one thread
   EvaluationUnderError under_error(matchers, how, draw_options(options));
   EvaluationAtEqualDensity equal_density(matchers);
@@ -306,12 +308,12 @@ void run(const Options& options, Session& session) {
     report.text += EvaluationAtEqualDensity::text(json["equal_density"]);
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
-  json["doubts"] = session.doubts();
+  json["doubts"] = session.trust_warnings();
   write_outputs(options, json, std::move(outputs));
   session.result(json, report.text + under_error.text());
 }
 
-void add_error_options(CLI::App* verb, Options& o) {
+void add_error_options(CLI::App* verb, EvaluateArguments& o) {
   verb->add_flag("--equal-density", o.equal_density,
                  "compare the first matcher with the others where both leave out as much");
   CLI::Option* psi_c =
@@ -341,7 +343,7 @@ void add_error_options(CLI::App* verb, Options& o) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<EvaluateArguments>();
   CLI::App* verb = add_verb(
       app, session, "evaluate", "stereo matchers against ground truth, at the left image's edges",
       "vernier evaluate --left im2.png --right im6.png --truth disp2.png --truth-scale 4 "

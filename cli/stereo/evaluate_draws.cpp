@@ -40,7 +40,7 @@
 namespace vernier::cli {
 /// What one draw gives, without and with repair.
 struct DrawTrial {
-  std::vector<DrawFigures> figures[2];
+  std::vector<DrawMetrics> figures[2];
   GeometricError geometry[2];
   bool repaired = false, physical = true;
 };
@@ -91,13 +91,13 @@ DisparityRange widened(const DisparityRange& range, const SceneRig& rig, double 
     for (const double y : {0.1, 0.5, 0.9}) {
       const Eigen::Vector2d at =
           rig.geometry.size_px.cast<double>().cwiseProduct(Eigen::Vector2d(x, y));
-      const auto c = uncertainty.covariance_px2(at, 0.5 * (range.least_px + range.most_px));
+      const auto c = uncertainty.covariance_px2(at, 0.5 * (range.min_px + range.max_px));
       if (c) most = std::max(most, (*c)(0, 0));
     }
   }
   const int last = rig.geometry.size_px[0] - 1;
   const int room = static_cast<int>(std::min<double>(last, std::ceil(3 * psi_c * std::sqrt(most))));
-  return {std::max(range.least_px - room, -last), std::min(range.most_px + room, last)};
+  return {std::max(range.min_px - room, -last), std::min(range.max_px + room, last)};
 }
 
 /// Where the right camera stands in the left one's frame.
@@ -114,13 +114,13 @@ bool is_physical(const Rig& drawn, const Rig& true_rig) {
          drawn.cameras[0].f_px() > 0 && drawn.cameras[1].f_px() > 0;
 }
 
-std::vector<DrawFigures> figures_of(const WarpedPair& warped,
+std::vector<DrawMetrics> figures_of(const WarpedPair& warped,
                                     const std::vector<EdgePoint>& edges,
                                     const std::vector<TruthAtEdge>& truth,
                                     const DisparityRange& range,
                                     const std::vector<Matcher>& matchers,
                                     const EvaluationOptions& how) {
-  std::vector<DrawFigures> figures;
+  std::vector<DrawMetrics> figures;
   for (const Matcher& matcher : matchers) {
     const WarpedScore s =
         evaluate(warped, edges, truth, matcher.match(warped.pair, edges, range), how);
@@ -161,7 +161,7 @@ DrawTrial run_trial(WarpedPair warped,
 RectifiedPair without_own_field(const Scene& scene) {
   const VerticalField own = vertical_field(scene.pair, scene.file.range);
   return {scene.pair.left, own.significant && !own.unrectified
-                               ? repaired_right(scene.pair.right, own)
+                               ? corrected_right(scene.pair.right, own)
                                : scene.pair.right};
 }
 
@@ -181,7 +181,7 @@ double mean_of_numbers(const std::vector<double>& values) {
 /// none.
 std::vector<double> clusters_of(const ErrorCell& cell,
                                 std::size_t matcher,
-                                double DrawFigures::*figure) {
+                                double DrawMetrics::*figure) {
   std::vector<double> clusters;
   for (const auto& scene : cell.figures) {
     std::vector<double> draws;
@@ -196,11 +196,11 @@ std::vector<double> clusters_of(const ErrorCell& cell,
   return clusters;
 }
 
-double mean_of(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+double mean_of(const ErrorCell& cell, std::size_t matcher, double DrawMetrics::*figure) {
   return mean_of_numbers(clusters_of(cell, matcher, figure));
 }
 
-Interval interval_of(const ErrorCell& cell, std::size_t matcher, double DrawFigures::*figure) {
+Interval interval_of(const ErrorCell& cell, std::size_t matcher, double DrawMetrics::*figure) {
   const std::vector<double> clusters = clusters_of(cell, matcher, figure);
   const Interval interval = cluster_interval(static_cast<int>(clusters.size()),
                                              [&](std::span<const std::size_t> drawn) {
@@ -228,25 +228,26 @@ std::string error_name(const ErrorCell& cell) {
                            : fmt::format("psi_c {:g}", cell.psi_c);
 }
 
-std::string percent(double share) {
+std::string percent_or_dash(double share) {
   return std::isnan(share) ? "-" : fmt::format("{:.2f} %", 100 * share);
 }
 
 std::string pixels(double px) { return std::isnan(px) ? "-" : fmt::format("{:.3f}", px); }
 
 std::string line_of(const ErrorCell& cell, std::size_t m, const std::string& matcher) {
-  const auto mean = [&](double DrawFigures::*figure) { return mean_of(cell, m, figure); };
-  const Json interval = interval_json(interval_of(cell, m, &DrawFigures::mismatch));
+  const auto mean = [&](double DrawMetrics::*figure) { return mean_of(cell, m, figure); };
+  const Json interval = interval_json(interval_of(cell, m, &DrawMetrics::mismatch));
   const std::string range = interval.is_null()
                                 ? "-"
                                 : fmt::format("{:.2f} … {:.2f} %", 100 * interval[0].get<double>(),
                                               100 * interval[1].get<double>());
   const std::string repair = cell.repair ? fmt::format("{}/{}", cell.repaired, cell.pairs) : "no";
-  return fmt::format("{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n",
-                     error_name(cell), repair, pixels(rms(cell.bias_rms_px)),
-                     pixels(rms(cell.rows_rms_px)), matcher, percent(mean(&DrawFigures::density)),
-                     percent(mean(&DrawFigures::bad_1)), percent(mean(&DrawFigures::mismatch)),
-                     range, pixels(mean(&DrawFigures::disparity_error_rms_px)));
+  return fmt::format(
+      "{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n", error_name(cell), repair,
+      pixels(rms(cell.bias_rms_px)), pixels(rms(cell.rows_rms_px)), matcher,
+      percent_or_dash(mean(&DrawMetrics::density)), percent_or_dash(mean(&DrawMetrics::bad_1)),
+      percent_or_dash(mean(&DrawMetrics::mismatch)), range,
+      pixels(mean(&DrawMetrics::disparity_error_rms_px)));
 }
 
 }  // namespace
@@ -300,7 +301,7 @@ void EvaluationUnderError::add(const Scene& scene, Session& session) {
       for_each_index(trials.size(), options_.threads,
                      [&](std::size_t i) { trials[i] = draw(psi_c, range, i); });
     } else {
-      trials[0] = run_trial(with_rows_moved(pair, scene.map, cells_[c].rows_px), scene.file.range,
+      trials[0] = run_trial(with_shifted_rows(pair, scene.map, cells_[c].rows_px), scene.file.range,
                             matchers_, how_);
     }
     for (const std::size_t repaired : {0u, 1u}) take(trials, repaired, cells_[c + repaired]);
@@ -331,19 +332,19 @@ Json EvaluationUnderError::json() const {
   for (const ErrorCell& cell : cells_) {
     Json matchers = Json::object();
     for (std::size_t m = 0; m < matchers_.size(); ++m) {
-      const auto mean = [&](double DrawFigures::*figure) {
+      const auto mean = [&](double DrawMetrics::*figure) {
         return json_number(mean_of(cell, m, figure));
       };
-      const auto interval = [&](double DrawFigures::*figure) {
+      const auto interval = [&](double DrawMetrics::*figure) {
         return interval_json(interval_of(cell, m, figure));
       };
       matchers[matchers_[m].name] = {
-          {"density", mean(&DrawFigures::density)},
-          {"density_interval_95", interval(&DrawFigures::density)},
-          {"bad_1", mean(&DrawFigures::bad_1)},
-          {"mismatch", mean(&DrawFigures::mismatch)},
-          {"mismatch_interval_95", interval(&DrawFigures::mismatch)},
-          {"disparity_error_rms_px", mean(&DrawFigures::disparity_error_rms_px)}};
+          {"density", mean(&DrawMetrics::density)},
+          {"density_interval_95", interval(&DrawMetrics::density)},
+          {"bad_1", mean(&DrawMetrics::bad_1)},
+          {"mismatch", mean(&DrawMetrics::mismatch)},
+          {"mismatch_interval_95", interval(&DrawMetrics::mismatch)},
+          {"disparity_error_rms_px", mean(&DrawMetrics::disparity_error_rms_px)}};
     }
     cells.push_back({{"psi_c", cell.psi_c},
                      {"rows_moved_px", cell.rows_px},

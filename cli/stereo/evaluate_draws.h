@@ -23,7 +23,7 @@ struct DrawOptions {
 };
 
 /// What a matcher did on one pair that a wrong rig rectified; not a number: nothing to share.
-struct DrawFigures {
+struct DrawMetrics {
   double density, bad_1, mismatch, disparity_error_rms_px;
 };
 
@@ -31,7 +31,7 @@ struct DrawFigures {
 struct ErrorCell {
   double psi_c = 0, rows_px = 0;
   bool repair = false;
-  std::vector<std::vector<std::vector<DrawFigures>>> figures;  ///< [scene][draw][matcher]
+  std::vector<std::vector<std::vector<DrawMetrics>>> figures;  ///< [scene][draw][matcher]
   std::vector<double> bias_rms_px, rows_rms_px;                ///< of every scene and draw
   int repaired = 0, pairs = 0;  ///< how many a vertical field was taken away from
   int not_physical = 0;         ///< draws without a pair: cameras exchanged, or no baseline

@@ -65,8 +65,8 @@ Json mean_curve(const std::vector<const std::vector<CurvePoint>*>& curves) {
 }
 
 /// Whether leaving out the less sure changes anything.
-bool states_confidence(const std::vector<SceneCurves>& scenes) {
-  return std::any_of(scenes.begin(), scenes.end(), [](const SceneCurves& scene) {
+bool states_confidence(const std::vector<DensityCurves>& scenes) {
+  return std::any_of(scenes.begin(), scenes.end(), [](const DensityCurves& scene) {
     return scene.peer.front().front().density != scene.peer.front().back().density;
   });
 }
@@ -76,7 +76,7 @@ bool states_confidence(const std::vector<SceneCurves>& scenes) {
 EvaluationAtEqualDensity::EvaluationAtEqualDensity(const std::vector<Matcher>& matchers)
     : matchers_(matchers) {
   for (std::size_t m = 1; m < matchers.size(); ++m) {
-    Peer peer{matchers[m].name, {}, {}, {}, {}};
+    ComparedMatcher peer{matchers[m].name, {}, {}, {}, {}};
     if (peer.name == "sgbm") {
       for (const auto& [mode, words] :
            {std::pair{SgbmMode::three_ways, "3-way"}, std::pair{SgbmMode::five_paths, "5 paths"},
@@ -103,7 +103,7 @@ void EvaluationAtEqualDensity::add(const Scene& scene,
                                    const EvaluationOptions& how) {
   const std::vector<CurvePoint> own = by_confidence(scene, runs.front(), how);
   for (std::size_t p = 0; p < peers_.size(); ++p) {
-    SceneCurves curves{own, {}};
+    DensityCurves curves{own, {}};
     for (const auto& sweep : peers_[p].sweeps) curves.peer.push_back(by_sweep(scene, sweep, how));
     if (peers_[p].sweeps.empty()) curves.peer.push_back(by_confidence(scene, runs[p + 1], how));
     const bool something =
@@ -119,7 +119,7 @@ void EvaluationAtEqualDensity::add(const Scene& scene,
 
 Json EvaluationAtEqualDensity::json() const {
   Json peers = Json::object();
-  for (const Peer& peer : peers_) {
+  for (const ComparedMatcher& peer : peers_) {
     if (peer.scenes.empty()) continue;
     const EqualDensity e = at_equal_density(peer.scenes);
     const bool cut = !peer.sweeps.empty() || states_confidence(peer.scenes);
@@ -138,11 +138,11 @@ Json EvaluationAtEqualDensity::json() const {
 
 Json EvaluationAtEqualDensity::curves() const {
   Json curves = Json::object();
-  for (const Peer& peer : peers_) {
+  for (const ComparedMatcher& peer : peers_) {
     if (peer.scenes.empty()) continue;
     const std::size_t setting = at_equal_density(peer.scenes, {.resamples = 1}).setting;
     std::vector<const std::vector<CurvePoint>*> own, others;
-    for (const SceneCurves& scene : peer.scenes) {
+    for (const DensityCurves& scene : peer.scenes) {
       own.push_back(&scene.own);
       others.push_back(&scene.peer[setting]);
     }

@@ -30,15 +30,15 @@ class EvaluationAtEqualDensity {
   static std::string text(const Json& json);
 
  private:
-  struct Peer {
+  struct ComparedMatcher {
     std::string name;
     std::vector<std::string> settings;
     std::vector<std::vector<Matcher>> sweeps;  ///< matchers of each setting; none: by confidence
-    std::vector<SceneCurves> scenes;
+    std::vector<DensityCurves> scenes;
     std::vector<std::string> left_out;  ///< scenes where one of the two finds nothing
   };
   const std::vector<Matcher>& matchers_;
-  std::vector<Peer> peers_;
+  std::vector<ComparedMatcher> peers_;
 };
 
 }  // namespace vernier::cli

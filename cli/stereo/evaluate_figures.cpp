@@ -11,7 +11,7 @@
 namespace vernier::cli {
 
 Json figures_json(const MatcherScore& s, double time_ms) {
-  const EdgeFigures& f = s.all;
+  const EdgeMetrics& f = s.all;
   if (f.matched == 0) {  // no share of nothing
     Json none{{"density", 0.0}};
     for (const char* key : {"bad_0_5", "bad_1", "bad_2", "mismatch", "rms_inlier_px",
@@ -57,7 +57,7 @@ Json mean_of(const std::vector<Json>& scenes) {
 Json angles_json(const MatcherScore& score) {
   Json bins = Json::array();
   for (std::size_t i = 0; i < score.by_angle.size(); ++i) {
-    const EdgeFigures& f = score.by_angle[i];
+    const EdgeMetrics& f = score.by_angle[i];
     bins.push_back({{"from_deg", 10 * i},
                     {"to_deg", 10 * (i + 1)},
                     {"edges", f.edges},

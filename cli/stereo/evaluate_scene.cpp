@@ -11,7 +11,7 @@
 #include "calib/error.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/session.h"
-#include "cli/stereo/exchanged_pair.h"
+#include "cli/stereo/swapped_pair.h"
 #include "stereo/canny_edges.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
@@ -41,7 +41,7 @@ double cpu_ms() {
 }
 
 /// Corners that match only the other way round.
-void check_corners_not_exchanged(const Scene& scene, const VerticalField& field) {
+void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
   if (field.known || !field.unrectified) return;
   const VerticalField other =
       vertical_field(RectifiedPair{scene.pair.right, scene.pair.left}, scene.file.range);
@@ -55,14 +55,14 @@ void check_corners_not_exchanged(const Scene& scene, const VerticalField& field)
 
 void repair(Scene& scene, bool wanted, Session& session) {
   const VerticalField field = vertical_field(scene.pair, scene.file.range);
-  check_corners_not_exchanged(scene, field);
+  check_corners_not_swapped(scene, field);
   if (!field.significant && !field.unrectified && !wanted) return;
   session.say(scene.file.name + ": " + describe(field));
   if (field.unrectified) {
     session.doubt(scene.file.name +
                   ": its rows do not agree; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
-    scene.pair.right = repaired_right(scene.pair.right, field);
+    scene.pair.right = corrected_right(scene.pair.right, field);
   } else if (field.significant) {
     session.warn(scene.file.name + ": its rows are not quite the same; --repair takes that away");
   }
@@ -79,15 +79,15 @@ void check_range(const Scene& scene, Session& session) {
     ++known;
     least = std::min(least, at.own_px);
     most = std::max(most, at.own_px);
-    outside += at.own_px < static_cast<float>(range.least_px) - 1 ||
-               at.own_px > static_cast<float>(range.most_px) + 1;
+    outside += at.own_px < static_cast<float>(range.min_px) - 1 ||
+               at.own_px > static_cast<float>(range.max_px) + 1;
   }
   const double share = static_cast<double>(outside) / std::max(1, known);
   if (share < some) return;
   const std::string words = fmt::format(
       "{}: the truth of {:.0f} % of the edges is not within {} and {} px, which is searched; it "
       "reaches from {:.0f} to {:.0f}",
-      scene.file.name, 100 * share, range.least_px, range.most_px, least, most);
+      scene.file.name, 100 * share, range.min_px, range.max_px, least, most);
   if (share > much) {
     session.doubt(words);
   } else {
@@ -138,8 +138,8 @@ Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOpti
   return run;
 }
 
-void check_not_exchanged(const Matcher& matcher, const Scene& scene, const Run& run) {
-  check_not_exchanged(
+void check_not_swapped(const Matcher& matcher, const Scene& scene, const Run& run) {
+  check_not_swapped(
       matcher, run.found, scene.file.range,
       [&] {
         return RectifiedPair{scene.pair.right, scene.pair.left};

@@ -39,6 +39,6 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
 Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOptions& how);
 
 /// Throws Error where a matcher finds much more with left and right exchanged.
-void check_not_exchanged(const Matcher& matcher, const Scene& scene, const Run& run);
+void check_not_swapped(const Matcher& matcher, const Scene& scene, const Run& run);
 
 }  // namespace vernier::cli

@@ -17,9 +17,9 @@
 #include "calib/rig_file.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/stereo/match_picture.h"
 #include "stereo/corners/corner_match.h"
 #include "stereo/corners/match_images.h"
@@ -34,7 +34,7 @@ constexpr std::size_t enough = 20;  // … if there are so many
 constexpr double nearly = 0.7;      // as many: the two cannot be told
 constexpr std::size_t probed = 3;   // image pairs that are tried exchanged where few matched
 
-struct Options {
+struct MatchArguments {
   std::string left, right, prior, output, picture;
   ImageMatchingOptions matching;
   int threads = 0;
@@ -51,7 +51,7 @@ double median_sigma(const std::vector<CornerMatch>& matches) {
 
 std::vector<ImageMatching> match_all(const std::vector<ImageFiles>& files,
                                      const RigEstimate& prior,
-                                     const Options& options,
+                                     const MatchArguments& options,
                                      Session& session) {
   std::vector<ImageMatching> all(files.size());
   Progress progress(session, "matching");
@@ -80,11 +80,11 @@ Totals totals(const std::vector<ImageMatching>& all) {
 
 /// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
 /// matches; warns where it gives nearly as many.
-void check_not_exchanged(const std::vector<ImageMatching>& all,
-                         const RigEstimate& prior,
-                         const Options& options,
-                         std::size_t tried,
-                         Session& session) {
+void check_not_swapped(const std::vector<ImageMatching>& all,
+                       const RigEstimate& prior,
+                       const MatchArguments& options,
+                       std::size_t tried,
+                       Session& session) {
   if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
   std::size_t given = 0, exchanged = 0;
   for (std::size_t i = 0; i < std::min(tried, all.size()); ++i) {
@@ -125,7 +125,7 @@ void check_two_images(const std::vector<ImageFiles>& files) {
 /// Throws Error where nothing came of it; says what is doubtful.
 void judge(const std::vector<ImageMatching>& all,
            const RigEstimate& prior,
-           const Options& options,
+           const MatchArguments& options,
            Session& session) {
   const Totals sum = totals(all);
   for (const ImageMatching& m : all) {
@@ -136,7 +136,7 @@ void judge(const std::vector<ImageMatching>& all,
     session.warn(blank.string() + ": " + fault + "; its pair is left out");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
-  check_not_exchanged(all, prior, options, share < suspicious ? probed : 1, session);
+  check_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
   if (share >= suspicious) return;
   if (share >= few) return;
   const std::string fault =
@@ -164,7 +164,9 @@ Json matching_json(const ImageMatching& m) {
 }
 
 /// Both files, or none.
-void write_both(const PairObservations& pairs, const ImageMatching& first, const Options& options) {
+void write_both(const PairObservations& pairs,
+                const ImageMatching& first,
+                const MatchArguments& options) {
   if (!options.picture.empty()) write_match_picture(first, options.picture);
   try {
     write_pairs(pairs, options.output);
@@ -175,15 +177,15 @@ void write_both(const PairObservations& pairs, const ImageMatching& first, const
   }
 }
 
-void run(const Options& options, Session& session) {
+void run(const MatchArguments& options, Session& session) {
   const std::filesystem::path prior_file = find_rig(options.prior);
   const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
   if (prior.estimate.covariance) usable_prior(prior, options.prior);  // else match_images says it
   const auto files = paired_images(options.left, options.right);
-  spare_inputs(inputs(prior_file, files), options.output);
+  check_output_is_not_input(inputs(prior_file, files), options.output);
   if (!options.picture.empty()) {
-    spare_inputs(inputs(prior_file, files), options.picture);
+    check_output_is_not_input(inputs(prior_file, files), options.picture);
     check_different("--picture", options.picture, options.output);
   }
   check_two_images(files);
@@ -210,7 +212,7 @@ void run(const Options& options, Session& session) {
                       pairs.image_pairs.size(), options.output);
   session.result({{"matches", pairs.size()},
                   {"image_pairs", images},
-                  {"doubts", session.doubts()},
+                  {"doubts", session.trust_warnings()},
                   {"output", options.output}},
                  text);
 }
@@ -218,7 +220,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_match(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<MatchArguments>();
   CLI::App* verb = add_verb(app, session, "match",
                             "match corners of any scene between the images of a stereo pair",
                             "vernier match --left 'left*.png' --right 'right*.png' --prior "

@@ -75,7 +75,7 @@ std::vector<Matcher> matchers_named(const MatcherOptions& options) {
   return matchers;
 }
 
-Matcher one_matcher(const MatcherOptions& options) {
+Matcher single_matcher(const MatcherOptions& options) {
   MatcherOptions one = options;
   if (!one.commands.empty()) one.names.clear();
   const std::vector<Matcher> matchers = matchers_named(one);

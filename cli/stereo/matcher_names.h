@@ -25,7 +25,7 @@ struct MatcherOptions {
 std::vector<Matcher> matchers_named(const MatcherOptions& options);
 
 /// The only command or, where there is none, the only one of the list. Throws Error for several.
-Matcher one_matcher(const MatcherOptions& options);
+Matcher single_matcher(const MatcherOptions& options);
 
 /// --command and --time-limit-s.
 CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options);

@@ -18,10 +18,10 @@
 #include "calib/rig_file.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/picture.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -35,14 +35,14 @@ namespace {
 
 constexpr int grid_columns = 40, grid_rows = 30;  // over which deviations are averaged
 constexpr double default_disparity = 0.05;        // of the width, where no depth is given
-constexpr int default_range = 4;                  // the width by the largest disparity
+constexpr int width_by_disparity = 4;             // the width by the largest disparity
 
-struct Options {
+struct RectifyArguments {
   std::string rig, left, right, output, size;
   RectifiedGeometryOptions geometry;
   VerticalFieldOptions field;
   double at_m = 0;
-  int most_disparity_px = 0;
+  int max_disparity_px = 0;
   bool repair = false, masks = false;
   int threads = 0;
 };
@@ -91,12 +91,12 @@ struct Rectified {
 Rectified rectify(const Rig& rig,
                   const GreyLevels& left,
                   const GreyLevels& right,
-                  const Options& options) {
+                  const RectifyArguments& options) {
   Rectified r;
   r.geometry = rectified_geometry(rig, options.geometry);
   r.images = rectified_images(rig, r.geometry, left, right, options.threads);
-  const int most = options.most_disparity_px > 0 ? options.most_disparity_px
-                                                 : r.geometry.size_px[0] / default_range;
+  const int most = options.max_disparity_px > 0 ? options.max_disparity_px
+                                                : r.geometry.size_px[0] / width_by_disparity;
   r.field = vertical_field(r.images, {0, most}, options.field);
   return r;
 }
@@ -106,7 +106,7 @@ void judge(const Rectified& rectified,
            const Rig& rig,
            const GreyLevels& left,
            const GreyLevels& right,
-           const Options& options,
+           const RectifyArguments& options,
            Session& session) {
   const VerticalField& field = rectified.field;
   constexpr double nearly_all = 0.9;
@@ -159,7 +159,7 @@ using Contents = std::vector<std::pair<std::filesystem::path, std::string>>;
 Contents contents(const Rig& rig,
                   const RectifiedGeometry& geometry,
                   const RectifiedImages& images,
-                  const Options& options) {
+                  const RectifyArguments& options) {
   const std::filesystem::path folder = options.output;
   RigEstimate rectified;
   rectified.rig = rectified_rig(rig, geometry);
@@ -198,7 +198,7 @@ Json result_json(const RectifiedGeometry& g,
        {{"left", images.left_valid.blank_share()}, {"right", images.right_valid.blank_share()}}},
       {"uncertainty", uncertainty},
       {"vertical_field", std::move(field)},
-      {"doubts", session.doubts()},
+      {"doubts", session.trust_warnings()},
       {"files", names}};
 }
 
@@ -206,7 +206,7 @@ std::string result_text(const RectifiedGeometry& g,
                         const RectifiedImages& images,
                         const std::optional<Deviations>& d,
                         const std::string& field,
-                        const Options& options,
+                        const RectifyArguments& options,
                         std::size_t files) {
   std::string text = fmt::format(
       "images            {}x{} px, f {:.3f} px, centre ({:.3f}, {:.3f}) px\n"
@@ -229,12 +229,12 @@ std::string result_text(const RectifiedGeometry& g,
          fmt::format("\n{} files written to {}\n", files, options.output);
 }
 
-void run(Options options, Session& session) {
+void run(RectifyArguments options, Session& session) {
   if (!options.size.empty()) {
     const auto [width, height] = parse_size(options.size, "--size");
-    constexpr int most_side = 20'000;
-    constexpr double most_pixels = 1e8;
-    if (width > most_side || height > most_side || double(width) * height > most_pixels) {
+    constexpr int max_side = 20'000;
+    constexpr double max_pixels = 1e8;
+    if (width > max_side || height > max_side || double(width) * height > max_pixels) {
       throw Error("--size",
                   fmt::format("{}x{} is more than a hundred million pixels", width, height),
                   "give a smaller size");
@@ -251,13 +251,13 @@ void run(Options options, Session& session) {
   judge(rectified, rig, left, right, options, session);
   auto& [geometry, images, field] = rectified;
   const bool repaired = options.repair && field.significant;
-  if (repaired) images.pair.right = repaired_right(images.pair.right, field);
+  if (repaired) images.pair.right = corrected_right(images.pair.right, field);
   std::string words = describe(field);
   if (options.repair) words += repaired ? "; repaired" : "; nothing repaired";
 
   const Contents files = contents(rig, geometry, images, options);
   for (const auto& [name, content] : files) {
-    spare_inputs({rig_file, options.left, options.right}, name);
+    check_output_is_not_input({rig_file, options.left, options.right}, name);
   }
   const auto d = deviations(file.estimate, geometry, options.at_m);
   std::filesystem::create_directories(options.output);
@@ -270,7 +270,7 @@ void run(Options options, Session& session) {
 }  // namespace
 
 void add_rectify(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RectifyArguments>();
   CLI::App* verb = add_verb(app, session, "rectify",
                             "turn a pair of images so that every row shows one epipolar plane",
                             "vernier rectify --rig rig.json --left left01.png --right right01.png "
@@ -286,7 +286,7 @@ void add_rectify(CLI::App& app, Session& session) {
                    "depth at which the rig's error is told (default: where the disparity is a "
                    "twentieth of the width)")
       ->check(finite_and_positive);
-  verb->add_option("--max-disparity", o->most_disparity_px,
+  verb->add_option("--max-disparity", o->max_disparity_px,
                    "largest that corners are matched at, px (default: a quarter of the width)")
       ->check(CLI::Range(1, 100'000));
   verb->add_option("--band", o->field.band_px, "rows above and below that corners are matched in")

@@ -24,10 +24,10 @@ void add_scene_options(CLI::App& verb, SceneOptions& o) {
       ->check(finite_and_positive)
       ->excludes(scenes)
       ->capture_default_str();
-  verb.add_option("--max-disparity", o.one.range.most_px, "largest disparity searched, pixels")
+  verb.add_option("--max-disparity", o.one.range.max_px, "largest disparity searched, pixels")
       ->excludes(scenes)
       ->capture_default_str();
-  verb.add_option("--min-disparity", o.one.range.least_px, "smallest one")
+  verb.add_option("--min-disparity", o.one.range.min_px, "smallest one")
       ->excludes(scenes)
       ->capture_default_str();
 }

@@ -15,14 +15,14 @@
 #include "calib/error.h"
 #include "calib/statistics/median.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/stereo/disparity_picture.h"
-#include "cli/stereo/exchanged_pair.h"
 #include "cli/stereo/matcher_names.h"
 #include "cli/stereo/stereo_files.h"
 #include "cli/stereo/stereo_input.h"
+#include "cli/stereo/swapped_pair.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_point.h"
@@ -35,13 +35,13 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double hardly_any = 0.2;     // of the edges: less is doubted
-constexpr double most_doubtful = 0.5;  // of the segments: more of doubtful depth are doubted
+constexpr double hardly_any = 0.2;    // of the edges: less is doubted
+constexpr double max_doubtful = 0.5;  // of the segments: more of doubtful depth are doubted
 
-struct Options {
+struct StereoArguments {
   StereoInputOptions input;
   SpaceSegmentOptions space;
-  double least_angle_deg = 5;
+  double min_angle_deg = 5;
   MatcherOptions matcher{"edge", {}, 0};
   std::string output, picture;
 };
@@ -78,15 +78,15 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
 }
 
 /// Edges that a matcher is asked for, and what it found of them.
-struct EdgeFigures {
+struct EdgeMetrics {
   int asked = 0, matched = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
 };
 
-EdgeFigures edge_figures(const StereoResult& result, double least_angle_rad) {
-  EdgeFigures f;
+EdgeMetrics edge_figures(const StereoResult& result, double min_angle_rad) {
+  EdgeMetrics f;
   for (std::size_t i = 0; i < result.edges.size(); ++i) {
-    if (std::abs(result.edges[i].normal.x()) < std::sin(least_angle_rad)) continue;
+    if (std::abs(result.edges[i].normal.x()) < std::sin(min_angle_rad)) continue;
     ++f.asked;
     f.matched += result.found[i].matched();
   }
@@ -103,15 +103,15 @@ std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& fil
   return edges;
 }
 
-StereoResult look(const Options& options, const StereoInput& input) {
-  const Matcher matcher = one_matcher(options.matcher);
+StereoResult look(const StereoArguments& options, const StereoInput& input) {
+  const Matcher matcher = single_matcher(options.matcher);
   StereoResult result;
   result.edges = edges_of(input, options.input.left);
   result.found = matcher.match(input.pair, result.edges, input.range);
-  check_not_exchanged(matcher, result.found, input.range, input.exchanged, options.input.left);
+  check_not_swapped(matcher, result.found, input.range, input.exchanged, options.input.left);
   result.segments = edge_segments(result.edges);
   SegmentDisparityOptions how;
-  how.least_angle_rad = options.least_angle_deg * std::numbers::pi / 180;
+  how.min_angle_rad = options.min_angle_deg * std::numbers::pi / 180;
   result.lines = segment_disparities(result.edges, result.segments, result.found, how);
   if (!input.geometry) return result;
   std::vector<SegmentDisparity> whole = result.lines;
@@ -130,9 +130,9 @@ std::string sigma_words(const DepthFigures& f) {
                      f.matching_m, f.calibration_m, f.depth_m);
 }
 
-void judge(const Options& options,
+void judge(const StereoArguments& options,
            const StereoInput& input,
-           const EdgeFigures& edges,
+           const EdgeMetrics& edges,
            const DepthFigures& depth,
            Session& session) {
   if (input.field.unrectified) {
@@ -146,12 +146,12 @@ void judge(const Options& options,
     session.doubt(fmt::format(
         "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
         "time, the rows agree and disparities are between {} and {} px",
-        edges.matched, edges.asked, input.range.least_px, input.range.most_px));
+        edges.matched, edges.asked, input.range.min_px, input.range.max_px));
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
     session.doubt("no segment has a place in space; segments.json says why of each");
-  } else if (depth.linear < (1 - most_doubtful) * depth.placed) {
+  } else if (depth.linear < (1 - max_doubtful) * depth.placed) {
     session.doubt(fmt::format(
         "the depth of {} of {} segments is not known to a tenth: {}; {}",
         depth.placed - depth.linear, depth.placed, sigma_words(depth),
@@ -179,20 +179,20 @@ std::map<std::string, int> refusals(const StereoResult& result) {
   return counts;
 }
 
-Json result_json(const Options& options,
+Json result_json(const StereoArguments& options,
                  const StereoInput& input,
                  const StereoResult& result,
-                 const EdgeFigures& edges,
+                 const EdgeMetrics& edges,
                  const DepthFigures& depth) {
   Json segments{{"found", result.segments.size()}};
   for (const auto& [key, count] : refusals(result)) segments[key] = count;
-  Json json{{"matcher", one_matcher(options.matcher).name},
+  Json json{{"matcher", single_matcher(options.matcher).name},
             {"edges", result.edges.size()},
             {"edges_off_the_row", edges.asked},
             {"matched", edges.matched},
             {"density", edges.share()},
-            {"min_disparity_px", input.range.least_px},
-            {"max_disparity_px", input.range.most_px},
+            {"min_disparity_px", input.range.min_px},
+            {"max_disparity_px", input.range.max_px},
             {"segments", segments},
             {"depth", Json()},
             {"vertical_field", vertical_field_json(input.field, input.repaired)}};
@@ -211,12 +211,12 @@ Json result_json(const Options& options,
 
 std::string result_text(const StereoInput& input,
                         const StereoResult& result,
-                        const EdgeFigures& edges,
+                        const EdgeMetrics& edges,
                         const DepthFigures& depth) {
   std::string text = fmt::format(
       "edges             {}, of which {} are off the row; {} matched ({:.1f} %), {} to {} px\n",
-      result.edges.size(), edges.asked, edges.matched, 100 * edges.share(), input.range.least_px,
-      input.range.most_px);
+      result.edges.size(), edges.asked, edges.matched, 100 * edges.share(), input.range.min_px,
+      input.range.max_px);
   text += fmt::format("segments          {} of the left image:", result.segments.size());
   for (const auto& [key, count] : refusals(result)) text += fmt::format(" {} {}", count, key);
   text += '\n';
@@ -235,7 +235,7 @@ std::string result_text(const StereoInput& input,
 }
 
 /// Refuses outputs that are inputs or each other before any work is done.
-void check_outputs(const Options& options) {
+void check_outputs(const StereoArguments& options) {
   std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
   if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
   const std::filesystem::path folder = options.output;
@@ -243,18 +243,18 @@ void check_outputs(const Options& options) {
     throw Error(options.output, "is not a folder", "name another with -o");
   }
   for (const char* name : {"edges.csv", "segments.csv", "segments.json", "segments.ply"}) {
-    spare_inputs(inputs, folder / name);
+    check_output_is_not_input(inputs, folder / name);
     if (!options.picture.empty()) check_different("--picture", options.picture, folder / name);
   }
-  if (!options.picture.empty()) spare_inputs(inputs, options.picture);
+  if (!options.picture.empty()) check_output_is_not_input(inputs, options.picture);
 }
 
-void run(const Options& options, Session& session) {
-  one_matcher(options.matcher);
+void run(const StereoArguments& options, Session& session) {
+  single_matcher(options.matcher);
   check_outputs(options);
   const StereoInput input = read_stereo_input(options.input, session);
   const StereoResult result = look(options, input);
-  const EdgeFigures edges = edge_figures(result, options.least_angle_deg * std::numbers::pi / 180);
+  const EdgeMetrics edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
   judge(options, input, edges, depth, session);
 
@@ -274,7 +274,7 @@ void run(const Options& options, Session& session) {
   }
   write_atomically(files);
   Json json = result_json(options, input, result, edges, depth);
-  json["doubts"] = session.doubts();
+  json["doubts"] = session.trust_warnings();
   json["files"] = names;
   session.result(json, result_text(input, result, edges, depth) +
                            fmt::format("{} files written to {}\n", files.size(), options.output));
@@ -293,9 +293,9 @@ void add_cameras(CLI::App* verb, StereoInputOptions& o) {
   verb->add_option("--offset-px", o.offset_px,
                    "right centre less left one, added to disparities (Middlebury's doffs)")
       ->check(finite);
-  verb->add_option("--max-disparity", o.most_disparity_px,
+  verb->add_option("--max-disparity", o.max_disparity_px,
                    "largest searched, px (default: a quarter of the width)");
-  verb->add_option("--min-disparity", o.least_disparity_px, "smallest one")->capture_default_str();
+  verb->add_option("--min-disparity", o.min_disparity_px, "smallest one")->capture_default_str();
   verb->add_flag("--repair", o.repair,
                  "move the right image by the vertical field, if there is one");
   verb->add_option("--threads", o.threads, "of the rectification; 0: as many as the machine has")
@@ -306,7 +306,7 @@ void add_cameras(CLI::App* verb, StereoInputOptions& o) {
 }  // namespace
 
 void add_stereo(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<StereoArguments>();
   CLI::App* verb = add_verb(
       app, session, "stereo", "edge disparities with standard deviations, and segments in space",
       "vernier stereo --rig rig.json --left left01.png --right right01.png --max-disparity 120 "
@@ -317,7 +317,7 @@ void add_stereo(CLI::App& app, Session& session) {
   auto* names = verb->add_option("--matcher", o->matcher.names, "edge, stretch, bm or sgbm")
                     ->capture_default_str();
   add_command_options(*verb, o->matcher)->excludes(names);
-  verb->add_option("--epipolar-reject-deg", o->least_angle_deg,
+  verb->add_option("--epipolar-reject-deg", o->min_angle_deg,
                    "segments nearer to the row than this have no place")
       ->check(CLI::Range(0.0, 80.0))
       ->capture_default_str();

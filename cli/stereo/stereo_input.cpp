@@ -70,7 +70,7 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
   const Eigen::Vector2i size(input.pair.left.width_px, input.pair.left.height_px);
   if (!o.rig.empty()) {
     input.estimate = read_estimate(o, session);
-    input.geometry = geometry_as_it_stands(input.estimate->rig);
+    input.geometry = geometry_of_rectified_rig(input.estimate->rig);
     if (!input.geometry || input.geometry->size_px != size) {
       throw Error(o.rig,
                   fmt::format("it is not of two pinhole cameras side by side of {}x{} px, which "
@@ -113,7 +113,7 @@ void repair_rows(bool wanted, StereoInput& input, Session& session) {
   if (wanted || field.significant) session.say(describe(field));
   if (!field.significant) return;
   if (wanted) {
-    input.pair.right = repaired_right(input.pair.right, field);
+    input.pair.right = corrected_right(input.pair.right, field);
     input.repaired = true;
   } else {
     session.warn("the rows are not quite the same; --repair takes that away");
@@ -132,9 +132,9 @@ StereoInput read_stereo_input(const StereoInputOptions& options, Session& sessio
   check(options);
   StereoInput input;
   const int width = width_of(options, input, session);
-  input.range = {options.least_disparity_px,
-                 options.most_disparity_px.value_or(
-                     std::max(options.least_disparity_px + 1, width / default_range))};
+  input.range = {options.min_disparity_px,
+                 options.max_disparity_px.value_or(
+                     std::max(options.min_disparity_px + 1, width / default_range))};
   if (options.rectified) {
     take_rectified(options, input, session);
   } else {

@@ -16,7 +16,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/uncertainty/next_view.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -24,7 +24,7 @@
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct AdviseArguments {
   std::string rig, reduce = "depth", board, covariance = "mvb";
   double at_m = 5, square_m = 0, pixel_sigma_px = 0;
   int views = 1, more = 10;
@@ -40,7 +40,7 @@ struct Basis {
   double bound_ratio = 1;  ///< honest sd of the wanted error over the bound's
 };
 
-std::string find_target(const Options& options,
+std::string find_target(const AdviseArguments& options,
                         const RigEstimate& rig,
                         std::vector<Eigen::Vector3d>& target_m,
                         Eigen::Vector2d& warp_m) {
@@ -61,7 +61,9 @@ std::string find_target(const Options& options,
   return fmt::format("that of the calibration, {} corners", target_m.size());
 }
 
-Basis find_basis(const Options& options, const RigEstimate& rig, const WantedError& wanted) {
+Basis find_basis(const AdviseArguments& options,
+                 const RigEstimate& rig,
+                 const TargetQuantity& wanted) {
   const Covariance& honest = required_covariance(rig, options.rig);
   const Covariance bound = chosen_covariance(rig, CovarianceChoice::mvb).value_or(honest);
   Basis basis;
@@ -93,10 +95,10 @@ Basis find_basis(const Options& options, const RigEstimate& rig, const WantedErr
 
 double degrees(double rad) { return rad * 180 / std::numbers::pi; }
 
-Json view_json(const RatedView& view, const Rig& rig, double scale) {
+Json view_json(const ScoredView& view, const Rig& rig, double scale) {
   const BoardPlacement& p = view.placement;
   const Eigen::Vector3d w = vector_from_rotation(p.T_first_board.R), t = p.T_first_board.t;
-  return {{"words", placement_in_words(p, rig.cameras[0])},
+  return {{"words", describe_placement(p, rig.cameras[0])},
           {"rotation_rad", {w.x(), w.y(), w.z()}},
           {"translation_m", {t.x(), t.y(), t.z()}},
           {"centre_px", {p.centre_px.x(), p.centre_px.y()}},
@@ -108,38 +110,38 @@ Json view_json(const RatedView& view, const Rig& rig, double scale) {
           {"reduction", 1 - view.sd_after / view.sd_before}};
 }
 
-std::string percent(const RatedView& view) {
+std::string percent_reduction(const ScoredView& view) {
   return fmt::format("{:.1f} %", 100 * (1 - view.sd_after / view.sd_before));
 }
 
-std::string table_line(const RatedView& view, double scale, const std::string& unit) {
+std::string table_line(const ScoredView& view, double scale, const std::string& unit) {
   const BoardPlacement& p = view.placement;
   return fmt::format(
       "  {:>8.2f} m {:>7.0f} {:>5.0f} px {:>6.0f}° {:>6.0f}° {:>10.3g} {:<3} {:>8}\n", p.distance_m,
       p.centre_px.x(), p.centre_px.y(), degrees(p.turn_rad), degrees(p.tilt_rad),
-      scale * view.sd_after, unit, percent(view));
+      scale * view.sd_after, unit, percent_reduction(view));
 }
 
 std::string advice_text(const ViewAdvice& advice,
-                        const WantedError& wanted,
+                        const TargetQuantity& wanted,
                         const Basis& basis,
                         const Rig& rig) {
   std::string text;
   for (std::size_t i = 0; i < advice.views.size(); ++i) {
-    const RatedView& view = advice.views[i];
+    const ScoredView& view = advice.views[i];
     text += fmt::format("{}. {};\n   the sd of the {} falls from {:.3g} to {:.3g} {} ({})\n", i + 1,
-                        placement_in_words(view.placement, rig.cameras[0]), wanted.name,
+                        describe_placement(view.placement, rig.cameras[0]), wanted.name,
                         basis.scale * view.sd_before, basis.scale * view.sd_after, wanted.unit,
-                        percent(view));
+                        percent_reduction(view));
   }
   text += fmt::format(
       "\ninstead of the first (the least helpful of all last):\n  {:>10} {:>16} {:>7} "
       "{:>7} {:>14} {:>8}\n",
       "distance", "centre", "turn", "tilt", "sd after", "less by");
-  for (const RatedView& view : advice.alternatives) {
+  for (const ScoredView& view : advice.alternatives) {
     text += table_line(view, basis.scale, wanted.unit);
   }
-  text += table_line(advice.least_helpful, basis.scale, wanted.unit);
+  text += table_line(advice.worst_candidate, basis.scale, wanted.unit);
   if (!advice.sd_after_more.empty()) {
     text += fmt::format("\n{} such views, each chosen after the former, would reach {:.3g} {}\n",
                         advice.sd_after_more.size(), basis.scale * advice.sd_after_more.back(),
@@ -159,11 +161,11 @@ std::string basis_text(const Basis& basis) {
   return text + "\n";
 }
 
-void run(const Options& options, Session& session) {
+void run(const AdviseArguments& options, Session& session) {
   const RigFile file = read_rig(find_rig(options.rig));
   for (const std::string& warning : file.warnings) session.warn(warning);
   const RigEstimate& rig = file.estimate;
-  const WantedError wanted = wanted_error(rig.rig, options.reduce, options.at_m);
+  const TargetQuantity wanted = target_quantity(rig.rig, options.reduce, options.at_m);
   const Basis basis = find_basis(options, rig, wanted);
   std::vector<Eigen::Vector3d> target_m;
   Eigen::Vector2d warp_m(0, 0);
@@ -183,14 +185,14 @@ void run(const Options& options, Session& session) {
             {"honest_over_bound", basis.bound_ratio},
             {"pixel_sigma_px", basis.pixel_sigma_px},
             {"candidates", candidates.size()}};
-  const auto list = [&](const std::vector<RatedView>& views) {
+  const auto list = [&](const std::vector<ScoredView>& views) {
     Json entries = Json::array();
-    for (const RatedView& view : views) entries.push_back(view_json(view, rig.rig, basis.scale));
+    for (const ScoredView& view : views) entries.push_back(view_json(view, rig.rig, basis.scale));
     return entries;
   };
   json["views"] = list(advice.views);
   json["alternatives"] = list(advice.alternatives);
-  json["least_helpful"] = view_json(advice.least_helpful, rig.rig, basis.scale);
+  json["least_helpful"] = view_json(advice.worst_candidate, rig.rig, basis.scale);
   json["sd_after_more"] = Json::array();
   for (const double sd : advice.sd_after_more) json["sd_after_more"].push_back(basis.scale * sd);
   session.result(json, advice_text(advice, wanted, basis, rig.rig) + basis_text(basis));
@@ -199,7 +201,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_advise(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<AdviseArguments>();
   CLI::App* verb =
       add_verb(app, session, "advise", "say how to hold the board next, to reduce an error most",
                "vernier advise rig.json --reduce depth --at-m 5 --views 3");

@@ -26,7 +26,7 @@ namespace {
 constexpr double beyond = 0.01;  // p below which the two are said to differ
 constexpr double too_close = 0.999;
 
-struct Options {
+struct DiffArguments {
   std::string a, b, distances = "1,3,10,inf", grid = "20x15", covariance = "honest";
   double focus_share = 0.7;
 };
@@ -48,7 +48,7 @@ RigEstimate load(const std::string& name, Comparison& found) {
 }
 
 /// Sets what says how far the numbers can be trusted.
-void judge(const Options& options, Comparison& found) {
+void judge(const DiffArguments& options, Comparison& found) {
   const auto warn = [&](std::string line) { found.warnings.push_back(std::move(line)); };
   for (const auto& [covariance, name] :
        {std::pair(&found.covariance_a, &options.a), std::pair(&found.covariance_b, &options.b)}) {
@@ -78,7 +78,7 @@ void judge(const Options& options, Comparison& found) {
   }
 }
 
-Comparison compare(const Options& options) {
+Comparison compare(const DiffArguments& options) {
   Comparison found;
   found.a = load(options.a, found);
   found.b = load(options.b, found);
@@ -104,7 +104,7 @@ Comparison compare(const Options& options) {
 }
 
 std::string verdict(const RigDifference& d) {
-  if (!d.held_apart.empty()) return "they are held at different values";
+  if (!d.fixed_at_different_values.empty()) return "they are held at different values";
   return fmt::format("they {} their stated uncertainties (p = {:.2g})",
                      d.p_value < beyond ? "differ beyond" : "agree within", d.p_value);
 }
@@ -161,7 +161,7 @@ void add_parameters(const RigDifference& d, Json& json) {
   json["dof"] = d.dof;
   json["p_value"] = d.p_value;
   json["verdict"] = verdict(d);
-  json["held_apart"] = d.held_apart;
+  json["held_apart"] = d.fixed_at_different_values;
   json["parameters"] = Json::array();
   for (const ParameterDifference& p : d.parameters) {
     json["parameters"].push_back({{"name", p.name},
@@ -175,11 +175,12 @@ void add_parameters(const RigDifference& d, Json& json) {
   json["only_in_b"] = d.only_in_b;
   json["directions"] = Json::array();
   for (const DirectionDifference& direction : d.directions) {
-    json["directions"].push_back({{"in_sigma", direction.in_sigma}, {"words", direction.words}});
+    json["directions"].push_back(
+        {{"in_sigma", direction.in_sigma}, {"words", direction.description}});
   }
 }
 
-Json comparison_json(const Options& options, const Comparison& found) {
+Json comparison_json(const DiffArguments& options, const Comparison& found) {
   Json json{{"a", options.a}, {"b", options.b}, {"covariance", options.covariance}};
   for (const auto& [key, covariance] : {std::pair("covariance_kind_a", &found.covariance_a),
                                         std::pair("covariance_kind_b", &found.covariance_b)}) {
@@ -233,15 +234,15 @@ std::string parameters_text(const RigDifference& d) {
   text += fmt::format(
       "\nMahalanobis distance {:.3f}, its square {:.2f} for {} degrees of freedom: {}\n",
       std::sqrt(d.mahalanobis2), d.mahalanobis2, d.dof, verdict(d));
-  for (const std::string& words : d.held_apart) text += "  " + words + "\n";
+  for (const std::string& words : d.fixed_at_different_values) text += "  " + words + "\n";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, d.directions.size()); ++k) {
     text += fmt::format("  {:.1f} sigma along a direction: {}\n", d.directions[k].in_sigma,
-                        d.directions[k].words);
+                        d.directions[k].description);
   }
   return text;
 }
 
-void run(const Options& options, Session& session) {
+void run(const DiffArguments& options, Session& session) {
   const Comparison found = compare(options);
   for (const std::string& warning : found.warnings) session.warn(warning);
   std::string text = projection_text(found);
@@ -252,7 +253,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_diff(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<DiffArguments>();
   CLI::App* verb = add_verb(app, session, "diff",
                             "compare two calibrations of the same cameras: in projection, and "
                             "against their uncertainties",

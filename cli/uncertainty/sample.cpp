@@ -12,27 +12,27 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/rig_file.h"
+#include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct SampleArguments {
   std::string rig, output;
   double psi_c = 1;
   int count = 1000;
   std::uint64_t seed = 1;
 };
 
-void run(const Options& options, Session& session) {
+void run(const SampleArguments& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);
   const RigFile rig = read_rig(file);
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const RigSampler sampler(rig.estimate, file.string());
-  spare_inputs({file}, options.output);
+  check_output_is_not_input({file}, options.output);
 
   std::string csv;
   for (const std::string& name : rig.listed) csv += (csv.empty() ? "" : ",") + name;
@@ -47,7 +47,7 @@ void run(const Options& options, Session& session) {
 
   Json directions = Json::array();
   for (const CovarianceDirection& d : sampler.decomposition().directions()) {
-    directions.push_back({{"share", d.variance_share}, {"words", d.words}});
+    directions.push_back({{"share", d.variance_share}, {"words", d.description}});
   }
   session.result(
       {{"samples", options.count},
@@ -67,7 +67,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_sample(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SampleArguments>();
   CLI::App* verb = add_verb(app, session, "sample",
                             "draw rigs from a rig's covariance by SVD, errors correlated",
                             "vernier sample rig.json --psi-c 1 -n 1000 --seed 1 -o samples.csv");

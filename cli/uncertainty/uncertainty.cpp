@@ -10,16 +10,16 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/program/spare_inputs.h"
 #include "cli/uncertainty/uncertainty_report.h"
 #include "cli/uncertainty/uncertainty_tables.h"
 
 namespace vernier::cli {
 namespace {
 
-struct Options {
+struct UncertaintyArguments {
   std::string rig, output;
   std::string distances = "1,5,inf", grid = "60x45", covariance = "honest";
   double pair_sigma_px = -1;  // that of the calibration
@@ -29,13 +29,15 @@ struct Options {
 };
 
 /// The estimate with the wanted covariance as the one that is sampled.
-RigEstimate with_choice(RigEstimate estimate, const Options& options, const std::string& place) {
+RigEstimate with_choice(RigEstimate estimate,
+                        const UncertaintyArguments& options,
+                        const std::string& place) {
   if (options.covariance == "honest") return estimate;
   estimate.covariance = required_covariance(estimate, CovarianceChoice::mvb, place);
   return estimate;
 }
 
-UncertaintyRequest request_of(const Options& options, const RigEstimate& estimate) {
+UncertaintyRequest request_of(const UncertaintyArguments& options, const RigEstimate& estimate) {
   UncertaintyRequest request;
   request.distances_m = parse_distances(options.distances, "--distances-m");
   std::tie(request.columns, request.rows) = parse_grid(options.grid, "--grid");
@@ -50,13 +52,13 @@ UncertaintyRequest request_of(const Options& options, const RigEstimate& estimat
   return request;
 }
 
-void run(const Options& options, Session& session) {
+void run(const UncertaintyArguments& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);
   const RigFile rig = read_rig(file);
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const RigEstimate estimate = with_choice(rig.estimate, options, file.string());
   if (!options.output.empty())
-    spare_inputs({file}, std::filesystem::path(options.output) / "uncertainty.json");
+    check_output_is_not_input({file}, std::filesystem::path(options.output) / "uncertainty.json");
   UncertaintyReport report =
       uncertainty_report(estimate, request_of(options, estimate), file.string());
   if (options.pair_sigma_px < 0 && !estimate.calibration) {
@@ -80,7 +82,7 @@ void run(const Options& options, Session& session) {
 }  // namespace
 
 void add_uncertainty(CLI::App& app, Session& session) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<UncertaintyArguments>();
   CLI::App* verb =
       add_verb(app, session, "uncertainty",
                "projection, triangulation, rectification and depth uncertainty, linear and sampled",

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
 
   // Draw rigs with correlated errors: SVD of the scaled covariance.
   const RigSampler sampler(rig);
-  std::puts(sampler.decomposition().directions()[0].words.c_str());
+  std::puts(sampler.decomposition().directions()[0].description.c_str());
   const Rig wrong = sampler.sample(/*psi_c=*/1, /*seed=*/1, /*trial=*/0);
   std::printf("focal length %.2f px instead of %.2f px\n", wrong.cameras[0].f_px(),
               rig.rig.cameras[0].f_px());

@@ -66,19 +66,19 @@ class ClusteredSamples {
 };
 
 /// Of what cannot be negative.
-inline void not_below_zero(Measured& measured) {
+inline void not_below_zero(MeasuredValue& measured) {
   if (measured.interval.low < 0) measured.interval.low = 0;
 }
 
 /// A figure of all samples with its interval; nothing where there are too few.
 template <class Sample, class Figure>
-Measured measured(const ClusteredSamples<Sample>& samples,
-                  const MeasuringOptions& options,
-                  Figure figure,
-                  bool is_scale = false) {
-  Measured result;
+MeasuredValue measured(const ClusteredSamples<Sample>& samples,
+                       const MeasuringOptions& options,
+                       Figure figure,
+                       bool is_scale = false) {
+  MeasuredValue result;
   result.samples = samples.count();
-  if (samples.count() < options.least_samples) return result;
+  if (samples.count() < options.min_samples) return result;
   result.value = figure(samples.all());
   result.interval = vernier::internal::cluster_interval(
       samples.clusters(),
@@ -94,10 +94,10 @@ struct Sums {
 
 /// The same of sums, `count` samples in all.
 template <class Figure>
-Measured measured_ratio(const std::map<int, Sums>& clusters,
-                        int count,
-                        const MeasuringOptions& options,
-                        Figure figure) {
+MeasuredValue measured_ratio(const std::map<int, Sums>& clusters,
+                             int count,
+                             const MeasuringOptions& options,
+                             Figure figure) {
   std::vector<Sums> sums;
   std::vector<std::size_t> each;
   for (const auto& [cluster, of_cluster] : clusters) {
@@ -113,9 +113,9 @@ Measured measured_ratio(const std::map<int, Sums>& clusters,
     }
     return figure(total);
   };
-  Measured result;
+  MeasuredValue result;
   result.samples = count;
-  if (count < options.least_samples) return result;
+  if (count < options.min_samples) return result;
   result.value = of(each);
   result.interval =
       vernier::internal::cluster_interval(static_cast<int>(clusters.size()), of, options.bootstrap);

@@ -38,12 +38,12 @@ double without_chance(const Sums& sums) {
 
 using Losses = std::vector<SegmentLoss> PairSamples::*;
 
-Measured loss_of(const PairList& pairs,
-                 Losses which,
-                 double SegmentLoss::*found,
-                 bool take_chance_away,
-                 const ClusterOf& cluster,
-                 const MeasuringOptions& options) {
+MeasuredValue loss_of(const PairList& pairs,
+                      Losses which,
+                      double SegmentLoss::*found,
+                      bool take_chance_away,
+                      const ClusterOf& cluster,
+                      const MeasuringOptions& options) {
   std::map<int, Sums> sums;
   int count = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -221,7 +221,7 @@ MeasuredEndpoints measured_endpoints(const PairList& pairs,
   }
   MeasuredEndpoints result;
   for (const bool across : {true, false}) {
-    Measured& figure = across ? result.across_px : result.along_px;
+    MeasuredValue& figure = across ? result.across_px : result.along_px;
     const auto sigma = [&](const std::vector<Ends>& ends) { return end_sigma_px(ends, across); };
     figure = measured(kept, options, sigma, true);
     not_below_zero(figure);

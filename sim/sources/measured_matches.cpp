@@ -15,7 +15,7 @@
 #include "sim/sources/clustered_samples.h"
 #include "sim/sources/measured_figures.h"
 #include "sim/sources/measured_sources.h"
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/line_match.h"
 #include "stereo/evaluation/pair_samples.h"
 
@@ -31,7 +31,7 @@ constexpr int disparity_bins = 4;
 
 /// A share's interval is no narrower than that of independent trials: without it, samples that are
 /// all alike would have none.
-void widen_to_wilson(Measured& share) {
+void widen_to_wilson(MeasuredValue& share) {
   if (!share.known()) return;
   const Interval wilson = wilson_interval(share.value * share.samples, share.samples);
   share.interval.low = std::fmin(share.interval.low, wilson.low);
@@ -68,10 +68,10 @@ struct MismatchModel {
 };
 
 /// Share of all matches, the unseen mismatches added; the reach is measured anew in each resample.
-Measured mismatch_share(const ClusteredSamples<double>& errors_px,
-                        const MismatchModel& model,
-                        const MeasuringOptions& options) {
-  Measured share = measured(errors_px, options, [&](const std::vector<double>& errors) {
+MeasuredValue mismatch_share(const ClusteredSamples<double>& errors_px,
+                             const MismatchModel& model,
+                             const MeasuringOptions& options) {
+  MeasuredValue share = measured(errors_px, options, [&](const std::vector<double>& errors) {
     const std::vector<double> wrong = model.wrong(errors);
     const double seen = model.seen(model.reach_px(wrong, options.wrong_for_reach));
     return std::min(
@@ -82,10 +82,10 @@ Measured mismatch_share(const ClusteredSamples<double>& errors_px,
   return share;
 }
 
-Measured mismatch_reach(const ClusteredSamples<double>& errors_px,
-                        const MismatchModel& model,
-                        const MeasuringOptions& options) {
-  Measured reach = measured(errors_px, options, [&](const std::vector<double>& errors) {
+MeasuredValue mismatch_reach(const ClusteredSamples<double>& errors_px,
+                             const MismatchModel& model,
+                             const MeasuringOptions& options) {
+  MeasuredValue reach = measured(errors_px, options, [&](const std::vector<double>& errors) {
     return model.reach_px(model.wrong(errors), options.wrong_for_reach);
   });
   reach.samples = static_cast<int>(model.wrong(errors_px.all()).size());
@@ -93,15 +93,15 @@ Measured mismatch_reach(const ClusteredSamples<double>& errors_px,
   return reach;
 }
 
-Measured corner_loss(const PairList& pairs,
-                     const ClusterOf& cluster,
-                     const MeasuringOptions& options,
-                     double& chance) {
+MeasuredValue corner_loss(const PairList& pairs,
+                          const ClusterOf& cluster,
+                          const MeasuringOptions& options,
+                          double& chance) {
   std::map<int, Sums> sums;
   int count = 0;
   double by_chance = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
-    for (const CornerRepeat& corner : pairs[p].corners) {
+    for (const CornerRepeatability& corner : pairs[p].corners) {
       Sums& sum = sums[cluster(pairs[p], static_cast<int>(p), corner.left_px)];
       sum.part += corner.found ? 0 : 1;
       sum.whole += 1;
@@ -111,7 +111,7 @@ Measured corner_loss(const PairList& pairs,
     }
   }
   chance = by_chance / std::max(1, count);
-  Measured loss = measured_ratio(sums, count, options, [](const Sums& all) {
+  MeasuredValue loss = measured_ratio(sums, count, options, [](const Sums& all) {
     return std::min(1.0, all.part / std::max(1e-3 * all.whole, all.whole - all.chance));
   });
   widen_to_wilson(loss);

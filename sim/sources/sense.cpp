@@ -6,7 +6,7 @@
 
 #include "calib/camera.h"
 #include "calib/rig.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
@@ -21,14 +21,14 @@ Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_l
       rectification_(rectification(true_rig)),
       sources_((check(settings, "sources"), standard_sources(settings, min_length_px))) {}
 
-StereoSighting Sensor::sense(const Look& look,
-                             std::uint64_t seed,
-                             std::uint32_t trial,
-                             std::uint32_t frame) const {
+StereoObservation Sensor::sense(const NoiseFreeView& look,
+                                std::uint64_t seed,
+                                std::uint32_t trial,
+                                std::uint32_t frame) const {
   SensedView view;
   view.edges.reserve(look.edges.size());
-  for (const SeenEdge& edge : look.edges) view.edges.emplace_back().truth = edge;
-  for (const SeenCorner& corner : look.corners) {
+  for (const VisibleEdge& edge : look.edges) view.edges.emplace_back().truth = edge;
+  for (const VisibleCorner& corner : look.corners) {
     const auto pixel = [&](int eye) {
       return project(rig_.cameras[eye], rig_.T_camera_first[eye] * corner.at_m);
     };
@@ -37,7 +37,7 @@ StereoSighting Sensor::sense(const Look& look,
   const SensingContext context{rig_, rectification_, seed, trial, frame};
   for (const auto& source : sources_) source->apply(context, view);
 
-  StereoSighting sighting;
+  StereoObservation sighting;
   sighting.segments.reserve(view.edges.size());
   for (const SensedEdge& edge : view.edges) {
     sighting.segments.push_back(

@@ -24,11 +24,11 @@ const SourceParameter& parameter_of(std::string_view key) {
 /// Four digits: more than any interval here is worth.
 double rounded(double value) { return std::stod(fmt::format("{:.4g}", value)); }
 
-std::string text_of(const Measured& measured) {
+std::string text_of(const MeasuredValue& measured) {
   return measured.known() ? fmt::format("{:.4g}", measured.value) : "not known";
 }
 
-SourceEntry entry_of(const char* key, const Measured& measured, std::string note) {
+SourceEntry entry_of(const char* key, const MeasuredValue& measured, std::string note) {
   const SourceParameter& parameter = parameter_of(key);
   SourceEntry entry{key, measured, SourceSettings().*parameter.value, measured.known(),
                     std::move(note)};
@@ -44,7 +44,10 @@ SourceEntry entry_of(const char* key, const Measured& measured, std::string note
   return entry;
 }
 
-SourceEntry reach_entry(const char* key, const Measured& reach_px, int wrong, const char* what) {
+SourceEntry reach_entry(const char* key,
+                        const MeasuredValue& reach_px,
+                        int wrong,
+                        const char* what) {
   SourceEntry entry = entry_of(key, reach_px, what);
   if (!entry.written) entry.note = fmt::format("only {} mismatches", wrong);
   return entry;
@@ -71,7 +74,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string interval_text(const Measured& measured) {
+std::string interval_text(const MeasuredValue& measured) {
   if (std::isnan(measured.interval.low)) return "";
   return fmt::format("{:.4g} to {:.4g}; ", measured.interval.low, measured.interval.high);
 }

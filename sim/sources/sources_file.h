@@ -13,10 +13,10 @@ namespace vernier::sim::internal {
 /// A key of [sources] and what was measured of it.
 struct SourceEntry {
   std::string key;
-  Measured measured;     ///< not known: too few samples
-  double otherwise = 0;  ///< the simulator's default
-  bool written = false;  ///< else the default stays
-  std::string note;      ///< what was measured, or why the default stays
+  MeasuredValue measured;  ///< not known: too few samples
+  double otherwise = 0;    ///< the simulator's default
+  bool written = false;    ///< else the default stays
+  std::string note;        ///< what was measured, or why the default stays
 };
 
 /// The simulator's keys in the order in which they act. What cannot be measured keeps its default:

@@ -14,7 +14,7 @@
 #include "calib/rig.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "stereo/rectification.h"
@@ -34,16 +34,16 @@ ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye) {
 
 namespace {
 
-Draws draws_of(const SensingContext& context,
-               DrawSource source,
-               std::uint32_t feature,
-               std::uint32_t eye = 0) {
-  return Draws({.seed = context.seed,
-                .trial = context.trial,
-                .feature = feature,
-                .source = static_cast<std::uint32_t>(source),
-                .eye = eye,
-                .frame = context.frame});
+RandomStream draws_of(const SensingContext& context,
+                      DrawSource source,
+                      std::uint32_t feature,
+                      std::uint32_t eye = 0) {
+  return RandomStream({.seed = context.seed,
+                       .trial = context.trial,
+                       .feature = feature,
+                       .source = static_cast<std::uint32_t>(source),
+                       .eye = eye,
+                       .frame = context.frame});
 }
 
 /// psi_l. Illumination moves the boundary of a surface in or out: one sign a surface (object), one
@@ -73,19 +73,19 @@ class LateralShift : public UncertaintySource {
                     double side) const {
     const bool independent = mode_ == ShiftMode::independent;
     const auto stream = static_cast<std::uint32_t>(independent ? eye + 1 : 0);
-    Draws of_edge = draws_of(any_frame, DrawSource::lateral_shift,
-                             static_cast<std::uint32_t>(edge.truth.segment), stream);
+    RandomStream of_edge = draws_of(any_frame, DrawSource::lateral_shift,
+                                    static_cast<std::uint32_t>(edge.truth.segment), stream);
     const double size = size_ * of_edge.uniform(0.5, 1.5);
     if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
     // eye 3 of the stream belongs to surfaces
-    Draws of_surface = draws_of(any_frame, DrawSource::lateral_shift,
-                                static_cast<std::uint32_t>(edge.truth.object), 3);
+    RandomStream of_surface = draws_of(any_frame, DrawSource::lateral_shift,
+                                       static_cast<std::uint32_t>(edge.truth.object), 3);
     return (of_surface.uniform() < 0.5 ? -size : size) * side;
   }
 
   /// +1 where the left normal of the image line points away from the object's centre: judged on the
   /// edge's plane through the eye, so the same from every place on one side of it.
-  static double outward(const SeenEdge& edge) {
+  static double outward(const VisibleEdge& edge) {
     const Eigen::Vector3d n = edge.a_m.cross(edge.b_m);
     const double side = n.dot(edge.object_centre_m);
     // an edge through the centre has no outside: rounding must not choose one
@@ -113,7 +113,7 @@ class EdgeLoss : public UncertaintySource {
   void apply(const SensingContext& context, SensedView& view) const override {
     std::vector<SensedEdge> left_over;
     for (const SensedEdge& edge : view.edges) {
-      Draws draws = draws_of(context, DrawSource::edge_loss, edge.truth.feature);
+      RandomStream draws = draws_of(context, DrawSource::edge_loss, edge.truth.feature);
       const double start = std::clamp(draws.uniform(-share_, 1), 0.0, 1 - share_);
       add_piece(context.rig, edge, 0, start, 0, left_over);
       add_piece(context.rig, edge, start + share_, 1, 1, left_over);
@@ -154,7 +154,7 @@ class EndpointError : public UncertaintySource {
   void apply(const SensingContext& context, SensedView& view) const override {
     for (SensedEdge& edge : view.edges) {
       for (std::uint32_t eye = 0; eye < 2; ++eye) {
-        Draws draws =
+        RandomStream draws =
             draws_of(context, DrawSource::endpoint_noise, edge.truth.feature * 2 + edge.piece, eye);
         for (Eigen::Vector2d& offset : edge.offset_px[eye]) {
           offset.x() += sigma_px_ * draws.normal();
@@ -172,18 +172,18 @@ class EndpointError : public UncertaintySource {
 class EpipolarRejection : public UncertaintySource {
  public:
   explicit EpipolarRejection(const SourceSettings& s)
-      : least_rad_(s.epipolar_reject_deg * std::numbers::pi / 180) {}
+      : min_rad_(s.epipolar_reject_deg * std::numbers::pi / 180) {}
   std::string_view name() const override { return "epipolar_reject_deg"; }
 
   void apply(const SensingContext& context, SensedView& view) const override {
     std::erase_if(view.edges, [&](const SensedEdge& edge) {
       return epipolar_angle_rad(context.rig, context.rectification,
-                                image_of(context.rig, edge, 0)) < least_rad_;
+                                image_of(context.rig, edge, 0)) < min_rad_;
     });
   }
 
  private:
-  double least_rad_;
+  double min_rad_;
 };
 
 /// psi_s. The right line slips along the epipolar line.
@@ -195,7 +195,7 @@ class StereoMismatch : public UncertaintySource {
 
   void apply(const SensingContext& context, SensedView& view) const override {
     for (SensedEdge& edge : view.edges) {
-      Draws draws =
+      RandomStream draws =
           draws_of(context, DrawSource::stereo_mismatch, edge.truth.feature * 2 + edge.piece);
       if (draws.uniform() >= share_) continue;
       const double slip = draws.uniform(-reach_px_, reach_px_);
@@ -246,7 +246,7 @@ class CornerMismatch : public UncertaintySource {
 
   void apply(const SensingContext& context, SensedView& view) const override {
     for (SensedCorner& corner : view.corners) {
-      Draws draws = draws_of(context, DrawSource::corner_mismatch, corner.truth.feature);
+      RandomStream draws = draws_of(context, DrawSource::corner_mismatch, corner.truth.feature);
       if (draws.uniform() >= share_) continue;
       const double radius = radius_px_ * std::sqrt(draws.uniform());
       const double angle = draws.uniform(0, 2 * std::numbers::pi);

@@ -11,7 +11,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
@@ -29,7 +29,7 @@ bool is_upright(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm() < 1e-6 * std::abs(a.z() - b.z());
 }
 
-Eigen::Vector3d to_world(const PlanePose& pose, const Eigen::Vector3d& x) {
+Eigen::Vector3d to_world(const Pose2D& pose, const Eigen::Vector3d& x) {
   const double c = std::cos(pose.heading_rad), s = std::sin(pose.heading_rad);
   return {pose.x_m + c * x.x() - s * x.y(), pose.y_m + s * x.x() + c * x.y(), x.z()};
 }
@@ -54,7 +54,7 @@ bool mostly(const Edges& edges, Explained explained) {
 
 }  // namespace
 
-AliasFinder::AliasFinder(const Visibility& visibility, Rig rig, LookOptions options)
+AliasFinder::AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options)
     : visibility_(visibility), rig_(std::move(rig)), options_(options) {
   const World& world = visibility.world();
   const WorldExtent box = extent(world);
@@ -92,10 +92,10 @@ bool AliasFinder::has_upright(const Eigen::Vector2d& at_m, double low_m, double 
   return false;
 }
 
-std::vector<AliasFinder::ViewEdge> AliasFinder::view_from(const PlanePose& pose) const {
+std::vector<AliasFinder::ViewEdge> AliasFinder::view_from(const Pose2D& pose) const {
   const Pose T = T_robot_camera(options_.mount);
   std::vector<ViewEdge> view;
-  for (const SeenEdge& edge : look(visibility_, rig_, pose, options_).edges) {
+  for (const VisibleEdge& edge : look(visibility_, rig_, pose, options_).edges) {
     const double length =
         (project(rig_.cameras[0], edge.a_m) - project(rig_.cameras[0], edge.b_m)).norm();
     view.push_back({T * edge.a_m, T * edge.b_m, length});
@@ -103,7 +103,7 @@ std::vector<AliasFinder::ViewEdge> AliasFinder::view_from(const PlanePose& pose)
   return view;
 }
 
-std::vector<PlanePose> AliasFinder::hypotheses(const std::vector<ViewEdge>& view) const {
+std::vector<Pose2D> AliasFinder::hypotheses(const std::vector<ViewEdge>& view) const {
   std::vector<Upright> seen;
   for (const ViewEdge& edge : view) {
     if (!((edge.a_m - edge.b_m).head<2>().norm() < 1e-6)) continue;
@@ -121,7 +121,7 @@ std::vector<PlanePose> AliasFinder::hypotheses(const std::vector<ViewEdge>& view
       }
     }
   }
-  std::vector<PlanePose> poses;
+  std::vector<Pose2D> poses;
   if (base.first < 0) return poses;
   const Upright &p = seen[base.first], &q = seen[base.second];
   const Eigen::Vector2d between = q.at_m - p.at_m;
@@ -141,7 +141,7 @@ std::vector<PlanePose> AliasFinder::hypotheses(const std::vector<ViewEdge>& view
   return poses;
 }
 
-bool AliasFinder::on_wire_frame(const std::vector<ViewEdge>& view, const PlanePose& pose) const {
+bool AliasFinder::on_wire_frame(const std::vector<ViewEdge>& view, const Pose2D& pose) const {
   const auto upright_fits = [&](const ViewEdge& edge) {
     if (!((edge.a_m - edge.b_m).head<2>().norm() < 1e-6)) return true;  // judged below
     const auto [low, high] = std::minmax(edge.a_m.z(), edge.b_m.z());
@@ -158,12 +158,12 @@ bool AliasFinder::on_wire_frame(const std::vector<ViewEdge>& view, const PlanePo
   return mostly(view, fits);
 }
 
-Aliases AliasFinder::aliases(const PlanePose& pose) const {
+Aliases AliasFinder::aliases(const Pose2D& pose) const {
   Aliases result;
   std::vector<ViewEdge> view = view_from(pose);
-  std::vector<PlanePose> found;
-  for (const PlanePose& other : hypotheses(view)) {
-    const auto same = [&](const PlanePose& known) { return distance_m(known, other) < 0.5; };
+  std::vector<Pose2D> found;
+  for (const Pose2D& other : hypotheses(view)) {
+    const auto same = [&](const Pose2D& known) { return distance_m(known, other) < 0.5; };
     if (distance_m(other, pose) <= 1 || std::any_of(found.begin(), found.end(), same)) continue;
     if (!on_wire_frame(view, other)) continue;
     const auto in = [](const std::vector<ViewEdge>& edges) {

@@ -6,7 +6,7 @@
 
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -14,7 +14,7 @@ namespace vernier::sim::internal {
 /// How many places look the same as one.
 struct Aliases {
   int elsewhere = 0;  ///< poses more than 1 m away with the same noise-free view
-  std::vector<localise::PlanePose> examples;  ///< a few of them
+  std::vector<localise::Pose2D> examples;  ///< a few of them
   /// What the best guess among indistinguishable places succeeds with.
   double ceiling() const { return 1.0 / (1 + elsewhere); }
 };
@@ -29,9 +29,9 @@ struct Aliases {
 class AliasFinder {
  public:
   /// Keeps references to `visibility`; the rig is the true one.
-  AliasFinder(const Visibility& visibility, Rig rig, LookOptions options);
+  AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options);
 
-  Aliases aliases(const localise::PlanePose& pose) const;
+  Aliases aliases(const localise::Pose2D& pose) const;
 
  private:
   /// An upright edge: where it stands and from which height to which.
@@ -45,14 +45,14 @@ class AliasFinder {
     double length_px;
   };
 
-  std::vector<ViewEdge> view_from(const localise::PlanePose& pose) const;
-  std::vector<localise::PlanePose> hypotheses(const std::vector<ViewEdge>& view) const;
+  std::vector<ViewEdge> view_from(const localise::Pose2D& pose) const;
+  std::vector<localise::Pose2D> hypotheses(const std::vector<ViewEdge>& view) const;
   bool has_upright(const Eigen::Vector2d& at_m, double low_m, double high_m) const;
-  bool on_wire_frame(const std::vector<ViewEdge>& view, const localise::PlanePose& pose) const;
+  bool on_wire_frame(const std::vector<ViewEdge>& view, const localise::Pose2D& pose) const;
 
   const Visibility& visibility_;
   Rig rig_;
-  LookOptions options_;
+  NoiseFreeViewOptions options_;
   std::vector<Upright> uprights_;
   Eigen::Vector2d origin_m_;
   int columns_ = 0, rows_ = 0;

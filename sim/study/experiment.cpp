@@ -16,7 +16,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
 #include "sim/route.h"
 #include "sim/sense.h"
@@ -40,29 +40,29 @@ double clock_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-LookOptions look_options(const ExperimentSettings& settings) {
-  LookOptions options;
+NoiseFreeViewOptions look_options(const ExperimentSettings& settings) {
+  NoiseFreeViewOptions options;
   options.mount = settings.mount;
   return options;
 }
 
 PlaceView interpret(const Rig& told,
-                    const StereoSighting& sighting,
+                    const StereoObservation& sighting,
                     const ExperimentSettings& settings) {
   const TriangulationOptions options{.endpoint_sigma_px =
                                          std::max(0.1, settings.sources.endpoint_sigma_px)};
-  return place_view(triangulate(told, sighting.segments, options), sighting.segments,
-                    settings.mount);
+  return select_lines(triangulate(told, sighting.segments, options), sighting.segments,
+                      settings.mount);
 }
 
 }  // namespace
 
-MapLooks map_looks(const Visibility& visibility,
+MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings) {
-  MapLooks looks;
-  for (const PlanePose& place :
-       map_places(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
+  MapViews looks;
+  for (const Pose2D& place :
+       map_poses(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
     looks.push_back(look(visibility, true_rig, place, look_options(settings)));
   }
   return looks;
@@ -70,11 +70,11 @@ MapLooks map_looks(const Visibility& visibility,
 
 LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
                                                const RigEstimate& rig,
-                                               std::shared_ptr<const MapLooks> looks,
+                                               std::shared_ptr<const MapViews> looks,
                                                ExperimentSettings settings)
     : visibility_(visibility),
       rig_(rig),
-      looks_(std::move(looks)),
+      map_views_(std::move(looks)),
       settings_(std::move(settings)),
       sensor_(rig.rig, settings_.sources) {
   if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
@@ -86,17 +86,19 @@ Rig LocalisationExperiment::draw_rig(std::uint32_t trial, bool of_map) const {
                           of_map ? map_trial + trial : trial);
 }
 
-Rig LocalisationExperiment::told_rig(std::uint32_t trial) const { return draw_rig(trial, false); }
-Rig LocalisationExperiment::told_map_rig(std::uint32_t block) const {
+Rig LocalisationExperiment::estimator_rig(std::uint32_t trial) const {
+  return draw_rig(trial, false);
+}
+Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
   return draw_rig(block, true);
 }
 
 TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
   std::vector<MapNode> nodes;
-  nodes.reserve(looks_->size());
-  for (std::size_t i = 0; i < looks_->size(); ++i) {
-    const Look& place = (*looks_)[i];
-    const StereoSighting sighting =
+  nodes.reserve(map_views_->size());
+  for (std::size_t i = 0; i < map_views_->size(); ++i) {
+    const NoiseFreeView& place = (*map_views_)[i];
+    const StereoObservation sighting =
         sensor_.sense(place, settings_.seed, map_trial + block, static_cast<std::uint32_t>(i));
     nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
   }
@@ -110,10 +112,10 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.trial = trial;
   result.truth =
       draw_query(visibility_, settings_.protocol, settings_.mount.height_m, settings_.seed, trial);
-  LookOptions looking = look_options(settings_);
+  NoiseFreeViewOptions looking = look_options(settings_);
   looking.with_corners = true;
-  const Look seen = look(visibility_, rig_.rig, result.truth, looking);
-  const StereoSighting sighting = sensor_.sense(seen, settings_.seed, trial, 0);
+  const NoiseFreeView seen = look(visibility_, rig_.rig, result.truth, looking);
+  const StereoObservation sighting = sensor_.sense(seen, settings_.seed, trial, 0);
 
   const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
   const PlaceView view = interpret(told, sighting, settings_);
@@ -133,7 +135,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
       std::numeric_limits<double>::quiet_NaN();
   if (result.answered()) {
     result.answer = answer.pose;
-    result.node = (*looks_)[answer.node].pose;
+    result.node = (*map_views_)[answer.node].pose;
     result.error_m = distance_m(answer.pose, result.truth);
     result.node_error_m = distance_m(result.node, result.truth);
     result.heading_error_rad = heading_difference_rad(answer.pose, result.truth);
@@ -149,11 +151,11 @@ std::vector<TrialResult> LocalisationExperiment::run_block(std::uint32_t block,
   TopologicalMap map;
   std::unique_ptr<Localiser> localiser;
   for (std::uint32_t trial = first; trial < first + count; ++trial) {
-    const Rig told = told_rig(trial);
+    const Rig told = estimator_rig(trial);
     const bool same = settings_.map_rig == MapRig::same;
     if (same || !localiser) {
       localiser.reset();
-      map = record_map(block, same ? told : told_map_rig(block));
+      map = record_map(block, same ? told : map_estimator_rig(block));
       localiser = make_localiser(settings_.method, map);
     }
     results.push_back(run_trial(trial, told, *localiser));

@@ -99,11 +99,11 @@ bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, d
   return true;
 }
 
-PlanePose draw_query(const Visibility& visibility,
-                     QueryProtocol protocol,
-                     double eye_height_m,
-                     std::uint64_t seed,
-                     std::uint32_t trial) {
+Pose2D draw_query(const Visibility& visibility,
+                  QueryProtocol protocol,
+                  double eye_height_m,
+                  std::uint64_t seed,
+                  std::uint32_t trial) {
   constexpr double robot_radius_m = 0.12;
   const World& world = visibility.world();
   const double length = route_length_m(world.route);
@@ -111,13 +111,13 @@ PlanePose draw_query(const Visibility& visibility,
     throw Error("queries", "the world has no route to ask along", "add [[route]] to the world");
   }
   const ProtocolSpan reach = span(protocol);
-  Draws draws(
+  RandomStream draws(
       {.seed = seed, .trial = trial, .source = static_cast<std::uint32_t>(DrawSource::query_pose)});
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    const PlanePose on_route = route_point(world.route, draws.uniform(0, length)).pose;
+    const Pose2D on_route = route_point(world.route, draws.uniform(0, length)).pose;
     const double across = draws.uniform(-reach.across_m, reach.across_m);
     const double turn = draws.uniform(-reach.heading_rad, reach.heading_rad);
-    const PlanePose query = compose(on_route, {0, across, turn});
+    const Pose2D query = compose(on_route, {0, across, turn});
     if (!is_free(world, {query.x_m, query.y_m}, robot_radius_m, eye_height_m + 0.2)) continue;
     if (!visibility.sees({on_route.x_m, on_route.y_m, eye_height_m},
                          {query.x_m, query.y_m, eye_height_m})) {

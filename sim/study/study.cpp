@@ -22,7 +22,7 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "sim/experiment.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/study_file.h"
@@ -105,7 +105,7 @@ std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
 double compute_ceiling(const Study& study,
                        const Visibility& visibility,
                        const ExperimentSettings& settings) {
-  LookOptions options;
+  NoiseFreeViewOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
   const int queries = ceiling_queries(study);
@@ -145,16 +145,17 @@ void run_study(const Study& study, const StudyRun& run) {
   const std::vector<Job> jobs = missing_jobs(study, run);
   StudyStore store(run.folder / store_name(run.shard));
 
-  std::map<std::string, std::shared_ptr<const MapLooks>> looks;
+  std::map<std::string, std::shared_ptr<const MapViews>> looks;
   std::set<std::string> ceilings;
   for (const StudyCell& cell : study.file.cells) {
     auto& shared = looks[looks_key(cell.experiment)];
     if (!shared && !jobs.empty()) {
-      shared = std::make_shared<MapLooks>(map_looks(visibility, study.rig.rig, cell.experiment));
+      shared = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, cell.experiment));
     }
     const std::string key = ceiling_key(study, cell.experiment);
     if (ceilings.insert(key).second && store.note(key).empty()) {
-      store.put_note(key, fmt::format("{}", compute_ceiling(study, visibility, cell.experiment)));
+      store.set_metadata(key,
+                         fmt::format("{}", compute_ceiling(study, visibility, cell.experiment)));
     }
   }
 

@@ -34,8 +34,8 @@ double number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-Json pose_json(const PlanePose& pose) { return {pose.x_m, pose.y_m, pose.heading_rad}; }
-PlanePose pose_of(const Json& json) {
+Json pose_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, pose.heading_rad}; }
+Pose2D pose_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
@@ -140,14 +140,14 @@ StudyStore::StudyStore(const std::filesystem::path& file)
       " answered INTEGER, successes INTEGER, results TEXT, PRIMARY KEY (cell, block));");
   const std::string version = note("schema");
   if (version.empty()) {
-    put_note("schema", schema_version);
+    set_metadata("schema", schema_version);
   } else if (version != schema_version) {
     throw Error(file.string(), "a store of schema " + version + ", this program writes 1",
                 "use another folder");
   }
   const std::string here(instruction_set()), there = note("instruction_set");
   if (there.empty()) {
-    put_note("instruction_set", here);
+    set_metadata("instruction_set", here);
   } else if (there != here) {
     throw Error(file.string(),
                 "written with instruction set " + there + ", this processor has " + here +
@@ -190,7 +190,7 @@ std::vector<StoredBlock> StudyStore::blocks() const {
   return blocks;
 }
 
-void StudyStore::put_note(const std::string& key, const std::string& value) {
+void StudyStore::set_metadata(const std::string& key, const std::string& value) {
   Connection::Statement(*connection_, "INSERT OR REPLACE INTO note VALUES (?, ?)")
       .bind(1, key)
       .bind(2, value)

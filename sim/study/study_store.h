@@ -34,7 +34,7 @@ class StudyStore {
   std::vector<StoredBlock> blocks() const;
 
   /// Free text by key (the study's settings, the ceiling).
-  void put_note(const std::string& key, const std::string& value);
+  void set_metadata(const std::string& key, const std::string& value);
   std::string note(const std::string& key) const;  ///< empty where there is none
   std::vector<std::pair<std::string, std::string>> notes() const;
 

@@ -19,7 +19,7 @@ using Loop = std::vector<int>;
 using Cuts = std::vector<std::pair<int, int>>;
 
 constexpr double straight_m = 1e-9;  ///< a vertex this close to the line of its neighbours
-constexpr double least_width_m = 1e-10;
+constexpr double min_width_m = 1e-10;
 
 double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
@@ -81,14 +81,14 @@ bool is_ear(const Points& points, const Loop& loop, std::size_t i) {
 /// only a loop that breaks the rules comes to).
 std::size_t vertex_to_clip(const Points& points, const Loop& loop) {
   std::size_t most = 0;
-  double most_bulge = -1e300;
+  double max_bulge = -1e300;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double b = bulge_at(points, loop, i);
     if (std::abs(b) <= straight_m) return i;
     if (b > 0 && is_ear(points, loop, i)) return i;
-    if (b > most_bulge) {
+    if (b > max_bulge) {
       most = i;
-      most_bulge = b;
+      max_bulge = b;
     }
   }
   return most;
@@ -146,7 +146,7 @@ PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m) {
     if (i + 1 < polygon_m.size()) sum += r.cross(polygon_m[i + 1] - polygon_m[0]);
   }
   // Twice the area over the extent bounds the height; the negation also refuses what is no number.
-  if (!(sum.norm() > least_width_m * width) || !sum.allFinite()) return plane;
+  if (!(sum.norm() > min_width_m * width) || !sum.allFinite()) return plane;
   plane.normal = sum.normalized();
   for (const Eigen::Vector3d& p : polygon_m) plane.distance_m += plane.normal.dot(p);
   plane.distance_m /= static_cast<double>(polygon_m.size());

@@ -16,7 +16,7 @@ constexpr double on_side_m = 1e-9;
 /// Appends what one hand sees: the complement in `whole` of the stretches hidden on that hand.
 /// `hidden` is sorted by t0.
 void append_visible(const Stretch& whole,
-                    const std::vector<HiddenStretch>& hidden,
+                    const std::vector<OccludedInterval>& hidden,
                     int hand,
                     std::vector<Stretch>& visible) {
   double from = whole.t0;
@@ -31,10 +31,10 @@ void append_visible(const Stretch& whole,
       if (hidden[i].hands & hand) t1 = std::max(t1, hidden[i].t1);
     }
     if (t1 - t0 <= touching) continue;  // a touch in passing, not an occlusion
-    if (t0 - from > least_stretch) visible.push_back({from, t0});
+    if (t0 - from > min_stretch) visible.push_back({from, t0});
     from = std::max(from, t1);
   }
-  if (whole.t1 - from > least_stretch) visible.push_back({from, whole.t1});
+  if (whole.t1 - from > min_stretch) visible.push_back({from, whole.t1});
 }
 
 /// Union of two ascending lists: a point is seen if either hand of it is.
@@ -60,19 +60,19 @@ ShadowSide shadow_side(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
   return {inward, inward.norm() * on_side_m};
 }
 
-HiddenStretch hidden_stretch(const Shadow& shadow,
-                             const Eigen::Vector3d& a,
-                             const Eigen::Vector3d& b,
-                             double t0,
-                             double t1,
-                             double gap_m) {
+OccludedInterval occluded_interval(const Shadow& shadow,
+                                   const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b,
+                                   double t0,
+                                   double t1,
+                                   double gap_m) {
   const double beyond_a = shadow.normal.dot(a) - shadow.distance_m - gap_m;
   const double beyond_b = shadow.normal.dot(b) - shadow.distance_m - gap_m;
   if (beyond_a <= 0 && beyond_b <= 0) return {};
   if (beyond_a < 0) t0 = std::max(t0, beyond_a / (beyond_a - beyond_b));
   if (beyond_b < 0) t1 = std::min(t1, beyond_a / (beyond_a - beyond_b));
 
-  int hands = HiddenStretch::both;
+  int hands = OccludedInterval::both;
   for (const ShadowSide& side : shadow.sides) {
     const double f_a = side.inward.dot(a), f_b = side.inward.dot(b);
     const bool a_in = f_a > side.tolerance, b_in = f_b > side.tolerance;
@@ -80,7 +80,7 @@ HiddenStretch hidden_stretch(const Shadow& shadow,
     if (!a_in && !b_in) {
       if (f_a < -side.tolerance || f_b < -side.tolerance) return {};
       // The segment runs along this side: the shadow lies on one hand of it only.
-      hands &= side.inward.dot(a.cross(b)) > 0 ? HiddenStretch::left : HiddenStretch::right;
+      hands &= side.inward.dot(a.cross(b)) > 0 ? OccludedInterval::left : OccludedInterval::right;
     } else if (a_in ? f_b < -side.tolerance : f_a < -side.tolerance) {
       const double t = f_a / (f_a - f_b);
       if (a_in) {
@@ -132,7 +132,7 @@ std::vector<Eigen::Vector3d> points_around(const Eigen::Vector3d& x,
   return points;
 }
 
-PictureOfSegment::PictureOfSegment(const Eigen::Vector3d& a,
+ProjectedSegment::ProjectedSegment(const Eigen::Vector3d& a,
                                    const Eigen::Vector3d& b,
                                    const Stretch& s)
     : stretch(s) {
@@ -143,18 +143,18 @@ PictureOfSegment::PictureOfSegment(const Eigen::Vector3d& a,
   x1 = to.head<2>() / z1;
 }
 
-void visible_stretches(const Stretch& whole,
-                       std::vector<HiddenStretch>& hidden,
-                       std::vector<Stretch>& visible) {
+void subtract_intervals(const Stretch& whole,
+                        std::vector<OccludedInterval>& hidden,
+                        std::vector<Stretch>& visible) {
   visible.clear();
   bool one_handed = false;
-  for (const HiddenStretch& h : hidden) one_handed |= h.hands != HiddenStretch::both;
+  for (const OccludedInterval& h : hidden) one_handed |= h.hands != OccludedInterval::both;
   std::sort(hidden.begin(), hidden.end(),
-            [](const HiddenStretch& u, const HiddenStretch& v) { return u.t0 < v.t0; });
-  if (!one_handed) return append_visible(whole, hidden, HiddenStretch::left, visible);
+            [](const OccludedInterval& u, const OccludedInterval& v) { return u.t0 < v.t0; });
+  if (!one_handed) return append_visible(whole, hidden, OccludedInterval::left, visible);
   std::vector<Stretch> left, right;
-  append_visible(whole, hidden, HiddenStretch::left, left);
-  append_visible(whole, hidden, HiddenStretch::right, right);
+  append_visible(whole, hidden, OccludedInterval::left, left);
+  append_visible(whole, hidden, OccludedInterval::right, right);
   unite(left, right, visible);
 }
 

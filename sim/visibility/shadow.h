@@ -38,19 +38,19 @@ struct Stretch {
 /// A stretch of a segment, t in [t0, t1], hidden to one or both hands. A segment that runs along
 /// the very border of a shadow is hidden on that one hand of it; it counts as hidden where it is so
 /// on both, as behind the seam of two walls, and not behind a single edge.
-struct HiddenStretch {
+struct OccludedInterval {
   static constexpr int left = 1, right = 2, both = 3;
   double t0 = 0, t1 = 0;
   int hands = 0;  ///< 0: nothing is hidden
 };
 
 /// What `shadow` hides of x(t) = a + t (b - a) within [t0, t1].
-HiddenStretch hidden_stretch(const Shadow& shadow,
-                             const Eigen::Vector3d& a,
-                             const Eigen::Vector3d& b,
-                             double t0,
-                             double t1,
-                             double gap_m);
+OccludedInterval occluded_interval(const Shadow& shadow,
+                                   const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b,
+                                   double t0,
+                                   double t1,
+                                   double gap_m);
 
 enum class PointInShadow { outside, on_border, inside };
 
@@ -69,8 +69,8 @@ std::vector<Eigen::Vector3d> points_around(const Eigen::Vector3d& x,
 
 /// The picture of a stretch of a segment x(t) = a + t (b - a) before the eye, in normalised
 /// coordinates: a straight line from x0 to x1, at depths z0 to z1.
-struct PictureOfSegment {
-  PictureOfSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Stretch& stretch);
+struct ProjectedSegment {
+  ProjectedSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Stretch& stretch);
 
   /// The t that is seen at x0 + s (x1 - x0): equal steps in the picture are not equal in space.
   double t_at(double s) const {
@@ -85,13 +85,13 @@ struct PictureOfSegment {
 };
 
 /// Hidden stretches that come this close in t are one; a visible one no longer than
-/// `least_stretch` is a crack, not a sight.
+/// `min_stretch` is a crack, not a sight.
 inline constexpr double touching = 1e-9;
-inline constexpr double least_stretch = 3e-9;
+inline constexpr double min_stretch = 3e-9;
 
 /// What is left of `whole` without the hidden stretches, ascending. Reorders `hidden`.
-void visible_stretches(const Stretch& whole,
-                       std::vector<HiddenStretch>& hidden,
-                       std::vector<Stretch>& visible);
+void subtract_intervals(const Stretch& whole,
+                        std::vector<OccludedInterval>& hidden,
+                        std::vector<Stretch>& visible);
 
 }  // namespace vernier::sim::internal

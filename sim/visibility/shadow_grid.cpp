@@ -22,7 +22,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double eye_depth_m = 1e-6;  ///< what a surface has nearer than this, hides nothing
 constexpr double box_slack = 1e-7;    ///< normalised; more than rounding and any tolerance
-constexpr int most_sides_in_mask = 32;
+constexpr int max_sides_in_mask = 32;
 
 void extend(ImageBox& box, const Eigen::Vector2d& x) {
   box = {std::min(box.x0, x[0]), std::min(box.y0, x[1]), std::max(box.x1, x[0]),
@@ -89,7 +89,7 @@ void ShadowGrid::build(const ConvexSurfaces& surfaces,
   sides_.clear();
   entries_.clear();
   for (const Candidate& candidate : candidates_) cast(candidate);
-  for (Caster& caster : casters_) {
+  for (Occluder& caster : casters_) {
     caster.shadow.sides = {sides_.data() + caster.first_side,
                            static_cast<std::size_t>(caster.side_count)};
   }
@@ -162,18 +162,18 @@ void ShadowGrid::cast(const Candidate& candidate) {
   }
   if (!reaches) return;
 
-  Caster caster{{candidate.normal, candidate.distance_m, {}},
-                candidate.inverse_nearest,
-                candidate.box,
-                static_cast<int>(sides_.size()),
-                candidate.vertex_count};
+  Occluder caster{{candidate.normal, candidate.distance_m, {}},
+                  candidate.inverse_nearest,
+                  candidate.box,
+                  static_cast<int>(sides_.size()),
+                  candidate.vertex_count};
   for (int i = 0; i < candidate.vertex_count; ++i) {
     const int next = i + 1 < candidate.vertex_count ? i + 1 : 0;
     sides_.push_back(shadow_side(vertices_[candidate.first_vertex + i],
                                  vertices_[candidate.first_vertex + next]));
   }
   const bool wide = range.column1 > range.column0 && range.row1 > range.row0 &&
-                    candidate.vertex_count <= most_sides_in_mask;
+                    candidate.vertex_count <= max_sides_in_mask;
   if (wide) {
     mark_lattice(range,
                  {sides_.data() + caster.first_side, static_cast<std::size_t>(caster.side_count)});
@@ -250,19 +250,19 @@ void ShadowGrid::sort_into_tiles() {
 struct ShadowGrid::Traverse {
   const Eigen::Vector3d &a, &b;
   Stretch& open;
-  std::vector<HiddenStretch>& hidden;
+  std::vector<OccludedInterval>& hidden;
   ImageBox box;
 
   /// Takes note of a hidden stretch; false once nothing is open.
-  bool close(const HiddenStretch& h) {
-    if (h.hands == HiddenStretch::both && h.t1 - h.t0 > touching) {
+  bool close(const OccludedInterval& h) {
+    if (h.hands == OccludedInterval::both && h.t1 - h.t0 > touching) {
       if (h.t0 <= open.t0 + touching) {
         open.t0 = std::max(open.t0, h.t1);
-        return open.t1 - open.t0 > least_stretch;
+        return open.t1 - open.t0 > min_stretch;
       }
       if (h.t1 >= open.t1 - touching) {
         open.t1 = std::min(open.t1, h.t0);
-        return open.t1 - open.t0 > least_stretch;
+        return open.t1 - open.t0 > min_stretch;
       }
     }
     if (h.hands) hidden.push_back(h);
@@ -282,14 +282,14 @@ bool ShadowGrid::hide_in_slab(Traverse& traverse, const TileWalk& walk) {
     const int tile = walk.tile(minor);
     for (int k = tile_begin_[tile]; k < tile_begin_[tile + 1]; ++k) {
       const int index = tile_casters_[k];
-      const Caster& caster = casters_[index];
+      const Occluder& caster = casters_[index];
       if (caster.inverse_nearest <= walk.inverse_farthest())
         break;  // this and all that follow are behind
       if (tried_[index] == segment_) continue;
       tried_[index] = segment_;
       if (!overlap(caster.box, traverse.box)) continue;
-      const HiddenStretch h = hidden_stretch(caster.shadow, traverse.a, traverse.b,
-                                             traverse.open.t0, traverse.open.t1, gap_m_);
+      const OccludedInterval h = occluded_interval(caster.shadow, traverse.a, traverse.b,
+                                                   traverse.open.t0, traverse.open.t1, gap_m_);
       if (h.hands && !traverse.close(h)) return false;
     }
   }
@@ -299,10 +299,10 @@ bool ShadowGrid::hide_in_slab(Traverse& traverse, const TileWalk& walk) {
 bool ShadowGrid::hide(const Eigen::Vector3d& a,
                       const Eigen::Vector3d& b,
                       Stretch& open,
-                      std::vector<HiddenStretch>& hidden) {
+                      std::vector<OccludedInterval>& hidden) {
   hidden.clear();
   ++segment_;
-  const PictureOfSegment picture(a, b, open);
+  const ProjectedSegment picture(a, b, open);
   Traverse traverse{
       a, b, open, hidden, {picture.x0[0], picture.x0[1], picture.x0[0], picture.x0[1]}};
   extend(traverse.box, picture.x1);
@@ -314,7 +314,7 @@ bool ShadowGrid::hide(const Eigen::Vector3d& a,
     if (!covered && !hide_in_slab(traverse, walk)) return false;
     if (covered_from >= 0 && (!covered || walk.at_last())) {
       const double t1 = picture.t_at(covered ? walk.s1() : walk.s0());
-      if (!traverse.close({picture.t_at(covered_from), t1, HiddenStretch::both})) return false;
+      if (!traverse.close({picture.t_at(covered_from), t1, OccludedInterval::both})) return false;
       covered_from = -1;
     }
   } while (walk.next());
@@ -344,7 +344,7 @@ bool ShadowGrid::hides(const Eigen::Vector3d& point) const {
 PointInShadow ShadowGrid::classify(const Eigen::Vector3d& point,
                                    std::vector<Eigen::Vector3d>* touched) const {
   PointInShadow result = PointInShadow::outside;
-  for (const Caster& caster : casters_) {
+  for (const Occluder& caster : casters_) {
     const PointInShadow where = point_in_shadow(caster.shadow, point, gap_m_, touched);
     if (where == PointInShadow::inside) return where;
     if (where == PointInShadow::on_border) result = where;

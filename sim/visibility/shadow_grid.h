@@ -35,7 +35,7 @@ class ShadowGrid {
   bool hide(const Eigen::Vector3d& a,
             const Eigen::Vector3d& b,
             Stretch& open,
-            std::vector<HiddenStretch>& hidden);
+            std::vector<OccludedInterval>& hidden);
 
   /// Whether a point (camera frame, in the frustum) is hidden.
   bool hides(const Eigen::Vector3d& point) const;
@@ -52,7 +52,7 @@ class ShadowGrid {
     double distance_m;
     ImageBox box;
   };
-  struct Caster {
+  struct Occluder {
     Shadow shadow;
     double inverse_nearest;
     ImageBox box;
@@ -83,7 +83,7 @@ class ShadowGrid {
   Eigen::Vector2d origin_, tile_size_, tiles_per_unit_;
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Candidate> candidates_;
-  std::vector<Caster> casters_;
+  std::vector<Occluder> casters_;
   std::vector<ShadowSide> sides_;
   std::vector<std::uint32_t> outside_, not_inside_;  ///< one bit a side, for every tile corner
   std::vector<std::pair<int, int>> entries_;         ///< (tile, caster)

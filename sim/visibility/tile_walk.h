@@ -19,7 +19,7 @@ inline int clamp_tile(double g, int count) {
 /// of them. With s the share of the picture, 1 / depth is linear in s as position is.
 class TileWalk {
  public:
-  TileWalk(const PictureOfSegment& picture,
+  TileWalk(const ProjectedSegment& picture,
            const Eigen::Vector2d& origin,
            const Eigen::Vector2d& tiles_per_unit,
            const Eigen::Vector2i& tile_count)

@@ -225,7 +225,7 @@ bool ViewFrustum::clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stret
          keep(outer_.y1 * a.z() - a.y(), outer_.y1 * b.z() - b.y(), s);
 }
 
-void ViewFrustum::cut_at_border(const PictureOfSegment& picture, std::vector<double>& cuts) const {
+void ViewFrustum::cut_at_border(const ProjectedSegment& picture, std::vector<double>& cuts) const {
   const Curve curve{camera_, picture.x0, picture.x1 - picture.x0};
   const double w = camera_.size_px[0], h = camera_.size_px[1];
   const std::array<Border, 4> borders{
@@ -257,7 +257,7 @@ void ViewFrustum::in_image(const Eigen::Vector3d& a,
                            const Stretch& clipped,
                            std::vector<Stretch>& inside) const {
   inside.clear();
-  const PictureOfSegment picture(a, b, clipped);
+  const ProjectedSegment picture(a, b, clipped);
   if (inner_.contains(picture.x0) && inner_.contains(picture.x1)) {
     inside.push_back(clipped);
     return;

@@ -55,7 +55,7 @@ class ViewFrustum {
  private:
   void bound_border();
   /// Shares s of the picture, ascending from 0 to 1, between which it is in the image or is not.
-  void cut_at_border(const PictureOfSegment& picture, std::vector<double>& cuts) const;
+  void cut_at_border(const ProjectedSegment& picture, std::vector<double>& cuts) const;
 
   const Camera& camera_;
   double near_m_, far_m_;

@@ -42,7 +42,7 @@ void intersect(const std::vector<Stretch>& one,
   for (const Stretch& u : one) {
     for (const Stretch& v : other) {
       const Stretch s{std::max(u.t0, v.t0), std::min(u.t1, v.t1)};
-      if (s.t1 - s.t0 > least_stretch) both.push_back(s);
+      if (s.t1 - s.t0 > min_stretch) both.push_back(s);
     }
   }
 }
@@ -50,7 +50,7 @@ void intersect(const std::vector<Stretch>& one,
 /// Vectors that every segment of a view needs, kept to save their allocation.
 struct Scratch {
   ShadowGrid grid;
-  std::vector<HiddenStretch> hidden;
+  std::vector<OccludedInterval> hidden;
   std::vector<Stretch> unhidden, inside, seen;
   std::vector<ShadowSide> sides;
 };
@@ -102,14 +102,14 @@ Visibility::Visibility(Visibility&&) noexcept = default;
 
 const World& Visibility::world() const { return index_->world; }
 
-std::vector<VisibleRun> Visibility::visible_runs(const Camera& camera,
-                                                 const Pose& T_camera_world,
-                                                 const VisibilityOptions& options) const {
+std::vector<VisibleInterval> Visibility::visible_intervals(const Camera& camera,
+                                                           const Pose& T_camera_world,
+                                                           const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
   Scratch& s = scratch;
   s.grid.build(index_->surfaces, T_camera_world, frustum, gap_m(options));
-  std::vector<VisibleRun> runs;
+  std::vector<VisibleInterval> runs;
   const std::vector<WorldSegment>& segments = index_->world.segments;
   for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
     const Eigen::Vector3d a = T_camera_world * segments[i].a_m;
@@ -117,7 +117,7 @@ std::vector<VisibleRun> Visibility::visible_runs(const Camera& camera,
     Stretch open;
     if (!frustum.clip(a, b, open) || !s.grid.hide(a, b, open, s.hidden)) continue;
     frustum.in_image(a, b, open, s.inside);
-    visible_stretches(open, s.hidden, s.unhidden);
+    subtract_intervals(open, s.hidden, s.unhidden);
     intersect(s.unhidden, s.inside, s.seen);
     const auto pixel = [&](double t) { return project(camera, a + t * (b - a)); };
     for (int run = 0; run < static_cast<int>(s.seen.size()); ++run) {

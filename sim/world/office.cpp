@@ -100,10 +100,10 @@ Plan make_plan(std::uint64_t seed, const OfficeOptions& options) {
       room.floor.low_m = {x0, side == 0 ? 0 : plan.north_m + wall_thickness_m, 0};
       room.floor.high_m = {x1, side == 0 ? plan.south_m - wall_thickness_m : plan.size_m.y(),
                            plan.size_m.z()};
-      Draws draws({.seed = seed,
-                   .trial = room.floor.number,
-                   .feature = door_place_item,
-                   .source = office_draws});
+      RandomStream draws({.seed = seed,
+                          .trial = room.floor.number,
+                          .feature = door_place_item,
+                          .source = office_draws});
       const bool left = draws.below(2);
       const double from = 0.75 + draws.uniform(0, std::min(0.6, (x1 - x0) / 2 - 0.75));
       room.door_x_m = to_grid(left ? x0 + from : x1 - from);
@@ -210,7 +210,7 @@ void furnish_corridor_wall(OfficeSite& site, const Plan& plan, int side) {
                                           Vector3d(x + half + 0.02, 0.6, door_height_m + 0.12)));
     site.try_place("door_sign", wall.frame, {x + half + 0.06, 0, 0});
   }
-  Draws draws = site.draws(200 + side);
+  RandomStream draws = site.draws(200 + side);
   for (int i = 0; i < static_cast<int>(wall.length_m / 4); ++i) {
     double x = draws.uniform(0.3, wall.length_m - 0.8);
     const int row = 1 + static_cast<int>(draws.below(4));

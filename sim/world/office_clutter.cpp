@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 // Several draws in one expression stand in braces, which fix the order of evaluation.
 
 // Spines side by side: neighbours share an edge, as high as the taller one.
-void row_of_books(Shapes& loose, double x, double end, double board, Draws& draws) {
+void row_of_books(Shapes& loose, double x, double end, double board, RandomStream& draws) {
   double last_height = 0;
   while (true) {
     const double width = draws.uniform(0.04, 0.12);
@@ -42,7 +42,7 @@ void row_of_books(Shapes& loose, double x, double end, double board, Draws& draw
   }
 }
 
-void fill_board(OfficeSite& site, double x, double board, Draws& draws) {
+void fill_board(OfficeSite& site, double x, double board, RandomStream& draws) {
   const double full = x + shelf_clear_m;
   const double start = x + draws.uniform(0.005, 0.15);
   const double kind = draws.uniform();
@@ -55,7 +55,7 @@ void fill_board(OfficeSite& site, double x, double board, Draws& draws) {
   row_of_books(site.loose(), start, x + draws.uniform(0.5, 1) * (full - 0.005 - x), board, draws);
 }
 
-void framed_picture(Shapes& loose, const Vector2d& low, const Vector2d& high, Draws& draws) {
+void framed_picture(Shapes& loose, const Vector2d& low, const Vector2d& high, RandomStream& draws) {
   loose.upright_rectangle(low.x(), low.y(), high.x(), high.y(), 0.015);
   const double border = draws.uniform(0.02, 0.05);
   loose.upright_rectangle(low.x() + border, low.y() + border, high.x() - border, high.y() - border,
@@ -63,7 +63,7 @@ void framed_picture(Shapes& loose, const Vector2d& low, const Vector2d& high, Dr
 }
 
 // A sheet on the wall with a few ruled lines or a picture upon it.
-void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, Draws& draws) {
+void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, RandomStream& draws) {
   loose.upright_rectangle(low.x(), low.y(), high.x(), high.y(), 0.005);
   const Vector2d size = high - low;
   double z = high.y() - draws.uniform(0.08, 0.15) * size.y();
@@ -81,7 +81,7 @@ void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, Draws& dra
 
 }  // namespace
 
-void fill_bookshelf(OfficeSite& site, const QuarterFrame& frame, double x_m, Draws& draws) {
+void fill_bookshelf(OfficeSite& site, const QuarterFrame& frame, double x_m, RandomStream& draws) {
   site.loose().frame = frame;
   for (const double board : shelf_boards_m) {
     fill_board(site, x_m + shelf_side_m, board, draws);
@@ -92,7 +92,7 @@ void pin_papers(OfficeSite& site,
                 const QuarterFrame& frame,
                 const Vector2d& low_m,
                 const Vector2d& high_m,
-                Draws& draws) {
+                RandomStream& draws) {
   site.loose().frame = frame;
   double x = low_m.x() + draws.uniform(0.02, 0.1);
   while (true) {
@@ -116,7 +116,7 @@ void litter_top(OfficeSite& site,
                 const Vector3d& corner_m,
                 const Vector2d& size_m,
                 int things,
-                Draws& draws) {
+                RandomStream& draws) {
   for (int i = 0; i < things; ++i) {
     const double width = draws.uniform(0.1, 0.32), depth = draws.uniform(0.1, 0.3);
     const double height = draws.uniform(0.02, 0.2);
@@ -135,7 +135,7 @@ void stack_cartons(OfficeSite& site,
                    const QuarterFrame& frame,
                    const Vector3d& corner_m,
                    const Vector2d& size_m,
-                   Draws& draws) {
+                   RandomStream& draws) {
   double x = corner_m.x() + draws.uniform(0.02, 0.2);
   while (true) {
     const Vector3d size{draws.uniform(0.2, 0.5), draws.uniform(0.2, size_m.y()),
@@ -147,7 +147,7 @@ void stack_cartons(OfficeSite& site,
   }
 }
 
-void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, Draws& draws) {
+void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, RandomStream& draws) {
   for (int i = 0; i < tries; ++i) {
     const double width = draws.uniform(0.25, 0.95), height = draws.uniform(0.25, 0.75);
     const Vector2d low{draws.uniform(0.05, std::max(0.06, wall.length_m - width - 0.05)),
@@ -166,7 +166,7 @@ void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, Draws& d
   }
 }
 
-void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, Draws& draws) {
+void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, RandomStream& draws) {
   for (int i = 0; i < tries; ++i) {
     const Vector3d size{draws.uniform(0.25, 0.6), draws.uniform(0.2, 0.45),
                         draws.uniform(0.2, 0.5)};
@@ -181,7 +181,7 @@ void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, Draws& dr
   }
 }
 
-void run_cables(OfficeSite& site, const OfficeWall& wall, Draws& draws) {
+void run_cables(OfficeSite& site, const OfficeWall& wall, RandomStream& draws) {
   const double ceiling = site.room().high_m.z();
   const double width = draws.uniform(0.12, 0.3), depth = draws.uniform(0.1, 0.25);
   const AlignedBox3d duct(Vector3d(0, 0, 0), Vector3d(width, depth, ceiling));

@@ -16,14 +16,14 @@ namespace vernier::sim::internal {
 void fill_bookshelf(OfficeSite& site,
                     const QuarterFrame& frame,
                     double x_m,
-                    vernier::internal::Draws& draws);
+                    vernier::internal::RandomStream& draws);
 
 /// Sheets of paper on a rectangle of wall (a notice board), from `low_m` to `high_m` (x, z).
 void pin_papers(OfficeSite& site,
                 const QuarterFrame& frame,
                 const Eigen::Vector2d& low_m,
                 const Eigen::Vector2d& high_m,
-                vernier::internal::Draws& draws);
+                vernier::internal::RandomStream& draws);
 
 /// Stacks of paper and books and small boxes on a top of `size_m` whose near left corner is
 /// `corner_m`.
@@ -32,28 +32,28 @@ void litter_top(OfficeSite& site,
                 const Eigen::Vector3d& corner_m,
                 const Eigen::Vector2d& size_m,
                 int things,
-                vernier::internal::Draws& draws);
+                vernier::internal::RandomStream& draws);
 
 /// Cartons on top of a cupboard.
 void stack_cartons(OfficeSite& site,
                    const QuarterFrame& frame,
                    const Eigen::Vector3d& corner_m,
                    const Eigen::Vector2d& size_m,
-                   vernier::internal::Draws& draws);
+                   vernier::internal::RandomStream& draws);
 
 /// Framed pictures, calendars and posters of drawn sizes where a wall is free.
 void hang_pictures(OfficeSite& site,
                    const OfficeWall& wall,
                    int tries,
-                   vernier::internal::Draws& draws);
+                   vernier::internal::RandomStream& draws);
 
 /// Cartons on the floor along a wall.
 void drop_cartons(OfficeSite& site,
                   const OfficeWall& wall,
                   int tries,
-                  vernier::internal::Draws& draws);
+                  vernier::internal::RandomStream& draws);
 
 /// A duct in a corner, conduits with their junction boxes up a wall, a stretch of cable trunking.
-void run_cables(OfficeSite& site, const OfficeWall& wall, vernier::internal::Draws& draws);
+void run_cables(OfficeSite& site, const OfficeWall& wall, vernier::internal::RandomStream& draws);
 
 }  // namespace vernier::sim::internal

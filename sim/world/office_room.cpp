@@ -55,7 +55,7 @@ constexpr std::array<Style, 4> styles{{
     {{4, 2, 2, 2, 0, 1, 2, 4}},  // laboratory
 }};
 
-int draw_furniture(const Style& style, Draws& draws) {
+int draw_furniture(const Style& style, RandomStream& draws) {
   double total = 0;
   for (const double weight : style.weights) total += weight;
   double rest = draws.uniform(0, total);
@@ -72,7 +72,7 @@ void place_chair(OfficeSite& site,
                  const QuarterFrame& frame,
                  const Vector2d& middle,
                  double board_depth,
-                 Draws& draws) {
+                 RandomStream& draws) {
   const double radius = 0.33, back = std::max(middle.y() - radius, board_depth + 0.016);
   const AlignedBox3d box(Vector3d(middle.x() - radius, back, 0),
                          Vector3d(middle.x() + radius, middle.y() + radius, 1));
@@ -82,7 +82,7 @@ void place_chair(OfficeSite& site,
   site.place(name, frame, {middle.x(), middle.y(), 0}, yaw_deg);
 }
 
-void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, Draws& draws) {
+void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
   const double seat = x + draws.uniform(0.55, 0.95);
   const int screens = 1 + static_cast<int>(draws.below(2));
   for (int i = 0; i < screens; ++i) {
@@ -111,7 +111,7 @@ void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, Draws& dr
   if (draws.below(2)) site.try_place("bin", frame, {x - 0.2, draws.uniform(0.2, 0.5), 0});
 }
 
-void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, Draws& draws) {
+void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
   const int chairs = 1 + static_cast<int>(draws.below(2));
   for (int i = 0; i < chairs; ++i) {
     const double at = x + (chairs == 1 ? 0.6 : 0.26 + 0.68 * i) + draws.uniform(-0.03, 0.03);
@@ -122,7 +122,7 @@ void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, Draws& d
   litter_top(site, frame, {x + 0.03, 0.05, board_top_m}, {1.14, 0.62}, things, draws);
 }
 
-void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, Draws& draws) {
+void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, RandomStream& draws) {
   switch (kind) {
     case desk:
       return equip_desk(site, frame, x, draws);
@@ -147,7 +147,7 @@ void furnish_wall(OfficeSite& site, int side, const Style& style) {
   std::uint32_t item = wall_item + 1000 * side;
   double x = site.draws(item).uniform(0.03, 0.5);
   while (x < wall.length_m) {
-    Draws draws = site.draws(++item);
+    RandomStream draws = site.draws(++item);
     const int kind = draw_furniture(style, draws);
     const double gap = draws.uniform() < 0.4 ? draws.uniform(0.02, 0.06) : draws.uniform(0.2, 1.3);
     if (kind == nothing) {
@@ -166,7 +166,7 @@ void furnish_wall(OfficeSite& site, int side, const Style& style) {
 }
 
 void open_windows(OfficeSite& site, const OfficeWall& wall) {
-  Draws draws = site.draws(window_item);
+  RandomStream draws = site.draws(window_item);
   const int windows = std::max(1, static_cast<int>(std::floor(wall.length_m / 3.2)));
   const double share = wall.length_m / windows;
   for (int i = 0; i < windows; ++i) {
@@ -182,7 +182,7 @@ void open_windows(OfficeSite& site, const OfficeWall& wall) {
 }
 
 void fit_ceiling(OfficeSite& site) {
-  Draws draws = site.draws(light_item);
+  RandomStream draws = site.draws(light_item);
   const Vector3d low = site.room().low_m, size = site.room().high_m - low;
   const bool across = draws.below(2);
   const int columns = std::max(1, static_cast<int>(std::round(size.x() / 2)));
@@ -203,7 +203,7 @@ void fit_ceiling(OfficeSite& site) {
 
 // The leaf beside the opening, on the side with more wall, and the switch on the other.
 void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
-  Draws draws = site.draws(door_item);
+  RandomStream draws = site.draws(door_item);
   const double half = door_width_m / 2 + casing_m + 0.02;
   site.occupy(wall.frame * AlignedBox3d(Vector3d(door_x - half, 0, 0),
                                         Vector3d(door_x + half, 0.8, door_height_m + 0.15)));
@@ -218,7 +218,7 @@ void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
 
 void mount_boards(OfficeSite& site, int side) {
   const OfficeWall wall = site.room().wall(side);
-  Draws draws = site.draws(board_item + side);
+  RandomStream draws = site.draws(board_item + side);
   for (int i = 0; i < 8; ++i) {
     const bool notice = draws.below(2);
     const double width = notice ? 1.2 : 1.5;
@@ -232,7 +232,7 @@ void mount_boards(OfficeSite& site, int side) {
 
 void fit_sockets(OfficeSite& site, int side) {
   const OfficeWall wall = site.room().wall(side);
-  Draws draws = site.draws(socket_item + side);
+  RandomStream draws = site.draws(socket_item + side);
   const int sockets = 1 + static_cast<int>(wall.length_m / 3);
   for (int i = 0; i < sockets; ++i) {
     const double x = (i + draws.uniform(0.1, 0.8)) * wall.length_m / sockets;
@@ -256,11 +256,11 @@ void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
     const OfficeWall wall = site.room().wall(side);
     mount_boards(site, side);
     fit_sockets(site, side);
-    Draws cables = site.draws(cable_item + side);
+    RandomStream cables = site.draws(cable_item + side);
     run_cables(site, wall, cables);
-    Draws pictures = site.draws(picture_item + side);
+    RandomStream pictures = site.draws(picture_item + side);
     hang_pictures(site, wall, static_cast<int>(wall.length_m), pictures);
-    Draws cartons = site.draws(carton_item + side);
+    RandomStream cartons = site.draws(carton_item + side);
     drop_cartons(site, wall, 2, cartons);
   }
 }

@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 
 constexpr double route_clearance_m = 0.35;  ///< 0.3 m is promised
 constexpr double headroom_m = 2.0;
-constexpr double gap_m = 0.015;  ///< between neighbours, so that edges never coincide
+constexpr double site_gap_m = 0.015;  ///< between neighbours, so that edges never coincide
 
 double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
   const Vector2d d = b - a;
@@ -94,8 +94,9 @@ void OfficeSite::enter(const OfficeRoom& room, const std::vector<Vector2d>& path
   occupied_.clear();
 }
 
-Draws OfficeSite::draws(std::uint32_t item) const {
-  return Draws({.seed = seed_, .trial = room_.number, .feature = item, .source = office_draws});
+RandomStream OfficeSite::draws(std::uint32_t item) const {
+  return RandomStream(
+      {.seed = seed_, .trial = room_.number, .feature = item, .source = office_draws});
 }
 
 bool OfficeSite::is_free(const AlignedBox3d& box) const {
@@ -107,7 +108,7 @@ bool OfficeSite::is_free(const AlignedBox3d& box) const {
     return false;
   }
   // Stacked things touch; only neighbours keep a gap.
-  const Vector3d gap(gap_m, gap_m, -1e-6);
+  const Vector3d gap(site_gap_m, site_gap_m, -1e-6);
   const AlignedBox3d grown(box.min() - gap, box.max() + gap);
   return std::none_of(occupied_.begin(), occupied_.end(),
                       [&](const AlignedBox3d& other) { return grown.intersects(other); });

@@ -46,8 +46,8 @@ class OfficeSite {
   /// Begins a room; whatever stands in it later stays clear of `path_m`.
   void enter(const OfficeRoom& room, const std::vector<Eigen::Vector2d>& path_m);
 
-  /// Draws that belong to one item of the current room.
-  vernier::internal::Draws draws(std::uint32_t item) const;
+  /// RandomStream that belong to one item of the current room.
+  vernier::internal::RandomStream draws(std::uint32_t item) const;
 
   /// Whether a box of the current room is free. What hangs above a head may cross the route.
   bool is_free(const Eigen::AlignedBox3d& box) const;

@@ -52,9 +52,7 @@ RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m) {
   return point;
 }
 
-std::vector<PlanePose> map_places(const std::vector<RouteLeg>& route,
-                                  double spacing_m,
-                                  int headings) {
+std::vector<Pose2D> map_poses(const std::vector<RouteLeg>& route, double spacing_m, int headings) {
   if (route.empty()) {
     throw Error("map", "the world has no route to record it along",
                 "add [[route]] points_m to the world, or give map.path in the study");
@@ -62,7 +60,7 @@ std::vector<PlanePose> map_places(const std::vector<RouteLeg>& route,
   if (!(spacing_m > 0) || headings < 0) {
     throw Error("map", "spacing must be above 0 and headings not negative", "");
   }
-  std::vector<PlanePose> places;
+  std::vector<Pose2D> places;
   for (const RouteLeg& leg : route) {
     for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
       const Eigen::Vector2d &a = leg.points_m[i - 1], &b = leg.points_m[i];

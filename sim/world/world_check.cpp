@@ -17,17 +17,17 @@ namespace {
 
 constexpr double kTolerance_m = 1e-3;
 
-void refuse(const std::string& place, const std::optional<WorldFault>& fault) {
+void refuse(const std::string& place, const std::optional<WorldError>& fault) {
   if (fault) throw Error(place, fault->fault, fault->remedy);
 }
 
 void check_features(const FeatureSet& features, const std::string& owner) {
   for (std::size_t i = 0; i < features.segments_m.size(); ++i) {
     const auto& [a, b] = features.segments_m[i];
-    refuse(owner + " segment " + std::to_string(i), segment_fault(a, b));
+    refuse(owner + " segment " + std::to_string(i), segment_error(a, b));
   }
   for (std::size_t i = 0; i < features.surfaces_m.size(); ++i) {
-    refuse(owner + " surface " + std::to_string(i), surface_fault(features.surfaces_m[i]));
+    refuse(owner + " surface " + std::to_string(i), surface_error(features.surfaces_m[i]));
   }
   for (std::size_t i = 0; i < features.corners_m.size(); ++i) {
     if (!features.corners_m[i].allFinite()) {
@@ -51,47 +51,47 @@ std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescrip
   return by_name;
 }
 
-std::optional<WorldFault> segment_fault(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
+std::optional<WorldError> segment_error(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
   if (!a_m.allFinite() || !b_m.allFinite()) {
-    return WorldFault{"is not finite", "give six finite numbers"};
+    return WorldError{"is not finite", "give six finite numbers"};
   }
   const double length_m = (b_m - a_m).norm();
-  if (length_m == 0) return WorldFault{"has no length", "move one end or remove it"};
+  if (length_m == 0) return WorldError{"has no length", "move one end or remove it"};
   // Coordinates have a tenth of a millimetre, so that exactly 1 mm must survive rounding.
   if (length_m < kTolerance_m * (1 - 1e-6)) {
-    return WorldFault{"is shorter than 1 mm", "move one end or remove it"};
+    return WorldError{"is shorter than 1 mm", "move one end or remove it"};
   }
   return std::nullopt;
 }
 
-std::optional<WorldFault> surface_fault(const std::vector<Eigen::Vector3d>& polygon_m) {
+std::optional<WorldError> surface_error(const std::vector<Eigen::Vector3d>& polygon_m) {
   if (polygon_m.size() < 3) {
-    return WorldFault{"has fewer than three points", "give three or more"};
+    return WorldError{"has fewer than three points", "give three or more"};
   }
   Eigen::Vector3d area = Eigen::Vector3d::Zero(), centre = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < polygon_m.size(); ++i) {
-    if (!polygon_m[i].allFinite()) return WorldFault{"is not finite", "give finite numbers"};
+    if (!polygon_m[i].allFinite()) return WorldError{"is not finite", "give finite numbers"};
     const Eigen::Vector3d from = polygon_m[i] - polygon_m[0];
     // Newell's normal: the sum over the border holds for polygons that are not convex, too.
     area += 0.5 * from.cross(polygon_m[(i + 1) % polygon_m.size()] - polygon_m[0]);
     centre += polygon_m[i] / static_cast<double>(polygon_m.size());
   }
   if (area.norm() < kTolerance_m * kTolerance_m) {
-    return WorldFault{"encloses no area", "check the order of its points or remove it"};
+    return WorldError{"encloses no area", "check the order of its points or remove it"};
   }
   const Eigen::Vector3d normal = area.normalized();
   for (const auto& point : polygon_m) {
     if (std::abs(normal.dot(point - centre)) > kTolerance_m) {
-      return WorldFault{"is not planar to 1 mm", "cut it into triangles"};
+      return WorldError{"is not planar to 1 mm", "cut it into triangles"};
     }
   }
   return std::nullopt;
 }
 
-std::optional<WorldFault> route_fault(const std::vector<Eigen::Vector2d>& points_m) {
-  if (points_m.size() < 2) return WorldFault{"has fewer than two points", "give two or more"};
+std::optional<WorldError> route_error(const std::vector<Eigen::Vector2d>& points_m) {
+  if (points_m.size() < 2) return WorldError{"has fewer than two points", "give two or more"};
   for (const auto& point : points_m) {
-    if (!point.allFinite()) return WorldFault{"is not finite", "give finite numbers"};
+    if (!point.allFinite()) return WorldError{"is not finite", "give finite numbers"};
   }
   return std::nullopt;
 }
@@ -114,7 +114,7 @@ void check_world(const WorldDescription& description) {
   }
   check_features(description.loose, "loose");
   for (std::size_t i = 0; i < description.route.size(); ++i) {
-    refuse("route " + std::to_string(i), route_fault(description.route[i].points_m));
+    refuse("route " + std::to_string(i), route_error(description.route[i].points_m));
   }
 }
 

@@ -13,18 +13,18 @@
 namespace vernier::sim::internal {
 
 /// What is wrong with a piece of a world and what to do about it; the caller knows the place.
-struct WorldFault {
+struct WorldError {
   std::string fault, remedy;
 };
 
 /// A segment must have finite end points at least 1 mm apart.
-std::optional<WorldFault> segment_fault(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m);
+std::optional<WorldError> segment_error(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m);
 
 /// A surface must have at least three finite points, enclose an area and be planar to 1 mm.
-std::optional<WorldFault> surface_fault(const std::vector<Eigen::Vector3d>& polygon_m);
+std::optional<WorldError> surface_error(const std::vector<Eigen::Vector3d>& polygon_m);
 
 /// A leg of a route must have at least two finite points.
-std::optional<WorldFault> route_fault(const std::vector<Eigen::Vector2d>& points_m);
+std::optional<WorldError> route_error(const std::vector<Eigen::Vector2d>& points_m);
 
 /// The templates by their names. Throws Error for a template without a name or with a taken one.
 std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescription& description);

@@ -49,7 +49,7 @@ void WorldReader::read_segment(const toml::node& node,
                                FeatureSet& into) const {
   const std::string what = owner + " segment " + std::to_string(into.segments_m.size());
   const auto ends = numbers<6>(node, what);
-  const auto fault = segment_fault(ends.head<3>(), ends.tail<3>());
+  const auto fault = segment_error(ends.head<3>(), ends.tail<3>());
   if (fault) fail(node, what + " " + fault->fault, fault->remedy);
   into.segments_m.emplace_back(ends.head<3>(), ends.tail<3>());
 }
@@ -60,7 +60,7 @@ void WorldReader::read_surface(const toml::node& node,
   const std::string what = owner + " surface " + std::to_string(into.surfaces_m.size());
   std::vector<Eigen::Vector3d> polygon;
   for (const auto& point : list(node, what)) polygon.push_back(numbers<3>(point, what + " point"));
-  const auto fault = surface_fault(polygon);
+  const auto fault = surface_error(polygon);
   if (fault) fail(node, what + " " + fault->fault, fault->remedy);
   into.surfaces_m.push_back(std::move(polygon));
 }
@@ -164,7 +164,7 @@ RouteLeg WorldReader::read_route(const toml::table& table, const std::string& wh
   for (const auto& point : list(points, what + " points_m")) {
     leg.points_m.push_back(numbers<2>(point, what + " point"));
   }
-  const auto fault = route_fault(leg.points_m);
+  const auto fault = route_error(leg.points_m);
   if (fault) fail(points, what + " " + fault->fault, fault->remedy);
   return leg;
 }

@@ -135,9 +135,9 @@ std::optional<Candidate> best_candidate(std::vector<Candidate>& candidates,
   if (candidates.empty()) return std::nullopt;
   const auto by_score = [](const Candidate& a, const Candidate& b) { return a.score < b.score; };
   const auto best = std::max_element(candidates.begin(), candidates.end(), by_score);
-  if (!(best->score >= options.least_score)) return std::nullopt;
+  if (!(best->score >= options.min_score)) return std::nullopt;
   for (auto other = candidates.begin(); other != candidates.end(); ++other) {
-    if (other != best && other->score > best->score - options.least_margin) return std::nullopt;
+    if (other != best && other->score > best->score - options.min_margin) return std::nullopt;
   }
   return *best;
 }
@@ -218,10 +218,10 @@ std::vector<CornerMatch> match_corners(const CornerImage& left,
     const auto aligned = align_patch(left.grey, right.grey, left_px,
                                      right.corners[chosen[i]->right].pixel_px, chosen[i]->direction,
                                      {.half_px = options.aligned_half_px,
-                                      .most_shift_px = options.most_shift_px,
+                                      .max_shift_px = options.max_shift_px,
                                       .noise_left = left.noise,
                                       .noise_right = right.noise});
-    if (!aligned || aligned->score < options.least_aligned_score) continue;
+    if (!aligned || aligned->score < options.min_aligned_score) continue;
     matches.push_back(aligned_match(*aligned, *chosen[i], options));
     matches.back().left = static_cast<int>(i);
     matches.back().left_px = left_px;

@@ -26,10 +26,10 @@ CornerImage corner_image(const cv::Mat& grey, const HarrisOptions& options);
 ///
 ///  1. candidates: right corners within the gate of the left one's band
 ///  (stereo/corners/epipolar_band.h);
-///  2. the one whose patch correlates best (ZNCC), if by at least `least_score`, if by
-///     `least_margin` more than the second best, and if it has no better left one itself;
+///  2. the one whose patch correlates best (ZNCC), if by at least `min_score`, if by
+///     `min_margin` more than the second best, and if it has no better left one itself;
 ///  3. least squares matching about both (stereo/image/patch_alignment.h) has to settle within
-///     `most_shift_px` of the corner and correlate by `least_aligned_score`; its place is the
+///     `max_shift_px` of the corner and correlate by `min_aligned_score`; its place is the
 ///     match's right pixel;
 ///  4. of the `neighbours` nearest matches at least `support` have nearly the same displacement: it
 ///     differs by a pixel or by `support_slope` of their distance. Where fewer matches than

@@ -17,7 +17,7 @@ namespace vernier::stereo::internal {
 namespace {
 
 constexpr int first_steps = 16;
-constexpr int most_halvings = 7;
+constexpr int max_halvings = 7;
 constexpr int edge_halvings = 12;  // of a step, to where the curve leaves the image's surroundings
 constexpr double longest_step_px = 24;
 constexpr double straight_px = 0.1;
@@ -87,7 +87,7 @@ void EpipolarBand::subdivide(const Ray& ray,
                              std::vector<BandNode>& nodes) const {
   const BandNode from = nodes.back();
   const double middle = 0.5 * (from.inverse_depth + to.inverse_depth);
-  const auto between = depth < most_halvings ? node(ray, middle) : std::nullopt;
+  const auto between = depth < max_halvings ? node(ray, middle) : std::nullopt;
   if (between) {
     const Eigen::Vector2d chord = to.pixel_px - from.pixel_px;
     const Eigen::Vector2d off = between->pixel_px - from.pixel_px;

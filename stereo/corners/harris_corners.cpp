@@ -143,7 +143,7 @@ class PointFit {
         vertex_{vertex(1, 0), vertex(0, 1)},
         centre_(peak.x + vertex_[0].offset, peak.y + vertex_[1].offset) {}
 
-  std::optional<Eigen::Vector2d> point(double most_shift_px) {
+  std::optional<Eigen::Vector2d> point(double max_shift_px) {
     Eigen::Matrix2d M = Eigen::Matrix2d::Zero();
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
     for_window([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g) {
@@ -154,7 +154,7 @@ class PointFit {
     if (!(M.determinant() > 1e-9 * M.trace() * M.trace())) return std::nullopt;
     inverse_ = M.inverse();
     shift_ = inverse_ * b;
-    if (!(shift_.norm() <= most_shift_px)) return std::nullopt;
+    if (!(shift_.norm() <= max_shift_px)) return std::nullopt;
     return centre_ + shift_;
   }
 
@@ -283,7 +283,7 @@ std::vector<ImageCorner> harris_corners(const cv::Mat& grey,
   for (const Peak& peak : spread(peaks(tensor.response, options), grey.size(), options)) {
     if (options.count > 0 && corners.size() >= static_cast<std::size_t>(options.count)) break;
     PointFit fit(g, tensor, peak, options);
-    const auto point = fit.point(options.most_shift_px);
+    const auto point = fit.point(options.max_shift_px);
     if (!point || !is_new(corners, *point)) continue;
     const Eigen::Matrix2d covariance = fit.covariance(filter, noise);
     if (!(worst_sd(covariance) <= options.worst_sigma_px)) continue;

@@ -16,7 +16,7 @@ struct HarrisOptions {
   double k = 0.06;                    ///< of the response; larger refuses more edges
   int suppression_radius_px = 2;      ///< no stronger response within, in rows and columns
   double worst_sigma_px = 0.25;       ///< corners with a larger standard deviation are left out
-  double most_shift_px = 2.5;         ///< from the response's peak to the corner's point
+  double max_shift_px = 2.5;          ///< from the response's peak to the corner's point
   int border_px = 9;                  ///< none nearer to the image's border
 };
 

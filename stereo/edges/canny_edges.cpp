@@ -27,7 +27,7 @@ namespace {
 
 constexpr int strip = 48;  // rows at a time, for the processor's cache
 
-enum Peak : int { no_peak = 0, weak_peak = 1, sharp_peak = 2 };
+enum GradientPeak : int { no_peak = 0, weak_peak = 1, sharp_peak = 2 };
 
 /// For every pixel of a row whether its |g| is at least `low` and the largest along g: larger than
 /// on the one side and no smaller than on the other, by interpolation between the two pixels that g
@@ -173,7 +173,7 @@ void keep_strings(ConnectedSets& sets,
   int next = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Members& string = of_root[sets.root(static_cast<int>(i))];
-    if (!string.strong || string.count < options.least_points) continue;
+    if (!string.strong || string.count < options.min_points) continue;
     if (string.number < 0) string.number = next++;
     points[kept] = points[i];
     points[kept++].string = string.number;

@@ -12,7 +12,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr int most_spur_points = 2;
+constexpr int max_spur_points = 2;
 
 /// Which points are neighbours.
 class Neighbours {
@@ -80,7 +80,7 @@ void cut_spurs(Neighbours& neighbours, int points) {
   for (int i = 0; i < points; ++i) {
     if (neighbours.count(i) != 1) continue;
     int before = i, at = neighbours(i, 0), length = 1;
-    while (length < most_spur_points && neighbours.count(at) == 2) {
+    while (length < max_spur_points && neighbours.count(at) == 2) {
       const int next = neighbours.beyond(at, before);
       before = at;
       at = next;

@@ -19,7 +19,7 @@ EdgeNeighbours::EdgeNeighbours(const std::vector<EdgePoint>& points) : points_(p
 
 EdgeNeighbour EdgeNeighbours::nearest(const EdgePlace& place, const EdgeGate& gate) const {
   const double reach = std::hypot(gate.across_px, gate.along_px) + 1;
-  const double least_cosine = std::cos(gate.turned_rad);
+  const double min_cosine = std::cos(gate.turned_rad);
   const Eigen::Vector2d along(-place.normal.y(), place.normal.x());
   const int rows = static_cast<int>(row_begin_.size()) - 1;
   const int y0 = std::max(0, static_cast<int>(std::floor(place.at_px.y() - reach)));
@@ -32,7 +32,7 @@ EdgeNeighbour EdgeNeighbours::nearest(const EdgePlace& place, const EdgeGate& ga
     auto point = std::lower_bound(begin, end, place.at_px.x() - reach,
                                   [](const EdgePoint& p, double x) { return p.x < x; });
     for (; point != end && point->x <= place.at_px.x() + reach; ++point) {
-      if (point->normal.cast<double>().dot(place.normal) < least_cosine) continue;
+      if (point->normal.cast<double>().dot(place.normal) < min_cosine) continue;
       const Eigen::Vector2d apart = point->pixel_px.cast<double>() - place.at_px;
       const double across = place.normal.dot(apart);
       if (std::abs(across) > gate.across_px || std::abs(along.dot(apart)) > gate.along_px) continue;

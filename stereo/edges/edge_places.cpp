@@ -14,9 +14,9 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr float least_ratio = 0.1F;        // of a neighbour's gradient to the peak's
-constexpr float least_curvature = 0.005F;  // of log |g|, that of a step blurred by 14 px
-constexpr float most_offset = 0.75F;       // of a pixel along the nearer axis
+constexpr float min_ratio = 0.1F;        // of a neighbour's gradient to the peak's
+constexpr float min_curvature = 0.005F;  // of log |g|, that of a step blurred by 14 px
+constexpr float max_offset = 0.75F;      // of a pixel along the nearer axis
 
 /// Σ_u a(u) b(u + shift)
 double correlation(const std::vector<double>& a, const std::vector<double>& b, int shift) {
@@ -75,7 +75,7 @@ void EdgePlaces::gather(const GradientRows& gradient,
     batch.ny[k] /= batch.strength[k];
   }
   for (Lanes& ratio : batch.ratio) {
-    for (int k = 0; k < lanes; ++k) ratio[k] = std::max(least_ratio, ratio[k] / batch.strength[k]);
+    for (int k = 0; k < lanes; ++k) ratio[k] = std::max(min_ratio, ratio[k] / batch.strength[k]);
   }
 }
 
@@ -97,8 +97,8 @@ void EdgePlaces::fit(Batch& batch) {
     }
   }
   for (int k = 0; k < lanes; ++k) {
-    const float most = most_offset / std::max(std::abs(batch.nx[k]), std::abs(batch.ny[k]));
-    bend[k] = -1 / std::min(bend[k], -least_curvature);
+    const float most = max_offset / std::max(std::abs(batch.nx[k]), std::abs(batch.ny[k]));
+    bend[k] = -1 / std::min(bend[k], -min_curvature);
     batch.offset[k] = std::min(most, std::max(-most, slope[k] * bend[k]));
   }
   for (int i = 0; i < 9; ++i) {

@@ -140,10 +140,10 @@ void check(const std::vector<EdgePoint>& points, const EdgeSegmentOptions& optio
                                            [](const EdgePoint& point) { return point.x < 0; }))) {
     throw Error("edge_segments", "a point's pixel is negative", "number pixels from 0");
   }
-  if (!(options.most_rms_px > 0)) {
+  if (!(options.max_rms_px > 0)) {
     throw Error("edge_segments", "the largest rms is not above 0 px", "choose 0.15 px, say");
   }
-  if (options.least_points < 4) {
+  if (options.min_points < 4) {
     throw Error("edge_segments", "fewer than 4 points make no segment", "choose 8, say");
   }
   if (!(options.scale_px > 0)) {

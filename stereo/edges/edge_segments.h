@@ -11,9 +11,9 @@
 namespace vernier::stereo::internal {
 
 struct EdgeSegmentOptions {
-  double most_rms_px = 0.15;  ///< of a segment's points from its line
-  int least_points = 8;       ///< shorter segments are dropped
-  double scale_px = 1;        ///< of canny_edges: how far the noise of points is correlated
+  double max_rms_px = 0.15;  ///< of a segment's points from its line
+  int min_points = 8;        ///< shorter segments are dropped
+  double scale_px = 1;       ///< of canny_edges: how far the noise of points is correlated
 };
 
 /// A straight piece of an edge. From a to b the brighter side is on the right.
@@ -27,7 +27,7 @@ struct EdgeSegment {
 
 /// Polygonal segments of edge points (of canny_edges, sorted by (y, x)). A segment grows along its
 /// string as long as the orthogonal regression to its points has a root mean square below
-/// `most_rms_px`, then the next begins; points at its ends that lie off the line of the others (the
+/// `max_rms_px`, then the next begins; points at its ends that lie off the line of the others (the
 /// rounding of a corner) are given back.
 ///
 /// The line across at s along it, e(s) = e_0 + e_1 s, has the covariance

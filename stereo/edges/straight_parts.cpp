@@ -13,10 +13,10 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double least_cosine = 0.7;     // of a point's normal to the mean of its part
-constexpr int least_break_points = 2;    // on either side of a break
-constexpr int most_rounding_points = 4;  // at an end, left out to know the line of the others
-constexpr double most_deviations = 3;    // of a point at an end from that line
+constexpr double min_cosine = 0.7;      // of a point's normal to the mean of its part
+constexpr int min_break_points = 2;     // on either side of a break
+constexpr int max_rounding_points = 4;  // at an end, left out to know the line of the others
+constexpr double max_deviations = 3;    // of a point at an end from that line
 
 class StraightParts {
  public:
@@ -33,7 +33,7 @@ class StraightParts {
   std::vector<ChainPart> find() const {
     std::vector<ChainPart> parts;
     const int size = static_cast<int>(chain_.size());
-    for (int begin = 0; begin + options_.least_points <= size;) {
+    for (int begin = 0; begin + options_.min_points <= size;) {
       const ChainPart part = grow(begin);
       if (part.size() > 0) parts.push_back(part);
       begin += std::max(1, part.size());
@@ -42,8 +42,7 @@ class StraightParts {
       for (std::size_t k = 0; k + 1 < parts.size(); ++k) move_break(parts[k], parts[k + 1]);
     }
     for (ChainPart& part : parts) part = without_rounding(part);
-    std::erase_if(parts,
-                  [&](const ChainPart& part) { return part.size() < options_.least_points; });
+    std::erase_if(parts, [&](const ChainPart& part) { return part.size() < options_.min_points; });
     return parts;
   }
 
@@ -57,13 +56,13 @@ class StraightParts {
 
   /// Empty where not even the fewest points are straight.
   ChainPart grow(int begin) const {
-    const int size = static_cast<int>(chain_.size()), least = begin + options_.least_points;
+    const int size = static_cast<int>(chain_.size()), least = begin + options_.min_points;
     Eigen::Vector2d brighter(0, 0);
     int end = begin;
     for (; end < size; ++end) {
       const Eigen::Vector2d normal = points_[chain_[end]].normal.cast<double>();
-      if (normal.dot(brighter) < least_cosine * brighter.norm()) break;
-      if (end + 1 >= least && regression(begin, end + 1).rms() > options_.most_rms_px) break;
+      if (normal.dot(brighter) < min_cosine * brighter.norm()) break;
+      if (end + 1 >= least && regression(begin, end + 1).rms() > options_.max_rms_px) break;
       brighter += normal;
     }
     return {begin, end >= least ? end : begin};
@@ -71,12 +70,12 @@ class StraightParts {
 
   /// Neighbours only.
   void move_break(ChainPart& part, ChainPart& next) const {
-    if (next.begin - part.end > options_.least_points) return;
+    if (next.begin - part.end > options_.min_points) return;
     int best = part.end;
     double least = -1;
-    for (int at = part.begin + least_break_points; at <= next.end - least_break_points; ++at) {
+    for (int at = part.begin + min_break_points; at <= next.end - min_break_points; ++at) {
       const LineRegression before = regression(part.begin, at), after = regression(at, next.end);
-      if (std::max(before.rms(), after.rms()) > options_.most_rms_px) continue;
+      if (std::max(before.rms(), after.rms()) > options_.max_rms_px) continue;
       const double squares = before.squares() + after.squares();
       if (least < 0 || squares < least) {
         least = squares;
@@ -91,14 +90,14 @@ class StraightParts {
   ChainPart without_rounding(const ChainPart& all) const {
     ChainPart part = all;
     for (int pass = 0; pass < 3; ++pass) {
-      const int aside = std::min(most_rounding_points, part.size() / 4);
+      const int aside = std::min(max_rounding_points, part.size() / 4);
       ChainPart kept{part.begin + aside, part.end - aside};
       if (kept.size() < 3) break;
       const LineRegression line = regression(kept.begin, kept.end);
       const Eigen::Vector2d d = line.direction(), across(-d.y(), d.x());
       const auto off = [&](int i) {
         const double deviation = std::max<double>(line.rms(), points_[chain_[i]].sigma_px);
-        return std::abs(across.dot(place(i) - line.centroid())) > most_deviations * deviation;
+        return std::abs(across.dot(place(i) - line.centroid())) > max_deviations * deviation;
       };
       const auto off_before = [&](int i) { return i < part.begin || off(i); };
       const auto off_after = [&](int i) { return i >= part.end || off(i); };
@@ -107,7 +106,7 @@ class StraightParts {
       if (kept.size() == part.size()) break;
       part = kept;
     }
-    return 3 * part.size() >= 2 * all.size() && part.size() >= options_.least_points ? part : all;
+    return 3 * part.size() >= 2 * all.size() && part.size() >= options_.min_points ? part : all;
   }
 
   const std::vector<EdgePoint>& points_;

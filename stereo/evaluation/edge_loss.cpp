@@ -18,9 +18,9 @@ namespace {
 constexpr std::array<double, 4> displacements_px = {-12, -8, 8, 12};
 constexpr double slack_px = 0.2;  // along: an edge has a point at every half of its spacing
 
-class Search {
+class LossSearch {
  public:
-  Search(const ImageEdges& right, const EdgeLossOptions& options)
+  LossSearch(const ImageEdges& right, const EdgeLossOptions& options)
       : all_(right.points), gate_{options.across_px, 0, options.turned_rad} {
     const std::vector<int> segment = segment_of_points(right);
     for (std::size_t i = 0; i < segment.size(); ++i) {
@@ -78,7 +78,7 @@ class Search {
 std::vector<SegmentLoss> edge_losses(const std::vector<WarpedSegment>& left,
                                      const ImageEdges& right,
                                      const EdgeLossOptions& options) {
-  const Search search(right, options);
+  const LossSearch search(right, options);
   std::vector<SegmentLoss> losses;
   losses.reserve(left.size());
   for (const WarpedSegment& segment : left) losses.push_back(search(segment));

@@ -31,7 +31,7 @@ int partner_of(const WarpedSegment& left,
   for (const auto& [segment, count] : held) {
     if (count > most) partner = segment, most = count;
   }
-  return most < options.least_share * static_cast<double>(left.points.size()) ? -1 : partner;
+  return most < options.min_share * static_cast<double>(left.points.size()) ? -1 : partner;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace vernier::stereo::internal {
 struct EndDifferenceOptions {
   double across_px = 3;      ///< right segments farther across are other ones
   double turned_rad = 0.44;  ///< and those turned by more (25°)
-  double least_share = 0.5;  ///< of the left segment's points that one right segment has to hold
+  double min_share = 0.5;    ///< of the left segment's points that one right segment has to hold
 };
 
 /// An end of a right segment less where the left one's end should be.

@@ -28,8 +28,8 @@ Pair compare(const std::vector<CurvePoint>& own, const std::vector<CurvePoint>& 
   return {density, bad_1_at(own, density), bad_1_at(peer, density)};
 }
 
-void check(const std::vector<SceneCurves>& scenes) {
-  const auto is_bad = [&](const SceneCurves& scene) {
+void check(const std::vector<DensityCurves>& scenes) {
+  const auto is_bad = [&](const DensityCurves& scene) {
     return scene.own.empty() || scene.peer.empty() ||
            scene.peer.size() != scenes.front().peer.size() ||
            std::any_of(scene.peer.begin(), scene.peer.end(),
@@ -70,11 +70,11 @@ std::size_t best_setting(const std::vector<std::vector<Pair>>& pairs,
 
 }  // namespace
 
-EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
+EqualDensity at_equal_density(const std::vector<DensityCurves>& scenes,
                               const BootstrapOptions& options) {
   check(scenes);
   std::vector<std::vector<Pair>> pairs;
-  for (const SceneCurves& scene : scenes) {
+  for (const DensityCurves& scene : scenes) {
     pairs.emplace_back();
     for (const auto& peer : scene.peer) pairs.back().push_back(compare(scene.own, peer));
   }

@@ -13,7 +13,7 @@ namespace vernier::stereo::internal {
 
 /// Errors against density of a matcher and of a peer's settings on one scene, densest first
 /// (stereo/matcher_evaluation.h).
-struct SceneCurves {
+struct DensityCurves {
   std::vector<CurvePoint> own;
   std::vector<std::vector<CurvePoint>> peer;  ///< one curve for each setting
 };
@@ -30,7 +30,7 @@ struct EqualDensity {
 
 /// On each scene the density is the largest that both reach. Throws Error without scenes, or where
 /// they have different numbers of settings, or a curve is empty.
-EqualDensity at_equal_density(const std::vector<SceneCurves>& scenes,
+EqualDensity at_equal_density(const std::vector<DensityCurves>& scenes,
                               const vernier::internal::BootstrapOptions& options = {});
 
 }  // namespace vernier::stereo::internal

@@ -30,26 +30,26 @@ std::vector<LineMatch> line_matches(const ImageEdges& left,
   std::vector<LineMatch> lines;
   for (const EdgeSegment& segment : left.segments) {
     const Eigen::Vector2d along = (segment.segment.b_px - segment.segment.a_px).normalized();
-    if (std::abs(along.y()) < std::sin(options.least_angle_rad)) continue;
+    if (std::abs(along.y()) < std::sin(options.min_angle_rad)) continue;
     std::vector<double> errors, disparities;
     int occluded = 0;
     for (const int point : segment.points) {
       const auto i = static_cast<std::size_t>(point);
       if (!at[i].known) continue;
       disparities.push_back(at[i].disparity_px);
-      occluded += is_occluded(at[i], OutlineRule::either);
+      occluded += is_occluded(at[i], DiscontinuityRule::either);
       if (!found[i].matched()) continue;
-      errors.push_back(std::abs(error_px(found[i], at[i], OutlineRule::either)));
+      errors.push_back(std::abs(error_px(found[i], at[i], DiscontinuityRule::either)));
     }
     const auto all = static_cast<double>(segment.points.size());
     const auto known = static_cast<double>(disparities.size());
-    if (known == 0 || known < options.least_share * all) continue;
+    if (known == 0 || known < options.min_share * all) continue;
     LineMatch line;
     line.left_px = 0.5 * (segment.segment.a_px + segment.segment.b_px);
     line.disparity_px = median(disparities);
     line.occluded = 2 * occluded > known;
     line.matched =
-        !errors.empty() && static_cast<double>(errors.size()) >= options.least_share * known;
+        !errors.empty() && static_cast<double>(errors.size()) >= options.min_share * known;
     if (line.matched) line.error_px = median(errors);
     lines.push_back(line);
   }

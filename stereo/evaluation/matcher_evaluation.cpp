@@ -25,9 +25,9 @@ void check_sizes(const std::vector<EdgePoint>& edges,
               "give one of each for every edge");
 }
 
-/// Counts towards EdgeFigures.
+/// Counts towards EdgeMetrics.
 struct Tally {
-  EdgeFigures of;
+  EdgeMetrics of;
   double squares = 0, sum = 0;
   int inliers = 0;
 
@@ -46,8 +46,8 @@ struct Tally {
     sum += error;
   }
 
-  EdgeFigures figures() const {
-    EdgeFigures shares = of;
+  EdgeMetrics figures() const {
+    EdgeMetrics shares = of;
     const double matched = std::max(1, of.matched), within = std::max(1, inliers);
     shares.density = static_cast<double>(of.matched) / std::max(1, of.edges);
     for (double* bad : {&shares.bad_0_5, &shares.bad_1, &shares.bad_2, &shares.bad_3}) {
@@ -67,19 +67,19 @@ int angle_bin(const EdgePoint& edge) {
 
 }  // namespace
 
-bool is_asked(const EdgePoint& edge,
-              const TruthAtEdge& truth,
-              int width_px,
-              const EvaluationOptions& options) {
-  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.least_angle_rad) &&
+bool is_scored(const EdgePoint& edge,
+               const TruthAtEdge& truth,
+               int width_px,
+               const EvaluationOptions& options) {
+  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.min_angle_rad) &&
          edge.x >= options.border_px && edge.x < width_px - options.border_px;
 }
 
-bool is_occluded(const TruthAtEdge& truth, OutlineRule rule) {
-  return rule == OutlineRule::foreground ? truth.occluded : truth.own_occluded;
+bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule) {
+  return rule == DiscontinuityRule::foreground ? truth.occluded : truth.own_occluded;
 }
 
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRule rule) {
+double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule) {
   const double before = std::min(0.0F, truth.crossing_px),
                after = std::max(0.0F, truth.crossing_px);
   const auto error_of = [&](double surface_px) {
@@ -87,9 +87,9 @@ double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, OutlineRul
     return error - std::clamp(error, before, after);
   };
   const double error = error_of(truth.disparity_px);
-  if (rule == OutlineRule::foreground || !truth.discontinuity) return error;
+  if (rule == DiscontinuityRule::foreground || !truth.discontinuity) return error;
   double least = std::abs(error);
-  for (const float surface : {truth.own_px, truth.least_px, truth.most_px}) {
+  for (const float surface : {truth.own_px, truth.min_px, truth.max_px}) {
     if (!std::isnan(surface)) least = std::min(least, std::abs(error_of(surface)));
   }
   return least;
@@ -106,7 +106,7 @@ MatcherScore evaluate(const std::vector<EdgePoint>& edges,
   int wrong = 0, covered = 0, inliers = 0;
   double z_squares = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (!is_asked(edges[i], truth[i], width_px, options)) continue;
+    if (!is_scored(edges[i], truth[i], width_px, options)) continue;
     const bool matched = found[i].matched();
     const double error = matched ? error_px(found[i], truth[i], options.outline) : 0;
     wrong += std::abs(error) > mismatch_px;
@@ -152,7 +152,7 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
   std::vector<Match> matches;
   int visible = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (!is_asked(edges[i], truth[i], width_px, options)) continue;
+    if (!is_scored(edges[i], truth[i], width_px, options)) continue;
     const bool shown = !is_occluded(truth[i], options.outline);
     visible += shown;
     if (!found[i].matched()) continue;

@@ -16,7 +16,7 @@
 #include "stereo/corners/harris_corners.h"
 #include "stereo/disparity_file.h"
 #include "stereo/edges/image_edges.h"
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/edge_loss.h"
 #include "stereo/evaluation/end_difference.h"
 #include "stereo/evaluation/line_match.h"
@@ -34,7 +34,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-DisparityMap mirrored(DisparityMap map) {
+DisparityMap mirrored_map(DisparityMap map) {
   for (int y = 0; y < map.height_px; ++y) {
     const auto row = map.values.begin() + static_cast<long>(y) * map.width_px;
     std::reverse(row, row + map.width_px);
@@ -56,12 +56,12 @@ AssumedRig assumed_rig(int width_px, int height_px, const DisparityRange& range)
     camera.name = i == 0 ? "left" : "right";
     camera.model = Pinhole{};
     camera.size_px = {width_px, height_px};
-    camera.parameters = Eigen::Vector4d(width_px, 1, 0.5 * (width_px - 1) - i * range.least_px,
+    camera.parameters = Eigen::Vector4d(width_px, 1, 0.5 * (width_px - 1) - i * range.min_px,
                                         0.5 * (height_px - 1));
     assumed.rig.cameras.push_back(camera);
   }
   assumed.rig.T_camera_first = {Pose{}, Pose{Eigen::Matrix3d::Identity(), {-baseline_m, 0, 0}}};
-  assumed.nearest_m = width_px * baseline_m / std::max(1, range.most_px - range.least_px);
+  assumed.nearest_m = width_px * baseline_m / std::max(1, range.max_px - range.min_px);
   return assumed;
 }
 
@@ -85,7 +85,7 @@ void sample_corners(const RectifiedPair& pair,
   const CornerImage left = corners_of(pair.left, options.corners);
   const CornerImage right = corners_of(pair.right, options.corners + options.corners / 2);
   samples.corners =
-      corner_repeats(places(left.corners), places(right.corners), truth, options.repeat);
+      corner_repeatabilities(places(left.corners), places(right.corners), truth, options.repeat);
   const AssumedRig assumed = assumed_rig(pair.left.width_px, pair.left.height_px, range);
   const int parameters = parameter_count(assumed.rig);
   const EpipolarBand band(assumed.rig, Eigen::MatrixXd::Zero(parameters, parameters),
@@ -98,8 +98,8 @@ std::vector<SegmentLoss> losses_to_left(const RectifiedPair& pair,
                                         const StereoTruth& truth,
                                         const PairSamplesOptions& options) {
   const ImageEdges from = image_edges(mirrored(pair.right)), to = image_edges(mirrored(pair.left));
-  const DisparityMap other = mirrored(truth.disparity);
-  const StereoTruth seen = stereo_truth(mirrored(truth_of_right(truth)), &other);
+  const DisparityMap other = mirrored_map(truth.disparity);
+  const StereoTruth seen = stereo_truth(mirrored_map(truth_of_right(truth)), &other);
   return edge_losses(warped_segments(from, seen, options.warp), to, options.loss);
 }
 

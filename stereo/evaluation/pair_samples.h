@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stereo/disparity_file.h"
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/edge_loss.h"
 #include "stereo/evaluation/end_difference.h"
 #include "stereo/evaluation/line_match.h"
@@ -38,7 +38,7 @@ struct PairSamples {
                                             ///< the right image seen in a mirror
   std::vector<SegmentShift> shifts;
   std::vector<SegmentEnds> ends;
-  std::vector<CornerRepeat> corners;
+  std::vector<CornerRepeatability> corners;
   std::vector<CornerError> corner_matches;
   std::vector<LineMatch> lines;
 };

@@ -19,9 +19,9 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double apart_px = 4;    // of the two parts: the noise of points reaches 3 px
-constexpr double outlier_px = 1;  // from the median
-constexpr int least_in_part = 3;
+constexpr double part_distance_px = 4;  // of the two parts: the noise of points reaches 3 px
+constexpr double outlier_px = 1;        // from the median
+constexpr int min_in_part = 3;
 
 struct Beside {
   double along_px, across_px;
@@ -56,9 +56,9 @@ std::optional<SegmentShift> shift_of(const WarpedSegment& left, std::vector<Besi
   const double begin = points.front().along_px, end = points.back().along_px;
   const double middle = 0.5 * (begin + end);
   int first = 0, last = 0;
-  shift.halves_px[0] = mean_across(points, begin, middle - apart_px / 2, first);
-  shift.halves_px[1] = mean_across(points, middle + apart_px / 2, end, last);
-  if (first < least_in_part || last < least_in_part) return std::nullopt;
+  shift.halves_px[0] = mean_across(points, begin, middle - part_distance_px / 2, first);
+  shift.halves_px[1] = mean_across(points, middle + part_distance_px / 2, end, last);
+  if (first < min_in_part || last < min_in_part) return std::nullopt;
   shift.shift_px = mean_across(points, begin, end, shift.points);
   double squares = 0;
   for (const Beside& point : points) squares += std::pow(point.across_px - shift.shift_px, 2);
@@ -83,7 +83,7 @@ std::vector<SegmentShift> segment_shifts(const std::vector<WarpedSegment>& left,
       const EdgeNeighbour near = neighbours.nearest({point.right_px, segment.normal}, gate);
       if (near.point >= 0) found.push_back({point.along_px, near.across_px});
     }
-    const auto enough = std::max<double>(options.least_points, options.least_share * asked);
+    const auto enough = std::max<double>(options.min_points, options.min_share * asked);
     if (static_cast<double>(found.size()) < enough) continue;
     std::sort(found.begin(), found.end(),
               [](const Beside& a, const Beside& b) { return a.along_px < b.along_px; });

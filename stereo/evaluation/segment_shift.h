@@ -13,8 +13,8 @@ namespace vernier::stereo::internal {
 struct SegmentShiftOptions {
   double across_px = 4;      ///< right edges farther across are other ones
   double turned_rad = 0.44;  ///< and those turned by more (25°)
-  int least_points = 8;      ///< of a segment, found in the right image
-  double least_share = 0.7;  ///< of its points that are found
+  int min_points = 8;        ///< of a segment, found in the right image
+  double min_share = 0.7;    ///< of its points that are found
 };
 
 /// By how much a right edge is beside the place that the left one and the truth give it.

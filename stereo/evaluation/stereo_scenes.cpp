@@ -42,7 +42,7 @@ DisparityMap read_map(const std::filesystem::path& file,
 
 constexpr std::array<std::string_view, 4> truth_kinds = {"exact", "measured", "reduced",
                                                          "labelled"};
-constexpr int most_disparity_px = 1 << 15;
+constexpr int max_disparity_px = 1 << 15;
 
 /// Turns the tables of a list into pairs. Every complaint carries the file and the line.
 class SceneReader : private TomlReader {
@@ -94,7 +94,7 @@ class SceneReader : private TomlReader {
     const toml::node* least = pair.get("min_disparity");
     const DisparityRange range{least ? disparity(*least, "min_disparity") : 0,
                                disparity(most, "max_disparity")};
-    if (range.least_px > range.most_px) {
+    if (range.min_px > range.max_px) {
       fail(most, "max_disparity is below min_disparity", "give the range to be searched");
     }
     return range;
@@ -102,7 +102,7 @@ class SceneReader : private TomlReader {
 
   int disparity(const toml::node& node, const char* key) const {
     const std::int64_t value = integer(node, key);
-    if (value < -most_disparity_px || value > most_disparity_px) {
+    if (value < -max_disparity_px || value > max_disparity_px) {
       fail(node, std::string(key) + " is no disparity of an image", "give it in pixels");
     }
     return static_cast<int>(value);

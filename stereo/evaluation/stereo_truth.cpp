@@ -109,9 +109,9 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
         all_known = false;
         continue;
       }
-      at.least_px = std::fmin(at.least_px, map(i, j));
-      if (at.most_px >= map(i, j)) continue;
-      at.most_px = map(i, j);
+      at.min_px = std::fmin(at.min_px, map(i, j));
+      if (at.max_px >= map(i, j)) continue;
+      at.max_px = map(i, j);
       if (step) source_x = i, source_y = j;
     }
   }
@@ -121,7 +121,7 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
   at.own_occluded =
       truth.occluded[static_cast<std::size_t>(edge.y) * static_cast<std::size_t>(map.width_px) +
                      static_cast<std::size_t>(x)] != 0;
-  at.disparity_px = step ? at.most_px : at.own_px;
+  at.disparity_px = step ? at.max_px : at.own_px;
   at.occluded =
       truth.occluded[static_cast<std::size_t>(source_y) * static_cast<std::size_t>(map.width_px) +
                      static_cast<std::size_t>(source_x)] != 0;

@@ -15,7 +15,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double mismatch_px = 3;
+constexpr double max_error_px = 3;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ GeometricError geometric_error(const WarpedPair& warped,
   double sum = 0, squares = 0, rows = 0;
   int count = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (!is_asked(edges[i], truth[i], warped.pair.left.width_px, options)) continue;
+    if (!is_scored(edges[i], truth[i], warped.pair.left.width_px, options)) continue;
     const double bias = warped.bias_px(edges[i].x, edges[i].y);
     const double dy = warped.vertical_px(edges[i].x, edges[i].y);
     if (!std::isfinite(bias + dy)) continue;
@@ -50,10 +50,10 @@ WarpedScore evaluate(const WarpedPair& warped,
   int count = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const TruthAtEdge& at = truth[i];
-    if (!found[i].matched() || at.discontinuity || !is_asked(edges[i], at, width, options))
+    if (!found[i].matched() || at.discontinuity || !is_scored(edges[i], at, width, options))
       continue;
     if (is_occluded(at, options.outline) ||
-        std::abs(error_px(found[i], at, options.outline)) > mismatch_px) {
+        std::abs(error_px(found[i], at, options.outline)) > max_error_px) {
       continue;
     }
     const double bias = warped.bias_px(edges[i].x, edges[i].y);

@@ -153,7 +153,7 @@ WarpedPair rectified_by(const Rig& believed,
   return warped;
 }
 
-WarpedPair with_rows_moved(const RectifiedPair& pair, const StereoTruth& truth, double lower_px) {
+WarpedPair with_shifted_rows(const RectifiedPair& pair, const StereoTruth& truth, double lower_px) {
   check_sizes(pair, truth, {pair.left.width_px, pair.left.height_px});
   WarpedPair warped{pair, truth, truth.disparity, truth.disparity};
   const auto above = [&](int x, int y) {
@@ -173,7 +173,7 @@ WarpedPair with_rows_moved(const RectifiedPair& pair, const StereoTruth& truth, 
 
 void repair(WarpedPair& warped, const VerticalField& field) {
   if (!field.significant) return;
-  warped.pair.right = repaired_right(warped.pair.right, field);
+  warped.pair.right = corrected_right(warped.pair.right, field);
   const auto width = static_cast<std::size_t>(warped.vertical_px.width_px);
   for (std::size_t i = 0; i < warped.vertical_px.values.size(); ++i) {
     const double right_x = static_cast<double>(i % width) - warped.truth.disparity.values[i];

@@ -41,7 +41,7 @@ WarpedPair rectified_by(const Rig& believed,
                         int threads = 1);
 
 /// The pair whose right image lies `lower_px` lower than it should.
-WarpedPair with_rows_moved(const RectifiedPair& pair, const StereoTruth& truth, double lower_px);
+WarpedPair with_shifted_rows(const RectifiedPair& pair, const StereoTruth& truth, double lower_px);
 
 /// Takes a vertical field away from the right image, and from what remains of `vertical_px`.
 void repair(WarpedPair& warped, const VerticalField& field);

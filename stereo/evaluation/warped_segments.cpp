@@ -50,14 +50,14 @@ Eigen::Vector2d moved(const Eigen::Vector2d& left_px, double disparity_px) {
   return {left_px.x() - disparity_px, left_px.y()};
 }
 
-class Warp {
+class SegmentWarp {
  public:
-  Warp(const ImageEdges& left, const StereoTruth& truth, const WarpOptions& options)
+  SegmentWarp(const ImageEdges& left, const StereoTruth& truth, const WarpOptions& options)
       : left_(left), options_(options), truth_(truth_at(truth, left.points)) {}
 
   std::optional<WarpedSegment> operator()(int index) const {
     const EdgeSegment& from = left_.segments[static_cast<std::size_t>(index)];
-    if (from.segment.length_px() < options_.least_length_px) return std::nullopt;
+    if (from.segment.length_px() < options_.min_length_px) return std::nullopt;
     WarpedSegment to;
     to.segment = index;
     to.left_px = 0.5 * (from.segment.a_px + from.segment.b_px);
@@ -73,7 +73,7 @@ class Warp {
       brighter += edge.normal.cast<double>();
       add_point(edge, truth_[static_cast<std::size_t>(point)], s, to, disparities);
     }
-    if (to.points.size() < static_cast<std::size_t>(options_.least_points)) return std::nullopt;
+    if (to.points.size() < static_cast<std::size_t>(options_.min_points)) return std::nullopt;
     to.spacing_px = (last - first) / static_cast<double>(from.points.size() - 1);
     set_direction(brighter, to);
     to.ends = ends_of(from, to, disparities);
@@ -90,8 +90,8 @@ class Warp {
     const Eigen::Vector2d p = edge.pixel_px.cast<double>();
     WarpedPoint point;
     point.right_px = moved(p, at.disparity_px);
-    const bool step = at.discontinuity && at.most_px - at.least_px > 1;
-    point.other_px = step ? moved(p, at.least_px) : point.right_px;
+    const bool step = at.discontinuity && at.max_px - at.min_px > 1;
+    point.other_px = step ? moved(p, at.min_px) : point.right_px;
     point.along_px = s;
     point.outline = at.discontinuity;
     const double x = point.right_px.x();
@@ -115,7 +115,7 @@ class Warp {
                                       const WarpedSegment& to,
                                       const std::vector<Eigen::Vector2d>& disparities) const {
     const auto line = line_through(disparities);
-    if (!line || line->rms > options_.most_rms_px) return std::nullopt;
+    if (!line || line->rms > options_.max_rms_px) return std::nullopt;
     const double length = from.segment.length_px();
     const double before = to.points.front().along_px, after = length - to.points.back().along_px;
     if (before > (from.a_is_corner ? beyond_corner_px : beyond_px) ||
@@ -140,7 +140,7 @@ std::vector<WarpedSegment> warped_segments(const ImageEdges& left,
     throw Error("warped segments", "the ground truth is not of the left image's size",
                 "give the truth of this image");
   }
-  const Warp warp(left, truth, options);
+  const SegmentWarp warp(left, truth, options);
   std::vector<WarpedSegment> warped;
   for (std::size_t s = 0; s < left.segments.size(); ++s) {
     if (auto segment = warp(static_cast<int>(s))) warped.push_back(std::move(*segment));

@@ -33,10 +33,10 @@ struct WarpedSegment {
 };
 
 struct WarpOptions {
-  double border_px = 4;         ///< what falls nearer to the right image's border is not asked for
-  int least_points = 6;         ///< segments with fewer points to be shown are left out
-  double least_length_px = 10;  ///< and shorter ones, which are no features to the simulator
-  double most_rms_px = 0.4;     ///< of the disparities from their line, for the ends
+  double border_px = 4;       ///< what falls nearer to the right image's border is not asked for
+  int min_points = 6;         ///< segments with fewer points to be shown are left out
+  double min_length_px = 10;  ///< and shorter ones, which are no features to the simulator
+  double max_rms_px = 0.4;    ///< of the disparities from their line, for the ends
 };
 
 /// The left image's segments, moved by u_right = u_left − d of the truth. Points that the truth

@@ -53,8 +53,8 @@ StoredMap parse_pfm(std::string_view bytes, const std::string& place) {
   map.width = parse_whole(next_word(bytes, at, place), place, "a width");
   map.height = parse_whole(next_word(bytes, at, place), place, "a height");
   const double scale = parse_real(next_word(bytes, at, place), place, "a scale");
-  constexpr int most_side = 1 << 20;
-  if (map.width < 1 || map.height < 1 || map.width > most_side || map.height > most_side) {
+  constexpr int max_side = 1 << 20;
+  if (map.width < 1 || map.height < 1 || map.width > max_side || map.height > max_side) {
     throw Error(place, fmt::format("has a size of {} x {}", map.width, map.height),
                 "give a map of an image");
   }
@@ -173,7 +173,7 @@ DisparityMap read_disparity(const std::filesystem::path& file,
   for (const double value : stored.values) {
     const double disparity = value / options.scale;
     const bool known = std::abs(disparity) <= std::numeric_limits<float>::max() &&
-                       disparity >= options.least_px && !(zero_is_unknown && value == 0);
+                       disparity >= options.min_px && !(zero_is_unknown && value == 0);
     map.values.push_back(known ? static_cast<float>(disparity)
                                : std::numeric_limits<float>::quiet_NaN());
   }

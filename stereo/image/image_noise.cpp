@@ -11,7 +11,7 @@ namespace vernier::stereo::internal {
 namespace {
 
 constexpr int block = 16;
-constexpr double least_noise = 0.2886751345948129;  // 1/√12
+constexpr double min_noise = 0.2886751345948129;  // 1/√12
 
 /// The lower quintile. For the spread of a block's own estimate, 8.6 % (256 values of n that are
 /// correlated with their neighbours), it is 8 % below the mean where all blocks are plain.
@@ -38,7 +38,7 @@ double image_noise(const cv::Mat& grey) {
     }
   }
   std::vector<double>& used = whole.empty() ? cut : whole;
-  return used.empty() ? least_noise : std::max(least_noise, lower_quintile(used));
+  return used.empty() ? min_noise : std::max(min_noise, lower_quintile(used));
 }
 
 }  // namespace vernier::stereo::internal

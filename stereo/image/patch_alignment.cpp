@@ -12,12 +12,12 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr int most_steps = 25;
-constexpr double settled_px = 0.01;
+constexpr int max_steps = 25;
+constexpr double min_step_px = 0.01;
 constexpr double step_share =
     0.6;  // differences rise less than the image does: full steps overshoot
-constexpr double most_gain = 3;
-constexpr double most_stretch = 0.6;
+constexpr double max_gain = 3;
+constexpr double max_stretch = 0.6;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -174,15 +174,15 @@ std::optional<Alignment> align_patch(const cv::Mat& left,
   if (!patch.holds) return std::nullopt;
   Warp warp;
   warp.q = right_px;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const Eigen::VectorXd values = sampled(right, patch, warp);
     const Vector6d fit = patch.inverse * (patch.J.transpose() * patch.weight.cwiseProduct(values));
-    if (!(fit[4] > 1 / most_gain && fit[4] < most_gain)) return std::nullopt;
+    if (!(fit[4] > 1 / max_gain && fit[4] < max_gain)) return std::nullopt;
     const Warp next = composed(warp, fit, direction);
-    const bool settled = (next.q - warp.q).norm() < settled_px;
+    const bool settled = (next.q - warp.q).norm() < min_step_px;
     warp = next;
-    if (!((warp.q - right_px).norm() <= options.most_shift_px)) return std::nullopt;
-    if ((warp.D - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() > most_stretch) {
+    if (!((warp.q - right_px).norm() <= options.max_shift_px)) return std::nullopt;
+    if ((warp.D - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() > max_stretch) {
       return std::nullopt;
     }
     if (settled) {

@@ -10,7 +10,7 @@ namespace vernier::stereo::internal {
 
 struct AlignmentOptions {
   int half_px = 7;  ///< patches of 2 half + 1 pixels, under a Gaussian of half their half-size
-  double most_shift_px = 1;                ///< from where it began
+  double max_shift_px = 1;                 ///< from where it began
   double noise_left = 0, noise_right = 0;  ///< least noise of the images, grey values
 };
 

@@ -11,7 +11,7 @@ namespace vernier::stereo::internal {
 namespace {
 
 constexpr float flat_variance = 4;  // grey values²; a patch with less has nothing to correlate
-constexpr int apart_px = 2;         // the second best lies beyond this of the best
+constexpr int min_distance_px = 2;  // the second best lies beyond this of the best
 
 bool is_inside(const cv::Mat& image, cv::Point centre, int half) {
   return centre.x >= half && centre.y >= half && centre.x + half < image.cols &&
@@ -31,7 +31,7 @@ Moments moments(const cv::Mat& image, cv::Point centre, int half) {
 }
 
 /// Offset of the vertex of a parabola through three scores, from the middle one.
-double vertex(float before, float at, float after) {
+double peak_offset(float before, float at, float after) {
   const double bend = static_cast<double>(before) - 2.0 * at + after;
   if (!(bend < 0)) return 0;
   return std::clamp(0.5 * (static_cast<double>(before) - after) / bend, -0.5, 0.5);
@@ -65,20 +65,20 @@ void PatchSearch::correlate(const cv::Mat& other,
                             cv::Point centre,
                             float mean,
                             const SearchWindow& w) {
-  const int columns = w.most_x - w.least_x + 1, rows = w.most_y - w.least_y + 1;
+  const int columns = w.max_x - w.min_x + 1, rows = w.max_y - w.min_y + 1;
   scores_.assign(static_cast<std::size_t>(columns) * rows, 0);
   for (int row = 0; row < rows; ++row) {
     float* scores = scores_.data() + static_cast<std::size_t>(row) * columns;
     for (int j = -half_; j <= half_; ++j) {
       const float* patch = other.ptr<float>(centre.y + j) + centre.x;
-      const float* image = image_.ptr<float>(w.least_y + row + j) + w.least_x;
+      const float* image = image_.ptr<float>(w.min_y + row + j) + w.min_x;
       for (int i = -half_; i <= half_; ++i) {
         const float grey = patch[i] - mean;
         const float* from = image + i;
         for (int x = 0; x < columns; ++x) scores[x] += grey * from[x];
       }
     }
-    const float* inverse = inverse_length_.ptr<float>(w.least_y + row) + w.least_x;
+    const float* inverse = inverse_length_.ptr<float>(w.min_y + row) + w.min_x;
     for (int x = 0; x < columns; ++x) scores[x] *= inverse[x];
   }
 }
@@ -87,32 +87,32 @@ std::optional<FoundPatch> PatchSearch::find(const cv::Mat& other,
                                             cv::Point centre,
                                             SearchWindow w) {
   if (!has_texture(other, centre, half_)) return std::nullopt;
-  w.least_x = std::max(w.least_x, half_);
-  w.least_y = std::max(w.least_y, half_);
-  w.most_x = std::min(w.most_x, image_.cols - 1 - half_);
-  w.most_y = std::min(w.most_y, image_.rows - 1 - half_);
-  if (w.least_x > w.most_x || w.least_y > w.most_y) return std::nullopt;
+  w.min_x = std::max(w.min_x, half_);
+  w.min_y = std::max(w.min_y, half_);
+  w.max_x = std::min(w.max_x, image_.cols - 1 - half_);
+  w.max_y = std::min(w.max_y, image_.rows - 1 - half_);
+  if (w.min_x > w.max_x || w.min_y > w.max_y) return std::nullopt;
 
   const Moments own = moments(other, centre, half_);
   correlate(other, centre, own.mean, w);
   const float inverse = 1 / (static_cast<float>(2 * half_ + 1) * own.deviation);
-  const int columns = w.most_x - w.least_x + 1, rows = w.most_y - w.least_y + 1;
+  const int columns = w.max_x - w.min_x + 1, rows = w.max_y - w.min_y + 1;
   const auto best =
       static_cast<int>(std::max_element(scores_.begin(), scores_.end()) - scores_.begin());
   const int bx = best % columns, by = best / columns;
   const auto at = [&](int x, int y) { return scores_[static_cast<std::size_t>(y) * columns + x]; };
-  FoundPatch found{{w.least_x + bx, w.least_y + by}, {}, inverse * at(bx, by)};
+  FoundPatch found{{w.min_x + bx, w.min_y + by}, {}, inverse * at(bx, by)};
   found.peak_px = {found.pixel.x + 0.0, found.pixel.y + 0.0};
   if (bx > 0 && bx + 1 < columns) {
-    found.peak_px.x() += vertex(at(bx - 1, by), at(bx, by), at(bx + 1, by));
+    found.peak_px.x() += peak_offset(at(bx - 1, by), at(bx, by), at(bx + 1, by));
   }
   if (by > 0 && by + 1 < rows) {
-    found.peak_px.y() += vertex(at(bx, by - 1), at(bx, by), at(bx, by + 1));
+    found.peak_px.y() += peak_offset(at(bx, by - 1), at(bx, by), at(bx, by + 1));
   }
   for (int y = 0; y < rows; ++y) {
-    const bool near_row = std::abs(y - by) <= apart_px;
+    const bool near_row = std::abs(y - by) <= min_distance_px;
     for (int x = 0; x < columns; ++x) {
-      if (near_row && std::abs(x - bx) <= apart_px) continue;
+      if (near_row && std::abs(x - bx) <= min_distance_px) continue;
       found.second = std::max(found.second, inverse * at(x, y));
     }
   }

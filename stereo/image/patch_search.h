@@ -11,7 +11,7 @@ namespace vernier::stereo::internal {
 
 /// Pixels in which a patch's centre is sought, both ends included.
 struct SearchWindow {
-  int least_x = 0, most_x = 0, least_y = 0, most_y = 0;
+  int min_x = 0, max_x = 0, min_y = 0, max_y = 0;
 };
 
 struct FoundPatch {

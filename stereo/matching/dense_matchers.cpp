@@ -22,8 +22,8 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr int fine = 16;       // of OpenCV's disparities a pixel, and what their number divides
-constexpr int most_px = 2000;  // 16 bits hold them
+constexpr int fine = 16;      // of OpenCV's disparities a pixel, and what their number divides
+constexpr int max_px = 2000;  // 16 bits hold them
 
 /// How the images are prolonged: so far that no pixel of theirs is in OpenCV's unsearched band.
 struct Border {
@@ -31,18 +31,18 @@ struct Border {
 };
 
 /// The disparities that OpenCV is told to search.
-struct Search {
-  int least_px = 0, count = 0;
+struct DenseSearch {
+  int min_px = 0, count = 0;
   Border border;
 };
 
-Search search_of(const DisparityRange& range, int block_px) {
-  Search search;
-  search.least_px = range.least_px;
-  search.count = (range.most_px - range.least_px + fine) / fine * fine;
+DenseSearch search_of(const DisparityRange& range, int block_px) {
+  DenseSearch search;
+  search.min_px = range.min_px;
+  search.count = (range.max_px - range.min_px + fine) / fine * fine;
   const int half = block_px / 2 + 1;
-  search.border = {half, half + std::max(search.least_px + search.count, 0),
-                   half + std::max(-search.least_px, 0)};
+  search.border = {half, half + std::max(search.min_px + search.count, 0),
+                   half + std::max(-search.min_px, 0)};
   return search;
 }
 
@@ -61,7 +61,7 @@ void check(bool good, const char* place, const char* fault, const char* remedy) 
 
 /// What OpenCV found, without what lies outside of the range or of the right image.
 DisparityMap cut_out(const cv::Mat& found,
-                     const Search& search,
+                     const DenseSearch& search,
                      const RectifiedPair& pair,
                      const DisparityRange& range) {
   DisparityMap map{pair.left.width_px, pair.left.height_px, {}};
@@ -70,8 +70,8 @@ DisparityMap cut_out(const cv::Mat& found,
     const auto* row = found.ptr<short>(y + search.border.sides_px) + search.border.left_px;
     for (int x = 0; x < map.width_px; ++x) {
       const float d = static_cast<float>(row[x]) / fine, right = static_cast<float>(x) - d;
-      const bool known = row[x] >= search.least_px * fine &&
-                         d < static_cast<float>(range.most_px) + 0.5f && right > -0.5f &&
+      const bool known = row[x] >= search.min_px * fine &&
+                         d < static_cast<float>(range.max_px) + 0.5f && right > -0.5f &&
                          right < static_cast<float>(map.width_px) - 0.5f;
       map.values.push_back(known ? d : std::numeric_limits<float>::quiet_NaN());
     }
@@ -82,7 +82,7 @@ DisparityMap cut_out(const cv::Mat& found,
 DisparityMap run(cv::StereoMatcher& matcher,
                  const RectifiedPair& pair,
                  const DisparityRange& range,
-                 const Search& search,
+                 const DenseSearch& search,
                  const char* place) {
   cv::Mat found;
   try {
@@ -94,12 +94,12 @@ DisparityMap run(cv::StereoMatcher& matcher,
   return cut_out(found, search, pair, range);
 }
 
-Search checked_search(const RectifiedPair& pair,
-                      const DisparityRange& range,
-                      int block_px,
-                      const char* place) {
+DenseSearch checked_search(const RectifiedPair& pair,
+                           const DisparityRange& range,
+                           int block_px,
+                           const char* place) {
   check_matcher_input(pair, range, place);
-  check(std::max(std::abs(range.least_px), std::abs(range.most_px)) < most_px, place,
+  check(std::max(std::abs(range.min_px), std::abs(range.max_px)) < max_px, place,
         "searches disparities of 2000 px and more, which OpenCV cannot hold",
         "search fewer, or reduce the images");
   return search_of(range, block_px);
@@ -121,7 +121,7 @@ std::vector<Matcher> for_each_uniqueness(Options options,
 }  // namespace
 
 DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, const BmOptions& o) {
-  const Search search = checked_search(pair, range, o.block_px, "bm");
+  const DenseSearch search = checked_search(pair, range, o.block_px, "bm");
   check(o.block_px % 2 == 1 && o.block_px >= 5 && o.block_px <= 255, "bm",
         "its block is not of 5, 7, … 255 px", "choose an odd side");
   check(o.pre_filter_cap >= 1 && o.pre_filter_cap <= 63, "bm",
@@ -129,7 +129,7 @@ DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, cons
   check(o.uniqueness_percent >= 0 && o.texture_threshold >= 0, "bm",
         "its uniqueness or texture threshold is negative", "choose 0 for none");
   const cv::Ptr<cv::StereoBM> matcher = cv::StereoBM::create(search.count, o.block_px);
-  matcher->setMinDisparity(search.least_px);
+  matcher->setMinDisparity(search.min_px);
   matcher->setPreFilterType(cv::StereoBM::PREFILTER_XSOBEL);
   matcher->setPreFilterCap(o.pre_filter_cap);
   matcher->setTextureThreshold(o.texture_threshold);
@@ -145,7 +145,7 @@ DisparityMap sgbm_map(const RectifiedPair& pair,
                       const SgbmOptions& o) {
   constexpr int modes[] = {cv::StereoSGBM::MODE_SGBM, cv::StereoSGBM::MODE_HH,
                            cv::StereoSGBM::MODE_SGBM_3WAY, cv::StereoSGBM::MODE_HH4};
-  const Search search = checked_search(pair, range, o.block_px, "sgbm");
+  const DenseSearch search = checked_search(pair, range, o.block_px, "sgbm");
   check(o.block_px % 2 == 1 && o.block_px >= 1 && o.block_px <= 25, "sgbm",
         "its block is not of 1, 3, … 25 px", "choose an odd side");
   const int p1 = o.p1 > 0 ? o.p1 : 8 * o.block_px * o.block_px;
@@ -153,10 +153,10 @@ DisparityMap sgbm_map(const RectifiedPair& pair,
   check(p1 < p2, "sgbm", "its penalty p2 is not above p1", "choose four times as much");
   check(o.uniqueness_percent >= 0 && o.uniqueness_percent <= 100, "sgbm",
         "its uniqueness is not between 0 and 100 %", "choose 10");
-  const cv::Ptr<cv::StereoSGBM> matcher = cv::StereoSGBM::create(
-      search.least_px, search.count, o.block_px, p1, p2, o.disp12_max_diff_px, o.pre_filter_cap,
-      o.uniqueness_percent, o.speckle_px, o.speckle_range_px,
-      modes[static_cast<std::size_t>(o.mode)]);
+  const cv::Ptr<cv::StereoSGBM> matcher =
+      cv::StereoSGBM::create(search.min_px, search.count, o.block_px, p1, p2, o.disp12_max_diff_px,
+                             o.pre_filter_cap, o.uniqueness_percent, o.speckle_px,
+                             o.speckle_range_px, modes[static_cast<std::size_t>(o.mode)]);
   return run(*matcher, pair, range, search, "sgbm");
 }
 

@@ -227,7 +227,7 @@ RefinedDisparity refine(const PaddedImage& left,
     centre -= stretch * undone * std::clamp(shift, -0.6f, 0.6f);
     shear -= stretch * undone * std::clamp(more_shear, -0.3f, 0.3f);
     stretch *= undone;
-    if (!(std::abs(centre - begin) <= options.most_shift_px) || !(stretch > 0.25f && stretch < 4) ||
+    if (!(std::abs(centre - begin) <= options.max_shift_px) || !(stretch > 0.25f && stretch < 4) ||
         !(std::abs(shear) < 1.2f)) {
       result.settled = false;
       return result;

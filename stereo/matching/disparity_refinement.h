@@ -27,7 +27,7 @@ struct RefinedDisparity {
 
 struct RefinementOptions {
   float noise_left = 1, noise_right = 1;  ///< standard deviation, grey levels
-  float most_shift_px = 1;                ///< from the start
+  float max_shift_px = 1;                 ///< from the start
   float stretch_sigma = 0.3f;  ///< how much stretch and shear are expected to differ from the start
   int iterations = 6;
 };

@@ -78,15 +78,15 @@ class Chains {
 
 }  // namespace
 
-void drop_lonely(const PointsByRow& points,
-                 int least_points,
-                 int reach,
-                 double slope,
-                 std::vector<float>& disparity) {
+void remove_isolated(const PointsByRow& points,
+                     int min_points,
+                     int reach,
+                     double slope,
+                     std::vector<float>& disparity) {
   Chains chains(points, reach, slope, disparity);
   const auto height = static_cast<int>(points.row_begin.size()) - 1;
   for (int y = 0; y < height; ++y) chains.add_row(y);
-  for (const int p : chains.of_fewer_than(least_points)) {
+  for (const int p : chains.of_fewer_than(min_points)) {
     disparity[static_cast<std::size_t>(p)] = std::numeric_limits<float>::quiet_NaN();
   }
 }

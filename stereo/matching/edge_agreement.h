@@ -8,13 +8,13 @@
 
 namespace vernier::stereo::internal {
 
-/// Drops points that fewer than `least_points` agree with, in a chain of matched points within
+/// Drops points that fewer than `min_points` agree with, in a chain of matched points within
 /// reach of each other in row and column whose disparities differ by at most one, and by `slope`
 /// for every column between them.
-void drop_lonely(const PointsByRow& points,
-                 int least_points,
-                 int reach,
-                 double slope,
-                 std::vector<float>& disparity);
+void remove_isolated(const PointsByRow& points,
+                     int min_points,
+                     int reach,
+                     double slope,
+                     std::vector<float>& disparity);
 
 }  // namespace vernier::stereo::internal

@@ -40,14 +40,14 @@ struct Found {
 constexpr double slanted_slope = 0.6;  // of disparity, pixels a pixel
 
 /// Searches points of the left image in the right one, and back.
-class Search {
+class EdgeSearch {
  public:
-  Search(const RectifiedPair& pair, const DisparityRange& range)
+  EdgeSearch(const RectifiedPair& pair, const DisparityRange& range)
       : pair_(pair),
         width_(pair.left.width_px),
         height_(pair.left.height_px),
-        least_(range.least_px),
-        searched_(range.most_px - range.least_px + 1) {
+        least_(range.min_px),
+        searched_(range.max_px - range.min_px + 1) {
     constexpr int step = 32;
     count_ = (searched_ + step - 1) / step * step;
     border_ = count_ + std::abs(least_) + 2;
@@ -70,7 +70,7 @@ class Search {
     for (const int x : points.x) first.push_back(width_ - 1 - x + least_);
     CensusCosts costs{points, left_, mirrored_right_, first, Facing::opposite, count_};
     if (slanted) costs.stretched = &from_left;
-    Found found{semi_global_winners(costs, Support::all, support), {}, {}, slanted};
+    Found found{semi_global_disparities(costs, Support::all, support), {}, {}, slanted};
     for (int p = 0; p < points.size(); ++p) {
       const int index = found.winners[static_cast<std::size_t>(p)].index;
       found.stretch.push_back(slanted ? 1 / best_scale(costs, p, index) : 1);
@@ -129,8 +129,8 @@ class Search {
     const PointsByRow right = points_by_row(std::move(x), std::move(y), height_);
     CensusCosts costs{right, right_, left_, first, Facing::same, count_};
     costs.stretched = stretched_left;
-    const std::vector<Winner> back =
-        semi_global_winners(costs, stretched_left ? Support::all : Support::from_above, support);
+    const std::vector<Winner> back = semi_global_disparities(
+        costs, stretched_left ? Support::all : Support::from_above, support);
     for (std::size_t k = 0; k < there.size(); ++k) {
       const int tolerance = stretched_left ? 2 : 1;
       found.confirmed.push_back(there[k] >= 0 &&
@@ -146,17 +146,17 @@ class Search {
 
 /// Disparities that pass all tests, not a number for the others.
 std::vector<float> accepted(const PointsByRow& points,
-                            const Search& search,
+                            const EdgeSearch& search,
                             const Found& found,
                             const EdgeMatcherOptions& options) {
   std::vector<float> disparity(points.x.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t k = 0; k < disparity.size(); ++k) {
     const Winner& best = found.winners[k];
-    if (!found.confirmed[k] || !(best.margin > options.least_margin)) continue;
+    if (!found.confirmed[k] || !(best.margin > options.min_margin)) continue;
     disparity[k] = static_cast<float>(search.least() + best.index) + best.offset;
   }
-  drop_lonely(points, options.least_points, options.agreement_reach_px,
-              found.slanted ? slanted_slope : 0, disparity);
+  remove_isolated(points, options.min_points, options.agreement_reach_px,
+                  found.slanted ? slanted_slope : 0, disparity);
   return disparity;
 }
 
@@ -180,7 +180,7 @@ Attempt attempt_at(const RectifiedPair& pair,
                    const PointsByRow& points,
                    const DisparityRange& range,
                    const EdgeMatcherOptions& options) {
-  const Search search(pair, range);
+  const EdgeSearch search(pair, range);
   Attempt attempt;
   for (bool slanted = false;; slanted = true) {
     attempt.found = search.find(points, slanted);
@@ -188,7 +188,7 @@ Attempt attempt_at(const RectifiedPair& pair,
     if (!slanted && unmatched_share(attempt.disparity) > options.slanted_above) continue;
     if (!options.refine) break;
     attempt.refinement.emplace(pair, points, range, slanted,
-                               slanted ? options.least_slanted_score : options.least_score);
+                               slanted ? options.min_slanted_score : options.min_score);
     attempt.refinement->from(attempt.disparity, attempt.found.stretch);
     if (slanted || attempt.refinement->slanted_share() <= options.slanted_above) break;
   }
@@ -210,10 +210,10 @@ void grow(Attempt& attempt) {
   constexpr int sweeps = 20;
   const std::vector<bool> none(attempt.confirmed.size(), false);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    refinement.drop_contradicted();
+    refinement.remove_inconsistent();
     if (refinement.grow(none) == 0) break;
   }
-  refinement.drop_contradicted();
+  refinement.remove_inconsistent();
   std::fill(attempt.disparity.begin(), attempt.disparity.end(),
             std::numeric_limits<float>::quiet_NaN());
 }
@@ -242,11 +242,11 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
   check_matcher_input(pair, range, "edge");
   check_edges(left_edges, pair.left);
   std::vector<EdgeMatch> matches(left_edges.size());
-  const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
+  const auto min_sine = static_cast<float>(std::sin(options.min_angle_rad));
   std::vector<int> x, y;
   std::vector<std::size_t> edge;
   for (std::size_t i = 0; i < left_edges.size(); ++i) {
-    if (std::abs(left_edges[i].normal.x()) < least_sine) continue;
+    if (std::abs(left_edges[i].normal.x()) < min_sine) continue;
     x.push_back(left_edges[i].x);
     y.push_back(left_edges[i].y);
     edge.push_back(i);

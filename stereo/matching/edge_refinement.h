@@ -23,10 +23,10 @@ class EdgeRefinement {
                  const PointsByRow& points,
                  const DisparityRange& range,
                  bool slanted,
-                 double least_score)
+                 double min_score)
       : points_(points),
         range_(range),
-        least_score_(least_score),
+        min_score_(min_score),
         refiner_(pair.left, pair.right, options_of(pair, slanted)),
         fits_(points.x.size()) {}
 
@@ -80,7 +80,7 @@ class EdgeRefinement {
   }
 
   /// Unsettles points whose surface most of their settled neighbours contradict by over a pixel.
-  void drop_contradicted() {
+  void remove_inconsistent() {
     std::vector<int> dropped;
     for (int p = 0; p < points_.size(); ++p) {
       if (!settled(p)) continue;
@@ -102,7 +102,7 @@ class EdgeRefinement {
  private:
   static RefinementOptions options_of(const RectifiedPair& pair, bool slanted) {
     RefinementOptions how;
-    how.most_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
+    how.max_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
     how.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
     how.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
     return how;
@@ -124,10 +124,9 @@ class EdgeRefinement {
     int won = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       RefinedDisparity& best = fits_[static_cast<std::size_t>(at[i])];
-      if (!found[i].settled || !(found[i].score > least_score_)) continue;
+      if (!found[i].settled || !(found[i].score > min_score_)) continue;
       const float d = found[i].disparity_px;
-      if (d < static_cast<float>(range_.least_px) - 1 ||
-          d > static_cast<float>(range_.most_px) + 1) {
+      if (d < static_cast<float>(range_.min_px) - 1 || d > static_cast<float>(range_.max_px) + 1) {
         continue;
       }
       if (best.settled && best.score >= found[i].score) continue;
@@ -139,7 +138,7 @@ class EdgeRefinement {
 
   const PointsByRow& points_;
   DisparityRange range_;
-  double least_score_;
+  double min_score_;
   DisparityRefiner refiner_;
   std::vector<RefinedDisparity> fits_;
 };

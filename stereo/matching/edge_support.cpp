@@ -120,7 +120,7 @@ double best_scale(const CensusCosts& at, int point, int index) {
 HWY_INLINE float share_at(float distance_px, const SupportOptions& options) {
   const auto reach = static_cast<float>(options.reach_px);
   if (distance_px > 2 * reach) return -1;
-  return std::clamp(1 - (distance_px - 1) / reach, static_cast<float>(options.least_share), 1.0f);
+  return std::clamp(1 - (distance_px - 1) / reach, static_cast<float>(options.min_share), 1.0f);
 }
 
 /// A direction's step towards a point: the neighbour's values and what steps cost.
@@ -243,11 +243,11 @@ HWY_INLINE Winner winner_of(std::int16_t* sums, int n) {
 
 /// Forward pass into `sums`, then the backward one, which is done with a point when it leaves it.
 /// Costs are found again rather than kept: memory is slower.
-void semi_global_winners(const CensusCosts& costs,
-                         Support support,
-                         const SupportOptions& options,
-                         std::int16_t* sums,
-                         std::vector<Winner>& winners) {
+void semi_global_disparities(const CensusCosts& costs,
+                             Support support,
+                             const SupportOptions& options,
+                             std::int16_t* sums,
+                             std::vector<Winner>& winners) {
   const PointsByRow& points = costs.points;
   const int n = costs.disparities;
   std::vector<std::int16_t> cost(static_cast<std::size_t>(n)), wide[directions];
@@ -285,7 +285,7 @@ HWY_AFTER_NAMESPACE();
 namespace vernier::stereo::internal {
 
 HWY_EXPORT(census_costs);
-HWY_EXPORT(semi_global_winners);
+HWY_EXPORT(semi_global_disparities);
 HWY_EXPORT(best_scale);
 
 void census_costs(const CensusCosts& at, int point, std::int16_t* costs) {
@@ -296,15 +296,15 @@ double best_scale(const CensusCosts& at, int point, int index) {
   return at.stretched ? HWY_DYNAMIC_DISPATCH(best_scale)(at, point, index) : 1;
 }
 
-std::vector<Winner> semi_global_winners(const CensusCosts& costs,
-                                        Support support,
-                                        const SupportOptions& options) {
+std::vector<Winner> semi_global_disparities(const CensusCosts& costs,
+                                            Support support,
+                                            const SupportOptions& options) {
   const auto points = static_cast<std::size_t>(costs.points.size());
   std::vector<Winner> winners(points);
   const std::size_t kept = support == Support::all ? points : 1;
   const auto sums = std::make_unique_for_overwrite<std::int16_t[]>(
       kept * static_cast<std::size_t>(costs.disparities));
-  HWY_DYNAMIC_DISPATCH(semi_global_winners)(costs, support, options, sums.get(), winners);
+  HWY_DYNAMIC_DISPATCH(semi_global_disparities)(costs, support, options, sums.get(), winners);
   return winners;
 }
 

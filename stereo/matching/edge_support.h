@@ -52,10 +52,10 @@ void census_costs(const CensusCosts& at, int point, std::int16_t* costs);
 enum class Support { all, from_above };
 
 struct SupportOptions {
-  int small_step = 120;      ///< added where neighbours differ by one disparity
-  int large_step = 350;      ///< added where they differ by more
-  double reach_px = 12;      ///< distance over which a neighbour's support fades …
-  double least_share = 0.1;  ///< … to this share; at twice the reach it ends
+  int small_step = 120;    ///< added where neighbours differ by one disparity
+  int large_step = 350;    ///< added where they differ by more
+  double reach_px = 12;    ///< distance over which a neighbour's support fades …
+  double min_share = 0.1;  ///< … to this share; at twice the reach it ends
   double slope = 0;  ///< change of disparity a pixel that counts as a small step, from a pixel on
 };
 
@@ -72,11 +72,11 @@ struct Winner {
 ///     L_r(p, d) = C(p, d) + min( L_r(n, d), L_r(n, d ± 1) + w P_1, min L_r(n) + w P_2 ) − min
 ///     L_r(n)
 ///
-/// with w falling from 1 to `least_share` over the reach; C(p, d) alone where there is none. A
+/// with w falling from 1 to `min_share` over the reach; C(p, d) alone where there is none. A
 /// point gets the disparity of the least Σ_r L_r, the smallest of equal ones.
 /// From above alone, four of the directions count, in a single pass.
-std::vector<Winner> semi_global_winners(const CensusCosts& costs,
-                                        Support support = Support::all,
-                                        const SupportOptions& options = {});
+std::vector<Winner> semi_global_disparities(const CensusCosts& costs,
+                                            Support support = Support::all,
+                                            const SupportOptions& options = {});
 
 }  // namespace vernier::stereo::internal

@@ -128,8 +128,8 @@ std::vector<std::string> filled(const Command& command,
                                 const DisparityRange& range) {
   Values values = {{"{left}", (folder / "left.png").string()},
                    {"{right}", (folder / "right.png").string()},
-                   {"{least}", std::to_string(range.least_px)},
-                   {"{most}", std::to_string(range.most_px)}};
+                   {"{least}", std::to_string(range.min_px)},
+                   {"{most}", std::to_string(range.max_px)}};
   for (const auto& [placeholder, file] : outputs) {
     values.emplace_back(placeholder, (folder / file).string());
   }
@@ -158,9 +158,9 @@ void check_run(const ProgramRun& run, const Command& command, double time_limit_
   } else if (run.timed_out) {
     fault = fmt::format("did not end within {} s and was stopped", time_limit_s);
   } else if (run.signal) {
-    fault = fmt::format("was ended by signal {}: {}", run.signal, run.last_words());
+    fault = fmt::format("was ended by signal {}: {}", run.signal, run.last_output_line());
   } else if (run.exit_code != 0) {
-    fault = fmt::format("ended with status {}: {}", run.exit_code, run.last_words());
+    fault = fmt::format("ended with status {}: {}", run.exit_code, run.last_output_line());
   }
   if (!fault.empty()) throw Error(command.place, fault, "try the command by hand");
 }
@@ -180,7 +180,7 @@ DisparityMap read_output(const fs::path& file,
     if (scale == 0) scale = is_deep ? 256 : 1;
     DisparityFileOptions options;
     options.scale = scale;
-    options.least_px = range.least_px - 0.5;
+    options.min_px = range.min_px - 0.5;
     return read_disparity(file, options);
   } catch (const Error& error) {
     std::string what = error.what();

@@ -34,15 +34,14 @@ void check_matcher_input(const RectifiedPair& pair,
   if (!is_whole(left) || !is_whole(right)) {
     throw Error(place, "the images have no pixels", "give a rectified pair");
   }
-  if (range.least_px > range.most_px) {
-    throw Error(place,
-                fmt::format("no disparity is between {} and {}", range.least_px, range.most_px),
+  if (range.min_px > range.max_px) {
+    throw Error(place, fmt::format("no disparity is between {} and {}", range.min_px, range.max_px),
                 "give the least one first");
   }
-  if (range.most_px >= left.width_px || range.least_px <= -left.width_px) {
+  if (range.max_px >= left.width_px || range.min_px <= -left.width_px) {
     throw Error(place,
                 fmt::format("disparities of {} to {} reach beyond the images' width of {}",
-                            range.least_px, range.most_px, left.width_px),
+                            range.min_px, range.max_px, left.width_px),
                 "give disparities that the scene can have");
   }
 }

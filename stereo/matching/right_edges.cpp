@@ -16,12 +16,12 @@ namespace vernier::stereo::internal {
 
 RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
     : reach_px_(static_cast<float>(options.edge_reach_px)),
-      most_ratio_(static_cast<float>(options.most_contrast_ratio)),
-      least_cosine_(static_cast<float>(std::cos(options.most_turn_rad))),
+      max_ratio_(static_cast<float>(options.max_contrast_ratio)),
+      min_cosine_(static_cast<float>(std::cos(options.max_turn_rad))),
       width_(right.width_px),
       height_(right.height_px) {
   // A view turns edges a little; those along the row cross it nowhere.
-  const auto least_sine = static_cast<float>(std::sin(0.5 * options.least_angle_rad));
+  const auto min_sine = static_cast<float>(std::sin(0.5 * options.min_angle_rad));
   const std::vector<EdgePoint> edges = canny_edges(right, options.right_edges);
   crossings_.reserve(edges.size());
   from_pixel_.resize(static_cast<std::size_t>(width_ + 1) * static_cast<std::size_t>(height_));
@@ -30,7 +30,7 @@ RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
   for (int y = 0; y < height_; ++y) {
     int x = 0;
     for (; edge != edges.end() && edge->y == y; ++edge) {
-      if (std::abs(edge->normal.x()) < least_sine) continue;
+      if (std::abs(edge->normal.x()) < min_sine) continue;
       for (; x <= edge->x; ++x) *from++ = static_cast<int>(crossings_.size());
       crossings_.push_back({edge->row_x_px, edge->pixel_px.x(), edge->pixel_px.y(),
                             -edge->normal.y() / edge->normal.x(), edge->normal, edge->strength});
@@ -40,9 +40,9 @@ RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
 }
 
 bool RightEdges::is_like(const EdgePoint& left, const Crossing& right) const {
-  return left.normal.x() * right.normal.x() > 0 && left.normal.dot(right.normal) >= least_cosine_ &&
-         right.strength <= most_ratio_ * left.strength &&
-         left.strength <= most_ratio_ * right.strength;
+  return left.normal.x() * right.normal.x() > 0 && left.normal.dot(right.normal) >= min_cosine_ &&
+         right.strength <= max_ratio_ * left.strength &&
+         left.strength <= max_ratio_ * right.strength;
 }
 
 float RightEdges::nearest_px(const EdgePoint& left, float x_px) const {

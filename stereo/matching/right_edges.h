@@ -28,7 +28,7 @@ class RightEdges {
   };
   bool is_like(const EdgePoint& left, const Crossing& right) const;
 
-  float reach_px_, most_ratio_, least_cosine_;
+  float reach_px_, max_ratio_, min_cosine_;
   int width_, height_;
   std::vector<Crossing> crossings_;  ///< by row, then by pixel
   std::vector<int> from_pixel_;      ///< the first crossing from a pixel on; one more a row

@@ -36,9 +36,9 @@ void check_options(const StretchOptions& o) {
   require(o.step_x_px > 0 && o.step_y_px > 0, "blocks do not advance", "give steps from 1 px on");
   require(odd(o.stretches, 1, 99) && odd(o.shears, 1, 99),
           "the number of stretches or shears is not odd", "give odd numbers below 100");
-  require(o.most_gradient > 0 && o.most_gradient <= 1.5,
+  require(o.max_gradient > 0 && o.max_gradient <= 1.5,
           "the disparity gradient's limit is not above 0 and up to 1.5", "give 1, for instance");
-  require(std::abs(o.most_shear) <= 2, "the largest shear is above 2", "give 0.5, for instance");
+  require(std::abs(o.max_shear) <= 2, "the largest shear is above 2", "give 0.5, for instance");
   require(o.scale_px > 0 && o.scale_px <= 10, "the derivative's scale is not from 0 to 10 px",
           "give 1 px, for instance");
   require(o.rank_reach_px >= 1 && o.rank_reach_px <= 7, "ranks do not reach 1 to 7 px",
@@ -47,7 +47,7 @@ void check_options(const StretchOptions& o) {
           "what is darker or brighter in ranks is not from 0 to 255 grey levels",
           "give 4, for instance");
   require(o.halvings >= 0 && o.halvings <= 6, "halvings are not from 0 to 6", "give 1 or 2");
-  require(o.edge_reach_px >= 0 && o.most_contrast_ratio >= 1 && o.margin_px >= 0,
+  require(o.edge_reach_px >= 0 && o.max_contrast_ratio >= 1 && o.margin_px >= 0,
           "a reach or a margin is negative or a contrast ratio below 1", "give larger ones");
 }
 
@@ -71,20 +71,20 @@ void for_each_about(Blocks& grid, int column, int row, const Visit& visit) {
 /// Says of every block what becomes of it.
 void decide(const StretchOptions& options, StretchBlocks& grid) {
   const auto good = [&](const StretchBlock& block) {
-    return block.searched > 0 && block.score >= static_cast<float>(options.least_score);
+    return block.searched > 0 && block.score >= static_cast<float>(options.min_score);
   };
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       StretchBlock& block = grid.blocks[static_cast<std::size_t>(row * grid.columns + column)];
-      if (block.edges < options.least_edges) continue;
-      block.fate = BlockFate::weak;
+      if (block.edges < options.min_edges) continue;
+      block.fate = BlockStatus::weak;
       if (!good(block)) continue;
       for_each_about(grid, column, row, [&](const StretchBlock& other) {
         if (&other == &block || !good(other)) return;
-        block.support += agrees(block, other, options.most_gradient) ? 1 : 0;
+        block.support += agrees(block, other, options.max_gradient) ? 1 : 0;
       });
-      const bool supported = block.support >= options.least_support;
-      block.fate = supported ? BlockFate::kept : BlockFate::lonely;
+      const bool supported = block.support >= options.min_support;
+      block.fate = supported ? BlockStatus::kept : BlockStatus::lonely;
     }
   }
 }
@@ -99,27 +99,27 @@ std::vector<BlockRange> ranges_about(const StretchBlocks& from,
   std::vector<BlockRange> ranges;
   for (const StretchBlock& block : grid.blocks) {
     constexpr float infinite = std::numeric_limits<float>::infinity();
-    float least_px = infinite, most_px = -infinite, least = infinite, most = -infinite;
+    float min_px = infinite, max_px = -infinite, least = infinite, most = -infinite;
     const auto at = [scale](int pixel, int step, int count) {
       return std::min(count - 1, pixel / scale / step);
     };
     const int column = at(block.x, options.step_x_px, from.columns);
     const int row = at(block.y, options.step_y_px, from.rows);
     for_each_about(from, column, row, [&](const StretchBlock& other) {
-      if (other.fate != BlockFate::kept) return;
-      least_px = std::min(least_px, static_cast<float>(scale) * other.disparity_px);
-      most_px = std::max(most_px, static_cast<float>(scale) * other.disparity_px);
+      if (other.fate != BlockStatus::kept) return;
+      min_px = std::min(min_px, static_cast<float>(scale) * other.disparity_px);
+      max_px = std::max(max_px, static_cast<float>(scale) * other.disparity_px);
       least = std::min(least, other.stretch);
       most = std::max(most, other.stretch);
     });
     BlockRange& of_block = ranges.emplace_back(BlockRange{range});
-    if (least_px > most_px) continue;
-    const int from_px = static_cast<int>(std::floor(least_px)) - options.margin_px;
-    const int to_px = static_cast<int>(std::ceil(most_px)) + options.margin_px;
-    of_block.disparities = {std::clamp(from_px, range.least_px, range.most_px),
-                            std::clamp(to_px, range.least_px, range.most_px)};
-    of_block.least_stretch = least;
-    of_block.most_stretch = most;
+    if (min_px > max_px) continue;
+    const int from_px = static_cast<int>(std::floor(min_px)) - options.margin_px;
+    const int to_px = static_cast<int>(std::ceil(max_px)) + options.margin_px;
+    of_block.disparities = {std::clamp(from_px, range.min_px, range.max_px),
+                            std::clamp(to_px, range.min_px, range.max_px)};
+    of_block.min_stretch = least;
+    of_block.max_stretch = most;
   }
   return ranges;
 }
@@ -151,8 +151,8 @@ StretchBlocks coarser_blocks(const RectifiedPair& pair,
     edge.y = std::min(edge.y / 2, half.left.height_px - 1);
     edges.push_back(edge);
   }
-  const DisparityRange half_range{std::max(-half.left.width_px + 1, (range.least_px - 1) / 2),
-                                  std::min(half.left.width_px - 1, (range.most_px + 1) / 2)};
+  const DisparityRange half_range{std::max(-half.left.width_px + 1, (range.min_px - 1) / 2),
+                                  std::min(half.left.width_px - 1, (range.max_px + 1) / 2)};
   return stretch_blocks(half, edges, half_range, options);
 }
 
@@ -168,10 +168,10 @@ std::vector<BlockRange> ranges_after(const StretchBlocks& last,
   }
   std::vector<BlockRange> ranges = ranges_about(last, 1, grid, range, options);
   for (std::size_t k = 0; k < ranges.size(); ++k) {
-    Draws draws({.seed = options.seed,
-                 .feature = static_cast<std::uint32_t>(k),
-                 .source = static_cast<std::uint32_t>(DrawSource::full_search),
-                 .frame = frame});
+    RandomStream draws({.seed = options.seed,
+                        .feature = static_cast<std::uint32_t>(k),
+                        .source = static_cast<std::uint32_t>(DrawSource::full_search),
+                        .frame = frame});
     if (draws.uniform() < options.full_search_share) ranges[k] = {range};
   }
   return ranges;
@@ -187,7 +187,7 @@ class BestBlocks {
     const int half_x = options.width_px / 2, half_y = options.height_px / 2;
     for (std::size_t k = 0; k < grid.blocks.size(); ++k) {
       const StretchBlock& block = grid.blocks[k];
-      if (block.fate != BlockFate::kept) continue;
+      if (block.fate != BlockStatus::kept) continue;
       const int first = std::max(0, block.x - half_x), end = std::min(width, block.x + half_x + 1);
       for (int y = std::max(0, block.y - half_y); y < std::min(height, block.y + half_y + 1); ++y) {
         paint(static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(first), end - first,
@@ -251,10 +251,10 @@ StretchFrame match_by_stretch(const RectifiedPair& pair,
                                 frame.number);
   const RightEdges right(pair.right, options);
   const BestBlocks best_blocks(frame.blocks, options, pair.left.width_px, pair.left.height_px);
-  const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
+  const auto min_sine = static_cast<float>(std::sin(options.min_angle_rad));
   for (const EdgePoint& edge : left_edges) {
     EdgeDisparity& at = frame.at_edges.emplace_back();
-    if (std::abs(edge.normal.x()) < least_sine) continue;
+    if (std::abs(edge.normal.x()) < min_sine) continue;
     const int best = best_blocks.at(edge.x, edge.y);
     if (best < 0) continue;
     const StretchBlock* const block = &frame.blocks.blocks[static_cast<std::size_t>(best)];

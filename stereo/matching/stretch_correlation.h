@@ -23,22 +23,22 @@ enum class StretchFilter {
 struct StretchOptions {
   int width_px = 17, height_px = 9;  ///< of a block (N and height), odd
   int step_x_px = 8, step_y_px = 4;  ///< between blocks
-  int least_edges = 6;               ///< non-horizontal edge points that a block must hold
-  double least_angle_rad = 0.0873;   ///< edges nearer to the row (5°) are left out
+  int min_edges = 6;                 ///< non-horizontal edge points that a block must hold
+  double min_angle_rad = 0.0873;     ///< edges nearer to the row (5°) are left out
   StretchFilter filter = StretchFilter::rank;
-  double scale_px = 1;           ///< σ of the derivative's Gaussian
-  int rank_reach_px = 4;         ///< of ranks, to either side
-  double rank_least_grey = 4;    ///< grey levels: what is darker or brighter by no more is neither
-  int stretches = 7;             ///< widths M that are tried, an odd number, from N / r to r N …
-  double most_gradient = 1;      ///< … with r = (2 + this) / (2 − this); also between blocks
-  int shears = 1;                ///< du_right / dv that are tried, an odd number, evenly …
-  double most_shear = 0.5;       ///< … from minus this to this
-  double least_score = 0.65;     ///< ZNCC
-  int least_support = 5;         ///< of the eight blocks around within the disparity gradient
-  double edge_reach_px = 2;      ///< from where the block says to a right edge of the same sign …
-  double most_turn_rad = 0.785;  ///< … whose normal differs by no more than this …
-  double most_contrast_ratio = 2.5;  ///< … and whose strength by no more than this factor
-  CannyOptions right_edges{.low = 1, .high = 2, .least_points = 3, .with_sigma = false};
+  double scale_px = 1;          ///< σ of the derivative's Gaussian
+  int rank_reach_px = 4;        ///< of ranks, to either side
+  double rank_least_grey = 4;   ///< grey levels: what is darker or brighter by no more is neither
+  int stretches = 7;            ///< widths M that are tried, an odd number, from N / r to r N …
+  double max_gradient = 1;      ///< … with r = (2 + this) / (2 − this); also between blocks
+  int shears = 1;               ///< du_right / dv that are tried, an odd number, evenly …
+  double max_shear = 0.5;       ///< … from minus this to this
+  double min_score = 0.65;      ///< ZNCC
+  int min_support = 5;          ///< of the eight blocks around within the disparity gradient
+  double edge_reach_px = 2;     ///< from where the block says to a right edge of the same sign …
+  double max_turn_rad = 0.785;  ///< … whose normal differs by no more than this …
+  double max_contrast_ratio = 2.5;  ///< … and whose strength by no more than this factor
+  CannyOptions right_edges{.low = 1, .high = 2, .min_points = 3, .with_sigma = false};
   int halvings = 1;   ///< of the images, to find where to search (coarse to fine); 0: everywhere
   int margin_px = 3;  ///< about disparities of smaller images or the last frame
   double full_search_share = 0.1;  ///< of the blocks that search everywhere all the same
@@ -47,7 +47,7 @@ struct StretchOptions {
 };
 
 /// What became of a block.
-enum class BlockFate {
+enum class BlockStatus {
   kept,
   few_edges,  ///< not searched
   weak,       ///< its score is too low
@@ -63,7 +63,7 @@ struct StretchBlock {
   float shear = 0;         ///< du_right / dv
   float score = 0;         ///< ZNCC, of the best of all that were tried
   int support = 0;         ///< blocks around that agree
-  BlockFate fate = BlockFate::few_edges;
+  BlockStatus fate = BlockStatus::few_edges;
 };
 
 /// Blocks of a pair, row by row.

@@ -62,7 +62,7 @@ namespace {
 constexpr int vector_pixels = 64;  // and more of a row that vectors may read or write
 
 std::int16_t whole(float value) {
-  constexpr float most = most_filtered;
+  constexpr float most = max_filtered;
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -most, most)));
 }
 
@@ -131,8 +131,8 @@ FilteredImage fine(const GreyLevels& image, int margin_x, int margin_y) {
   return result;
 }
 
-void rank(const GreyLevels& image, int reach, double least_grey, FilteredImage& to) {
-  const auto least = static_cast<std::int16_t>(std::lround(grey_steps * least_grey));
+void rank(const GreyLevels& image, int reach, double min_grey, FilteredImage& to) {
+  const auto least = static_cast<std::int16_t>(std::lround(grey_steps * min_grey));
   const FilteredImage levels = fine(image, reach + vector_pixels, reach);
   std::vector<const std::int16_t*> rows(static_cast<std::size_t>(2 * reach + 1));
   std::vector<std::int16_t> row(static_cast<std::size_t>(to.width + vector_pixels));

@@ -11,7 +11,7 @@
 
 namespace vernier::stereo::internal {
 
-constexpr int most_filtered = 255;  // of a filtered pixel's magnitude
+constexpr int max_filtered = 255;  // of a filtered pixel's magnitude
 
 /// An image as blocks of it are compared: one or more planes of whole numbers, with their outermost
 /// pixels repeated about them.

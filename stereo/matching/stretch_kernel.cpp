@@ -164,8 +164,8 @@ void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32
 
 void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse) {
   // Below a hundredth of variance there is nothing to compare.
-  constexpr float least_variance = 0.01f * StretchWarp::steps * StretchWarp::steps;
-  const auto least = hn::Set(real, count * least_variance);
+  constexpr float min_variance = 0.01f * StretchWarp::steps * StretchWarp::steps;
+  const auto least = hn::Set(real, count * min_variance);
   const auto all = hn::Set(real, count), one = hn::Set(real, 1.0f);
   for (int x = 0; x < n; x += static_cast<int>(hn::Lanes(real))) {
     auto sum = hn::Zero(real), square = hn::Zero(real);

@@ -166,9 +166,9 @@ std::vector<StretchWarp> warps_of(const StretchOptions& options, std::size_t row
 }
 
 /// What all blocks of a pair share.
-class Search {
+class StretchSearch {
  public:
-  Search(const RectifiedPair& pair, const StretchOptions& options)
+  StretchSearch(const RectifiedPair& pair, const StretchOptions& options)
       : options_(options),
         width_(pair.left.width_px),
         stretches_(stretches_of(options)),
@@ -190,7 +190,7 @@ class Search {
       const auto begin = static_cast<std::size_t>(row * blocks.columns);
       bool known = false;
       for (std::size_t k = begin; k < begin + static_cast<std::size_t>(blocks.columns); ++k) {
-        if (blocks.blocks[k].edges < options_.least_edges) continue;
+        if (blocks.blocks[k].edges < options_.min_edges) continue;
         if (!known) buffers.left.take(blocks.blocks[k].y);
         known = true;
         search(blocks.blocks[k], ranges[k], buffers);
@@ -216,8 +216,8 @@ class Search {
   };
 
   void search(StretchBlock& block, const BlockRange& range, Buffers& buffers) const {
-    const int first = std::max(0, block.x - range.disparities.most_px);
-    const int n = std::min(width_ - 1, block.x - range.disparities.least_px) - first + 1;
+    const int first = std::max(0, block.x - range.disparities.max_px);
+    const int n = std::min(width_ - 1, block.x - range.disparities.min_px) - first + 1;
     block.searched = std::max(0, n);
     float mean = 0, deviation = 0;
     buffers.left.statistics(block.x, mean, deviation);
@@ -254,8 +254,8 @@ class Search {
 
   bool is_searched(std::size_t stretch, const BlockRange& range) const {
     const std::size_t last = stretches_.size() - 1;
-    return stretches_[std::min(stretch + 1, last)] >= range.least_stretch &&
-           stretches_[stretch == 0 ? 0 : stretch - 1] <= range.most_stretch;
+    return stretches_[std::min(stretch + 1, last)] >= range.min_stretch &&
+           stretches_[stretch == 0 ? 0 : stretch - 1] <= range.max_stretch;
   }
 
   void weigh(const StretchWarp& warp, int x, Buffers& buffers) const {
@@ -308,7 +308,7 @@ class Search {
 }  // namespace
 
 std::vector<double> stretches_of(const StretchOptions& options) {
-  const double most = (2 + options.most_gradient) / (2 - options.most_gradient);
+  const double most = (2 + options.max_gradient) / (2 - options.max_gradient);
   std::vector<double> stretches;
   const int half = options.stretches / 2;
   for (int k = -half; k <= half; ++k) {
@@ -321,7 +321,7 @@ std::vector<double> shears_of(const StretchOptions& options) {
   std::vector<double> shears;
   const int half = options.shears / 2;
   for (int k = -half; k <= half; ++k) {
-    shears.push_back(k == 0 ? 0 : options.most_shear * k / half);
+    shears.push_back(k == 0 ? 0 : options.max_shear * k / half);
   }
   return shears;
 }
@@ -344,9 +344,9 @@ StretchBlocks block_grid(int width_px,
   // Points above and to the left of a pixel.
   const auto stride = static_cast<std::size_t>(width_px + 1);
   std::vector<int> before(stride * static_cast<std::size_t>(height_px + 1));
-  const auto least_sine = static_cast<float>(std::sin(options.least_angle_rad));
+  const auto min_sine = static_cast<float>(std::sin(options.min_angle_rad));
   for (const EdgePoint& edge : left_edges) {
-    if (std::abs(edge.normal.x()) < least_sine) continue;
+    if (std::abs(edge.normal.x()) < min_sine) continue;
     before[static_cast<std::size_t>(edge.y + 1) * stride + static_cast<std::size_t>(edge.x + 1)]++;
   }
   for (std::size_t y = 1; y <= static_cast<std::size_t>(height_px); ++y) {
@@ -375,7 +375,7 @@ void search_blocks(const RectifiedPair& pair,
                    const std::vector<BlockRange>& ranges,
                    const StretchOptions& options,
                    StretchBlocks& blocks) {
-  const Search search(pair, options);
+  const StretchSearch search(pair, options);
   constexpr int rows_at_once = 24;
   const int bands = (blocks.rows + rows_at_once - 1) / rows_at_once;
   for_each_index(static_cast<std::size_t>(bands), options.threads, [&](std::size_t band) {

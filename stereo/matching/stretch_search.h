@@ -18,11 +18,11 @@ StretchBlocks block_grid(int width_px,
                          const std::vector<EdgePoint>& left_edges,
                          const StretchOptions& options);
 
-/// What a block is searched for: disparities, and stretches from the one before `least_stretch` to
-/// the one after `most_stretch`.
+/// What a block is searched for: disparities, and stretches from the one before `min_stretch` to
+/// the one after `max_stretch`.
 struct BlockRange {
   DisparityRange disparities;
-  float least_stretch = 0, most_stretch = std::numeric_limits<float>::infinity();
+  float min_stretch = 0, max_stretch = std::numeric_limits<float>::infinity();
 };
 
 /// Finds the best disparity, stretch and shear of every block with edges enough among those of its

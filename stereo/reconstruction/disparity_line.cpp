@@ -13,12 +13,12 @@ namespace {
 
 using Samples = std::span<const DisparitySample>;
 
-constexpr int most_apart = 3;        // samples in a row that disagree within one line
-constexpr int most_candidates = 32;  // ends of lines that are tried
-constexpr int most_rounds = 10;
+constexpr int max_apart = 3;        // samples in a row that disagree within one line
+constexpr int max_candidates = 32;  // ends of lines that are tried
+constexpr int max_line_rounds = 10;
 
 /// A line of two numbers, and the run of samples on it.
-struct Candidate {
+struct LineCandidate {
   double at_px = 0, value_px = 0, slope = 0;
   std::vector<int> run;
 
@@ -28,12 +28,12 @@ struct Candidate {
 };
 
 /// The longest run of samples on the line without more than a few others in a row.
-std::vector<int> longest_run(const Candidate& line, Samples samples, double most_off_sigma) {
+std::vector<int> longest_run(const LineCandidate& line, Samples samples, double max_off_sigma) {
   std::vector<int> best, run;
   for (int i = 0; i < static_cast<int>(samples.size()); ++i) {
     const DisparitySample& s = samples[static_cast<std::size_t>(i)];
-    if (std::abs(line.off(s)) > most_off_sigma * s.sigma_px) continue;
-    if (!run.empty() && i - run.back() > most_apart + 1) {
+    if (std::abs(line.off(s)) > max_off_sigma * s.sigma_px) continue;
+    if (!run.empty() && i - run.back() > max_apart + 1) {
       if (run.size() > best.size()) best = run;
       run.clear();
     }
@@ -43,19 +43,19 @@ std::vector<int> longest_run(const Candidate& line, Samples samples, double most
 }
 
 /// Through pairs of samples, the one with the longest run.
-Candidate consensus(Samples samples, const DisparityLineOptions& options) {
+LineCandidate consensus(Samples samples, const DisparityLineOptions& options) {
   const std::size_t n = samples.size();
-  const std::size_t step = std::max<std::size_t>(1, (n + most_candidates - 1) / most_candidates);
-  Candidate best;
+  const std::size_t step = std::max<std::size_t>(1, (n + max_candidates - 1) / max_candidates);
+  LineCandidate best;
   for (std::size_t i = 0; i < n; i += step) {
     for (std::size_t j = i + 1; j < n; j += step) {
       const double apart = samples[j].along_px - samples[i].along_px;
       if (!(apart > 1)) continue;
-      Candidate line{samples[i].along_px,
-                     samples[i].disparity_px,
-                     (samples[j].disparity_px - samples[i].disparity_px) / apart,
-                     {}};
-      line.run = longest_run(line, samples, options.most_off_sigma);
+      LineCandidate line{samples[i].along_px,
+                         samples[i].disparity_px,
+                         (samples[j].disparity_px - samples[i].disparity_px) / apart,
+                         {}};
+      line.run = longest_run(line, samples, options.max_off_sigma);
       if (line.run.size() > best.run.size()) best = std::move(line);
     }
   }
@@ -131,13 +131,13 @@ DisparityLine fitted(Samples samples, const std::vector<int>& run, const Dispari
 void append(Samples samples,
             const DisparityLineOptions& options,
             std::vector<DisparityLine>& lines) {
-  const auto least = static_cast<std::size_t>(options.least_points);
+  const auto least = static_cast<std::size_t>(options.min_points);
   if (samples.size() < least) return;
-  Candidate line = consensus(samples, options);
-  for (int round = 0; round < most_rounds && line.run.size() >= least; ++round) {
+  LineCandidate line = consensus(samples, options);
+  for (int round = 0; round < max_line_rounds && line.run.size() >= least; ++round) {
     const Regression r(samples, line.run);
-    Candidate next{r.centre, r.mean, r.slope, {}};
-    next.run = longest_run(next, samples, options.most_off_sigma);
+    LineCandidate next{r.centre, r.mean, r.slope, {}};
+    next.run = longest_run(next, samples, options.max_off_sigma);
     const bool settled = next.run == line.run;
     line = std::move(next);
     if (settled) break;

@@ -17,8 +17,8 @@ struct DisparitySample {
 };
 
 struct DisparityLineOptions {
-  int least_points = 6;
-  double most_off_sigma = 3;
+  int min_points = 6;
+  double max_off_sigma = 3;
   double noise_length_px = 8;   ///< over which noise is shared: falls to 0 linearly
   double floor_length_px = 30;  ///< over which the shared part is
 };
@@ -42,7 +42,7 @@ struct DisparityLine {
 };
 
 /// The lines that the samples of one edge, in their order along it, are on: each of at least
-/// `least_points` of them with hardly any other between.
+/// `min_points` of them with hardly any other between.
 std::vector<DisparityLine> disparity_lines(const std::vector<DisparitySample>& samples,
                                            const DisparityLineOptions& options);
 

@@ -30,7 +30,7 @@ constexpr double patch_width_px = 9,
 /// Covariance of a disparity and its edge's place along the row, by the variance of that place:
 /// 0.85 ± 0.07 measured on rendered edges; 1 if the place were found as well as can be.
 constexpr double moved_alike = 0.85;
-constexpr double most_moved_alike = 0.95;  // of what leaves the covariance positive
+constexpr double max_moved_alike = 0.95;  // of what leaves the covariance positive
 
 /// One segment with what is known of its points.
 struct Edge {
@@ -70,14 +70,17 @@ std::vector<DisparitySample> samples_of(const Edge& edge,
 }
 
 /// One end of a part: its place along the segment and in the image.
-struct End {
+struct SegmentEnd {
   double along_px = 0;
   Vector2d place;
   Matrix2d covariance;
   bool own = true;  ///< the segment's
 };
 
-End end_of(const Edge& edge, bool is_a, double outermost_px, const SegmentDisparityOptions& o) {
+SegmentEnd end_of(const Edge& edge,
+                  bool is_a,
+                  double outermost_px,
+                  const SegmentDisparityOptions& o) {
   const EdgeSegment& s = edge.segment;
   const double own = is_a ? 0 : edge.length_px;
   if (std::abs(own - outermost_px) <= o.reach_px) {
@@ -95,10 +98,15 @@ End end_of(const Edge& edge, bool is_a, double outermost_px, const SegmentDispar
 /// The covariance of both ends' places and disparities (stereo/reconstruction/segment_disparity.h).
 class EndCovariance {
  public:
-  EndCovariance(const Edge& edge, const DisparityLine& line, const End& a, const End& b)
+  EndCovariance(const Edge& edge,
+                const DisparityLine& line,
+                const SegmentEnd& a,
+                const SegmentEnd& b)
       : t_(edge.line.direction), slope_(line.slope()) {
     const Vector2d& n = edge.line.normal;
-    const auto row = [&](const End& end) { return Vector2d(1, edge.from_centroid(end.along_px)); };
+    const auto row = [&](const SegmentEnd& end) {
+      return Vector2d(1, edge.from_centroid(end.along_px));
+    };
     across_ << row(a), row(b);
     across_ = (across_.transpose() * edge.line.covariance * across_).eval();
     disparity_ << line.covariance_of(a.along_px, a.along_px),
@@ -134,7 +142,7 @@ class EndCovariance {
     const Matrix2d root = across_.llt().matrixL();
     const Matrix2d inverse = root.inverse();
     const Eigen::SelfAdjointEigenSolver<Matrix2d> ratio(inverse * disparity_ * inverse.transpose());
-    const double most = most_moved_alike * std::sqrt(std::max(0.0, ratio.eigenvalues()[0]));
+    const double most = max_moved_alike * std::sqrt(std::max(0.0, ratio.eigenvalues()[0]));
     return std::isfinite(most) ? std::min(moved_alike / n_x, most) : 0;
   }
 
@@ -149,8 +157,8 @@ class EndCovariance {
 SegmentDisparity part_of(const Edge& edge,
                          const DisparityLine& line,
                          const SegmentDisparityOptions& options) {
-  const End a = end_of(edge, true, line.samples.front().along_px, options);
-  const End b = end_of(edge, false, line.samples.back().along_px, options);
+  const SegmentEnd a = end_of(edge, true, line.samples.front().along_px, options);
+  const SegmentEnd b = end_of(edge, false, line.samples.back().along_px, options);
   SegmentDisparity part;
   part.is_part = !a.own || !b.own;
   part.left_px = {a.place, b.place};
@@ -167,7 +175,7 @@ SegmentDisparity part_of(const Edge& edge,
 
 DisparityLineOptions line_options(const Edge& edge, const SegmentDisparityOptions& o) {
   const Vector2d t = edge.line.direction.cwiseAbs();
-  return {o.least_points, o.most_off_sigma,
+  return {o.min_points, o.max_off_sigma,
           std::min(patch_height_px / std::max(t.y(), 1e-9), patch_width_px / std::max(t.x(), 1e-9)),
           o.floor_length_px};
 }
@@ -181,17 +189,17 @@ std::vector<SegmentDisparity> parts_of(const std::vector<EdgePoint>& edges,
   refused.left_px = segment.segment;
   refused.edge_points = static_cast<int>(segment.points.size());
   const Vector2d along = segment.segment.b_px - segment.segment.a_px;
-  if (std::abs(along.y()) < std::sin(options.least_angle_rad) * along.norm()) {
+  if (std::abs(along.y()) < std::sin(options.min_angle_rad) * along.norm()) {
     refused.status = SegmentStatus::along_row;
     return {refused};
   }
   const Edge edge(edges, segment, options.scale_px);
   const auto samples = samples_of(edge, disparities, options);
   std::vector<SegmentDisparity> parts;
-  bool sparse = static_cast<int>(samples.size()) < options.least_points;
+  bool sparse = static_cast<int>(samples.size()) < options.min_points;
   for (const DisparityLine& line : disparity_lines(samples, line_options(edge, options))) {
     SegmentDisparity part = part_of(edge, line, options);
-    if (static_cast<double>(part.points.size()) < options.least_share * part.edge_points) {
+    if (static_cast<double>(part.points.size()) < options.min_share * part.edge_points) {
       sparse = true;
       continue;
     }
@@ -217,9 +225,9 @@ void check(const std::vector<EdgePoint>& edges,
                   "give the edges that the segments are of");
     }
   }
-  if (o.least_points < 3 || !(o.least_share >= 0) || !(o.most_off_sigma > 0) ||
-      !(o.reach_px >= 0) || !(o.end_sigma_px > 0) || !(o.unstated_sigma_px > 0) ||
-      !(o.floor_px >= 0) || !(o.floor_length_px > 0) || !(o.scale_px > 0)) {
+  if (o.min_points < 3 || !(o.min_share >= 0) || !(o.max_off_sigma > 0) || !(o.reach_px >= 0) ||
+      !(o.end_sigma_px > 0) || !(o.unstated_sigma_px > 0) || !(o.floor_px >= 0) ||
+      !(o.floor_length_px > 0) || !(o.scale_px > 0)) {
     throw Error(place, "an option is out of its range",
                 "ask for 3 points or more, and deviations and lengths above 0");
   }

@@ -14,16 +14,16 @@
 namespace vernier::stereo::internal {
 
 struct SegmentDisparityOptions {
-  double least_angle_rad = 0.0873;  ///< segments nearer to the row (5°) are refused
-  int least_points = 6;             ///< matched points that agree on one line
-  double least_share = 0.5;         ///< of them among a part's edge points
-  double most_off_sigma = 3;        ///< farther from the line a point disagrees
-  double reach_px = 8;              ///< beyond its agreeing points no part goes on further …
-  double end_sigma_px = 3;          ///< … and an end that is put there is known so along the line
-  double unstated_sigma_px = 0.5;   ///< of disparities whose matcher states none
-  double floor_px = 0.2;            ///< part of the stated σ that is no noise but the scene's …
-  double floor_length_px = 30;      ///< … and shared along an edge as exp(−distance / this)
-  double scale_px = 1;              ///< of canny_edges
+  double min_angle_rad = 0.0873;   ///< segments nearer to the row (5°) are refused
+  int min_points = 6;              ///< matched points that agree on one line
+  double min_share = 0.5;          ///< of them among a part's edge points
+  double max_off_sigma = 3;        ///< farther from the line a point disagrees
+  double reach_px = 8;             ///< beyond its agreeing points no part goes on further …
+  double end_sigma_px = 3;         ///< … and an end that is put there is known so along the line
+  double unstated_sigma_px = 0.5;  ///< of disparities whose matcher states none
+  double floor_px = 0.2;           ///< part of the stated σ that is no noise but the scene's …
+  double floor_length_px = 30;     ///< … and shared along an edge as exp(−distance / this)
+  double scale_px = 1;             ///< of canny_edges
 };
 
 /// What became of a segment.
@@ -64,7 +64,7 @@ struct SegmentDisparity {
 ///
 ///     d(s) = d_0 + d_1 s
 ///
-/// The line that most matched points in a row are on, within `most_off_sigma`, is found over pairs
+/// The line that most matched points in a row are on, within `max_off_sigma`, is found over pairs
 /// of them; then d_0 and d_1 by least squares of weights 1 / σ². What is left on either side is
 /// tried again, so that a segment over two surfaces is split. With H the regression its covariance
 /// is

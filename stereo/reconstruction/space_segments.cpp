@@ -25,7 +25,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 void check(const SpaceSegmentOptions& o) {
-  if (o.max_depth_m > 0 && o.most_relative > 0) return;
+  if (o.max_depth_m > 0 && o.max_relative > 0) return;
   throw Error("space segments", "an option is not above 0", "give a depth and a share above 0");
 }
 
@@ -69,7 +69,7 @@ void judge(MeasuredSegment& s, const SpaceSegmentOptions& options) {
   const Matrix6d C = s.covariance_m2();
   s.relative_sigma =
       std::max(std::sqrt(C(2, 2)) / s.segment.a_m.z(), std::sqrt(C(5, 5)) / s.segment.b_m.z());
-  s.linear = s.relative_sigma <= options.most_relative;
+  s.linear = s.relative_sigma <= options.max_relative;
 }
 
 SegmentStatus status_of(const SegmentDisparity& s) {

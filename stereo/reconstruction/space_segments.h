@@ -14,8 +14,8 @@
 namespace vernier::stereo::internal {
 
 struct SpaceSegmentOptions {
-  double max_depth_m = 30;     ///< beyond it a segment is marked unreliable (stereo/segment.h)
-  double most_relative = 0.1;  ///< σ_z / z of an end above which its covariance is doubtful
+  double max_depth_m = 30;    ///< beyond it a segment is marked unreliable (stereo/segment.h)
+  double max_relative = 0.1;  ///< σ_z / z of an end above which its covariance is doubtful
 };
 
 /// A segment in space with what is known of it: both end points, a over b, in metres in the left

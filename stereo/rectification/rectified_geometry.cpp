@@ -31,16 +31,15 @@ constexpr double same_ray = 1e-6;                   // of rays that are one
 
 void check(const RectifiedGeometryOptions& o) {
   const bool size = (o.size_px.array() == 0).all() || (o.size_px.array() > 0).all();
-  if (size && o.f_px >= 0 && std::isfinite(o.f_px) && o.most_blank >= 0 && o.least_zoom > 0 &&
-      o.most_zoom >= o.least_zoom && std::isfinite(o.most_zoom)) {
+  if (size && o.f_px >= 0 && std::isfinite(o.f_px) && o.max_blank >= 0 && o.min_zoom > 0 &&
+      o.max_zoom >= o.min_zoom && std::isfinite(o.max_zoom)) {
     return;
   }
-  throw Error(
-      "rectification",
-      fmt::format("an image of {}x{} px, a focal length of {} px, a share of blank pixels "
-                  "of {} and zooms from {} to {}",
-                  o.size_px[0], o.size_px[1], o.f_px, o.most_blank, o.least_zoom, o.most_zoom),
-      "give sizes and focal lengths above 0, or 0 to have them chosen");
+  throw Error("rectification",
+              fmt::format("an image of {}x{} px, a focal length of {} px, a share of blank pixels "
+                          "of {} and zooms from {} to {}",
+                          o.size_px[0], o.size_px[1], o.f_px, o.max_blank, o.min_zoom, o.max_zoom),
+              "give sizes and focal lengths above 0, or 0 to have them chosen");
 }
 
 /// Where the middle of the image goes on the rectified camera's plane z = 1; its own optical axis
@@ -90,7 +89,7 @@ double blank_share(const Rig& rig, const RectifiedGeometry& geometry) {
 
 /// Least norm of the rays (x / z, y / z) of a camera's outermost pixels; 0 where one has none or
 /// the optical axis is not in the image.
-double least_border_radius(const Camera& camera) {
+double min_border_radius(const Camera& camera) {
   const Eigen::Vector2d last = (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
   if (!in_image(camera, {camera.ox_px(), camera.oy_px()})) return 0;
   double least = std::numeric_limits<double>::infinity();
@@ -114,7 +113,7 @@ RawPixels::RawPixels(const Rig& rig, const RectifiedGeometry& geometry, int came
       R_camera_rectified_(turn_of(geometry, camera).transpose()),
       f_px_(geometry.f_px),
       centre_px_(geometry.centre_px),
-      sure_radius_(least_border_radius(camera_)) {}
+      sure_radius_(min_border_radius(camera_)) {}
 
 std::optional<Eigen::Vector2d> RawPixels::at(const Eigen::Vector2d& rectified_px) const {
   const Eigen::Vector2d x = (rectified_px - centre_px_) / f_px_;
@@ -151,8 +150,8 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
   if (options.f_px > 0) return at(options.f_px);
 
   const double mean = 0.5 * (rig.cameras[0].f_px() + rig.cameras[1].f_px());
-  double wide = options.least_zoom * mean, narrow = options.most_zoom * mean;
-  const auto is_full = [&](double f) { return blank_share(rig, at(f)) <= options.most_blank; };
+  double wide = options.min_zoom * mean, narrow = options.max_zoom * mean;
+  const auto is_full = [&](double f) { return blank_share(rig, at(f)) <= options.max_blank; };
   if (is_full(mean) && nearly_mean * mean > wide && !is_full(nearly_mean * mean)) return at(mean);
   if (is_full(wide)) return at(wide);
   if (!is_full(narrow)) return at(narrow);
@@ -163,7 +162,7 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
   return at(narrow);
 }
 
-std::optional<RectifiedGeometry> geometry_as_it_stands(const Rig& rig) {
+std::optional<RectifiedGeometry> geometry_of_rectified_rig(const Rig& rig) {
   if (rig.cameras.size() != 2) return std::nullopt;
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
   for (const Camera& camera : rig.cameras) {

@@ -31,10 +31,10 @@ constexpr int half_px = 4;            // of patches searched, at half size
 constexpr int aligned_half_px = 5;    // of patches aligned, at full size
 constexpr double smoothing_px = 0.8;  // against the aliasing of sharp images, which draws
                                       // alignments towards whole pixels: 0.05 px became 0.02
-constexpr double least_found = 0.7;   // ZNCC at half size
-constexpr double least_margin = 0.05;
-constexpr double most_shift_px = 2;  // of the alignment, from twice the half-size peak
-constexpr int least_side_px = 48;    // of an image; one that is smaller has no matches
+constexpr double min_found = 0.7;     // ZNCC at half size
+constexpr double min_margin = 0.05;
+constexpr double max_shift_px = 2;  // of the alignment, from twice the half-size peak
+constexpr int min_side_px = 48;     // of an image; one that is smaller has no matches
 
 void check(const RectifiedPair& pair,
            const DisparityRange& range,
@@ -56,9 +56,8 @@ void check(const RectifiedPair& pair,
                             image->values.size()),
                 "give a value a pixel");
   }
-  if (range.least_px > range.most_px) {
-    throw Error(place,
-                fmt::format("no disparity is from {} to {} px", range.least_px, range.most_px),
+  if (range.min_px > range.max_px) {
+    throw Error(place, fmt::format("no disparity is from {} to {} px", range.min_px, range.max_px),
                 "give the smaller one first");
   }
   if (options.band_px < 1 || options.band_px > 10 || options.corners < 1) {
@@ -88,32 +87,32 @@ cv::Point pixel_of(const ImageCorner& corner) {
 }
 
 /// Both images at full size, smoothed, and a search in each at half its size.
-struct Search {
+struct FieldSearch {
   cv::Mat half_left, half_right, left, right;
   PatchSearch in_left, in_right;
-  int least_x, most_x, rows;  ///< half-size pixels: disparities, and rows of the band
+  int min_x, max_x, rows;  ///< half-size pixels: disparities, and rows of the band
 
-  Search(const RectifiedPair& pair, const DisparityRange& range, int band_px)
+  FieldSearch(const RectifiedPair& pair, const DisparityRange& range, int band_px)
       : half_left(halved(matrix_of(pair.left))),
         half_right(halved(matrix_of(pair.right))),
         left(smoothed(matrix_of(pair.left))),
         right(smoothed(matrix_of(pair.right))),
         in_left(half_left, half_px),
         in_right(half_right, half_px),
-        least_x(static_cast<int>(std::floor(0.5 * range.least_px)) - 1),
-        most_x(static_cast<int>(std::ceil(0.5 * range.most_px)) + 1),
+        min_x(static_cast<int>(std::floor(0.5 * range.min_px)) - 1),
+        max_x(static_cast<int>(std::ceil(0.5 * range.max_px)) + 1),
         rows((band_px + 1) / 2) {}
 
   /// The half-size place of a half-size left pixel in the right image, if it stands out and the
   /// way back leads to the pixel.
-  std::optional<Eigen::Vector2d> place_of(cv::Point p) {
+  std::optional<Eigen::Vector2d> view_label(cv::Point p) {
     const auto there =
-        in_right.find(half_left, p, {p.x - most_x, p.x - least_x, p.y - rows, p.y + rows});
-    if (!there || there->score < least_found) return std::nullopt;
-    if (there->second > there->score - least_margin) return std::nullopt;
+        in_right.find(half_left, p, {p.x - max_x, p.x - min_x, p.y - rows, p.y + rows});
+    if (!there || there->score < min_found) return std::nullopt;
+    if (there->second > there->score - min_margin) return std::nullopt;
     const cv::Point q = there->pixel;
     const auto back =
-        in_left.find(half_right, q, {q.x + least_x, q.x + most_x, q.y - rows, q.y + rows});
+        in_left.find(half_right, q, {q.x + min_x, q.x + max_x, q.y - rows, q.y + rows});
     if (!back || std::abs(back->pixel.x - p.x) > 1 || std::abs(back->pixel.y - p.y) > 1) {
       return std::nullopt;
     }
@@ -121,20 +120,20 @@ struct Search {
   }
 };
 
-std::vector<RowOffset> row_offsets(Search& search,
-                                   const std::vector<ImageCorner>& corners,
-                                   const VerticalFieldOptions& options) {
-  std::vector<RowOffset> offsets;
+std::vector<VerticalOffset> row_offsets(FieldSearch& search,
+                                        const std::vector<ImageCorner>& corners,
+                                        const VerticalFieldOptions& options) {
+  std::vector<VerticalOffset> offsets;
   for (const ImageCorner& corner : corners) {
     const cv::Point p = pixel_of(corner);
-    const auto place = search.place_of(p);
+    const auto place = search.view_label(p);
     if (!place) continue;
     // A whole left pixel half a pixel beside the patch's centre: its values need no interpolation.
     const Eigen::Vector2d left_px(2 * p.x + 1, 2 * p.y + 1);
     const Eigen::Vector2d right_px = 2 * *place + Eigen::Vector2d(1, 1);
     const auto aligned = align_patch(search.left, search.right, left_px, right_px, {1, 0},
-                                     {.half_px = aligned_half_px, .most_shift_px = most_shift_px});
-    if (!aligned || aligned->score < options.least_score) continue;
+                                     {.half_px = aligned_half_px, .max_shift_px = max_shift_px});
+    if (!aligned || aligned->score < options.min_score) continue;
     const double dy = aligned->right_px.y() - left_px.y();
     if (std::abs(dy) > options.band_px + 0.5) continue;
     offsets.push_back(
@@ -187,8 +186,8 @@ VerticalField found_field(const RectifiedPair& pair,
                           const VerticalFieldOptions& options) {
   check(pair, range, options);
   const Eigen::Vector2i size(pair.left.width_px, pair.left.height_px);
-  if (size.minCoeff() < least_side_px) return fit_vertical_field({}, 0, size, options);
-  Search search(pair, range, options.band_px);
+  if (size.minCoeff() < min_side_px) return fit_vertical_field({}, 0, size, options);
+  FieldSearch search(pair, range, options.band_px);
   const int cells = std::max(1, static_cast<int>(std::sqrt(options.corners / corners_a_cell)));
   auto corners = harris_corners(search.half_left, 0,
                                 {.count = options.corners, .cells = cells, .border_px = border_px});
@@ -247,7 +246,7 @@ std::string describe(const VerticalField& field) {
                         : "");
 }
 
-GreyLevels repaired_right(const GreyLevels& right, const VerticalField& field) {
+GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field) {
   if (right.width_px != field.width_px || right.height_px != field.height_px) {
     throw Error("vertical field",
                 fmt::format("it is of {}x{} px, the image is {}x{} px", field.width_px,

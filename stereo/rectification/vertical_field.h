@@ -12,10 +12,10 @@
 namespace vernier::stereo::internal {
 
 struct VerticalFieldOptions {
-  int band_px = 5;           ///< rows above and below that are searched, 1 to 10
-  int corners = 98;          ///< of the left image, spread evenly over it
-  double least_score = 0.8;  ///< ZNCC of aligned patches
-  double worth_px = 0.1;     ///< a field that is nowhere larger is not worth a repair
+  int band_px = 5;                 ///< rows above and below that are searched, 1 to 10
+  int corners = 98;                ///< of the left image, spread evenly over it
+  double min_score = 0.8;          ///< ZNCC of aligned patches
+  double min_correction_px = 0.1;  ///< a field that is nowhere larger is not worth a repair
 };
 
 /// How much lower the right image of a pair lies than the left one, px:
@@ -76,6 +76,6 @@ std::string describe(const VerticalField& field);
 /// The right image with the field taken away: its value at (x, y + dy(x, y)), by cubic convolution
 /// (Keys 1981, a = −1/2) along the column. As it is where the field is not significant; beyond the
 /// border, its outermost rows'. Throws Error on an image of another size than the field's.
-GreyLevels repaired_right(const GreyLevels& right, const VerticalField& field);
+GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field);
 
 }  // namespace vernier::stereo::internal

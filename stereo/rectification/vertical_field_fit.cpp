@@ -23,21 +23,21 @@ using Eigen::Matrix3d;
 using Eigen::RowVector3d;
 using Eigen::Vector3d;
 
-constexpr int triples = 150;         // half the matches wrong: none is all right with 2e-9
-constexpr double near_px = 0.4;      // of a triple's field; a match beyond costs no more
-constexpr double tukey = 4.685;      // 95 % efficient for normal errors
-constexpr double floor_px = 0.05;    // added to what alignments say of themselves
-constexpr double least_scale = 0.3;  // which equal matches would bring to 0
-constexpr int most_rounds = 50;
-constexpr double settled_px = 1e-6;
-constexpr int least_fitted = 12;  // matches: four a coefficient …
-constexpr int least_used = 20;    // … that must agree: among fewer a wrong one bends the field
-constexpr double least_share = 0.35;    // of the matches, that agree
-constexpr double most_residual_px = 1;  // of these
-constexpr double widest_sd_px = 0.5;    // of dy anywhere in the image
-constexpr int plenty = 40;              // corners of which …
-constexpr double hardly_any = 0.1;      // … no more match where the images do not belong together
-constexpr double chi2_3_999 = 16.266;   // 99.9 % of χ² with three degrees of freedom
+constexpr int triples = 150;       // half the matches wrong: none is all right with 2e-9
+constexpr double near_px = 0.4;    // of a triple's field; a match beyond costs no more
+constexpr double tukey = 4.685;    // 95 % efficient for normal errors
+constexpr double floor_px = 0.05;  // added to what alignments say of themselves
+constexpr double min_scale = 0.3;  // which equal matches would bring to 0
+constexpr int max_fit_rounds = 50;
+constexpr double converged_px = 1e-6;
+constexpr int min_fitted = 12;      // matches: four a coefficient …
+constexpr int min_used = 20;        // … that must agree: among fewer a wrong one bends the field
+constexpr double min_share = 0.35;  // of the matches, that agree
+constexpr double max_residual_px = 1;  // of these
+constexpr double widest_sd_px = 0.5;   // of dy anywhere in the image
+constexpr int plenty = 40;             // corners of which …
+constexpr double hardly_any = 0.1;     // … no more match where the images do not belong together
+constexpr double chi2_3_999 = 16.266;  // 99.9 % of χ² with three degrees of freedom
 
 struct Problem {
   Eigen::Matrix<double, Eigen::Dynamic, 3> X;
@@ -55,14 +55,14 @@ RowVector3d row_at(const Eigen::Vector2d& at_px, const Eigen::Vector2i& size_px)
   return {1, from_middle.x(), from_middle.y()};
 }
 
-Problem problem_of(const std::vector<RowOffset>& offsets, const Eigen::Vector2i& size_px) {
+Problem problem_of(const std::vector<VerticalOffset>& offsets, const Eigen::Vector2i& size_px) {
   Problem problem;
   const auto n = static_cast<Eigen::Index>(offsets.size());
   problem.X.resize(n, 3);
   problem.dy.resize(n);
   problem.inverse_sigma.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const RowOffset& o = offsets[static_cast<std::size_t>(i)];
+    const VerticalOffset& o = offsets[static_cast<std::size_t>(i)];
     problem.X.row(i) = row_at(o.at_px, size_px);
     problem.dy[i] = o.dy_px;
     problem.inverse_sigma[i] = 1 / std::hypot(o.sigma_px, floor_px);
@@ -83,7 +83,7 @@ Vector3d best_triple(const Problem& problem) {
     return (problem.dy - problem.X * p).cwiseAbs().cwiseMin(near_px).squaredNorm();
   };
   double least = cost_of(best);
-  Draws draws({.seed = 1, .source = static_cast<std::uint32_t>(DrawSource::vertical_field)});
+  RandomStream draws({.seed = 1, .source = static_cast<std::uint32_t>(DrawSource::vertical_field)});
   const auto n = static_cast<std::uint32_t>(problem.dy.size());
   for (int i = 0; i < triples; ++i) {
     Matrix3d X;
@@ -105,7 +105,7 @@ Vector3d best_triple(const Problem& problem) {
 }
 
 double robust_scale(const Eigen::VectorXd& residuals) {
-  return std::max(least_scale, 1.4826 * median(residuals.cwiseAbs()));
+  return std::max(min_scale, 1.4826 * median(residuals.cwiseAbs()));
 }
 
 struct Fit {
@@ -125,7 +125,7 @@ Eigen::VectorXd tukey_weights(const Eigen::VectorXd& residuals, double scale) {
 Fit reweighted(const Problem& problem, const Vector3d& start) {
   Fit fit{start};
   fit.scale = robust_scale(problem.scaled_residuals(start));
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_fit_rounds; ++round) {
     const Eigen::VectorXd r = problem.scaled_residuals(fit.p);
     fit.scale = robust_scale(r);
     const Eigen::VectorXd w =
@@ -136,7 +136,7 @@ Fit reweighted(const Problem& problem, const Vector3d& start) {
     const Vector3d p = N.inverse() * (problem.X.transpose() * w.cwiseProduct(problem.dy));
     const double moved = (p - fit.p).cwiseAbs().maxCoeff();
     fit.p = p;
-    if (moved < settled_px) break;
+    if (moved < converged_px) break;
   }
   return fit;
 }
@@ -178,11 +178,11 @@ void judge(VerticalField& field, const VerticalFieldOptions& options) {
   }
   const double largest = field.largest_px();
   const bool agree =
-      field.used >= least_share * field.matched && field.residual_px <= most_residual_px;
-  field.known = agree && field.used >= least_used && widest <= widest_sd_px;
+      field.used >= min_share * field.matched && field.residual_px <= max_residual_px;
+  field.known = agree && field.used >= min_used && widest <= widest_sd_px;
   const double chi2 =
       field.coefficients_px.dot(field.covariance_px2.inverse() * field.coefficients_px);
-  field.significant = field.known && chi2 > chi2_3_999 && largest > options.worth_px;
+  field.significant = field.known && chi2 > chi2_3_999 && largest > options.min_correction_px;
   field.unrectified = !agree || largest > options.band_px;
 }
 
@@ -196,7 +196,7 @@ double VerticalField::largest_px() const {
   return largest;
 }
 
-VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
+VerticalField fit_vertical_field(const std::vector<VerticalOffset>& offsets,
                                  int corners,
                                  const Eigen::Vector2i& size_px,
                                  const VerticalFieldOptions& options) {
@@ -207,7 +207,7 @@ VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
   field.corners = corners;
   field.matched = static_cast<int>(offsets.size());
   field.unrectified = corners >= plenty && field.matched <= hardly_any * corners;
-  if (field.matched < least_fitted) return field;
+  if (field.matched < min_fitted) return field;
   const Problem problem = problem_of(offsets, size_px);
   const Fit fit = reweighted(problem, best_triple(problem));
   if (!fit.holds) return field;

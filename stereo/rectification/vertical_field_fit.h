@@ -10,14 +10,14 @@
 namespace vernier::stereo::internal {
 
 /// A match: the right image has it `dy_px` lower than the left one.
-struct RowOffset {
+struct VerticalOffset {
   Eigen::Vector2d at_px;  ///< the right column and the left row
   double dy_px = 0;
   double sigma_px = 0;  ///< of dy, as its alignment says
 };
 
 /// Step 3 of vertical_field(), from the matches of `corners` corners of images of a size.
-VerticalField fit_vertical_field(const std::vector<RowOffset>& offsets,
+VerticalField fit_vertical_field(const std::vector<VerticalOffset>& offsets,
                                  int corners,
                                  const Eigen::Vector2i& size_px,
                                  const VerticalFieldOptions& options = {});

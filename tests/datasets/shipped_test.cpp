@@ -32,7 +32,7 @@ TEST(Workshop, IsOfTheMemosSize) {
   EXPECT_GE(repeated_share(world), 0.4);
   const WorldExtent box = extent(world);
   EXPECT_LT((box.high_m - box.low_m - Eigen::Vector3d(20, 15, 2.5)).norm(), 1e-6);
-  EXPECT_GT(map_places(world.route, 0.5).size(), 150u);
+  EXPECT_GT(map_poses(world.route, 0.5).size(), 150u);
 }
 
 /// Largest difference of two covariances' entries over the deviations that the second one states.

@@ -16,7 +16,7 @@ namespace {
 
 TEST(Align, FindsAKnownMotion) {
   const auto room = test::random_room(12);
-  const PlanePose truth{0.35, -0.2, 0.21};
+  const Pose2D truth{0.35, -0.2, 0.21};
   const Alignment a = align({test::seen_from(room, truth), {}}, {room, {}});
   EXPECT_LT(distance_m(a.query_in_node, truth), 0.01);
   EXPECT_LT(std::abs(heading_difference_rad(a.query_in_node, truth)), 0.005);

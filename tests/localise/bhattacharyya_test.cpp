@@ -19,7 +19,7 @@ namespace {
 
 HistogramRows random_rows(std::uint64_t seed, int rows, int columns) {
   HistogramRows H(rows, columns);
-  Draws d({.seed = seed});
+  RandomStream d({.seed = seed});
   for (Eigen::Index i = 0; i < H.size(); ++i) H.data()[i] = static_cast<float>(d.uniform());
   for (int r = 0; r < rows; ++r) H.row(r).normalize();
   return H;

@@ -44,7 +44,7 @@ TEST(RankNodes, TheRoomItselfIsFirst) {
 TEST(PghLocaliser, AnswersWithNodeAndMetricPose) {
   const TopologicalMap map = ten_rooms();
   const auto localiser = make_localiser("pgh", map);
-  const PlanePose step{0.3, -0.2, 0.15};
+  const Pose2D step{0.3, -0.2, 0.15};
   const LocalisationAnswer answer =
       localiser->localise({test::seen_from(test::random_room(107), step), {}});
   EXPECT_EQ(answer.status, LocalisationStatus::answered);
@@ -75,7 +75,8 @@ TEST(BaselineLocaliser, FindsAnImageItHasSeen) {
   for (int i = 0; i < 6; ++i) {
     MapNode node{{10.0 * i, 0, 0}, {}};
     for (int k = 0; k < 25; ++k) {
-      Draws d({.seed = static_cast<std::uint64_t>(i), .feature = static_cast<std::uint32_t>(k)});
+      RandomStream d(
+          {.seed = static_cast<std::uint64_t>(i), .feature = static_cast<std::uint32_t>(k)});
       const Eigen::Vector2d a(d.uniform(0, 640), d.uniform(0, 480));
       node.view.image_lines.push_back(
           {a, a + Eigen::Vector2d(d.uniform(-80, 80), d.uniform(-80, 80))});

@@ -17,9 +17,9 @@ using namespace stereo;
 namespace {
 
 TEST(PlanePoses, DifferencesAndComposition) {
-  const PlanePose a{1, 2, 3.1}, b{1, 2, -3.1};
+  const Pose2D a{1, 2, 3.1}, b{1, 2, -3.1};
   EXPECT_NEAR(heading_difference_rad(a, b), 6.2 - 2 * std::numbers::pi, 1e-12);
-  const PlanePose c = compose({1, 0, std::numbers::pi / 2}, {2, 0, 0.1});
+  const Pose2D c = compose({1, 0, std::numbers::pi / 2}, {2, 0, 0.1});
   EXPECT_NEAR(c.x_m, 1, 1e-12);
   EXPECT_NEAR(c.y_m, 2, 1e-12);
 }
@@ -36,7 +36,7 @@ TEST(PlaceViews, NearlyUprightLinesBecomeUpright) {
   // camera frame: x right, y down, z forward; ends' depths differ within their error
   const SpaceSegment s{{0.5, -0.5, 3.0}, {0.5, 0.9, 3.1}, 0.05, true};
   const StereoSegment image{{{400, 150}, {402, 390}}, {}, 0};
-  const PlaceView view = place_view({&s, 1}, {&image, 1}, {1.2, 0});
+  const PlaceView view = select_lines({&s, 1}, {&image, 1}, {1.2, 0});
   ASSERT_EQ(view.lines.size(), 1u);
   EXPECT_EQ(view.lines[0].kind, LineKind::vertical);
   EXPECT_EQ(view.lines[0].a_m.x(), view.lines[0].b_m.x());
@@ -48,7 +48,7 @@ TEST(PlaceViews, UnreliableAndFarLinesAreLeftOut) {
                               {{0, 0, 3}, {0, 1, 3}, 0.9, true},
                               {{0, 0, 20}, {0, 1, 20}, 0.1, true}};
   const StereoSegment images[3] = {};
-  const PlaceView view = place_view(bad, images, {});
+  const PlaceView view = select_lines(bad, images, {});
   EXPECT_TRUE(view.lines.empty());
   EXPECT_EQ(view.image_lines.size(), 3u);
 }

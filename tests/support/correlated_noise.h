@@ -17,9 +17,9 @@ inline void add_smooth_error(BoardObservations& observations,
                              std::uint64_t seed,
                              std::uint32_t trial) {
   for (BoardView& view : observations.views) {
-    Draws draws({.seed = seed,
-                 .trial = trial,
-                 .feature = static_cast<std::uint32_t>(view.frame * 4 + view.camera)});
+    RandomStream draws({.seed = seed,
+                        .trial = trial,
+                        .feature = static_cast<std::uint32_t>(view.frame * 4 + view.camera)});
     const Eigen::VectorXd u = draws.normals(6), v = draws.normals(6);
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
       const double x = (view.ids[i] % 9 - 4) / 4.0, y = (view.ids[i] / 9 - 2.5) / 2.5;

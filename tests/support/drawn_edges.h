@@ -12,7 +12,7 @@
 #include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/statistics/random.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "stereo/disparity_file.h"
 #include "stereo/edge_point.h"
@@ -70,9 +70,9 @@ struct PlaneBeforePair {
   }
 
   /// One edge of 26 to 34 px, any way round, and one corner in each square of 50 px.
-  Look look(std::uint32_t frame) const {
-    Draws draws({.seed = 77, .frame = frame});
-    Look seen;
+  NoiseFreeView look(std::uint32_t frame) const {
+    RandomStream draws({.seed = 77, .frame = frame});
+    NoiseFreeView seen;
     std::uint32_t feature = 1000 * frame;
     for (int y = 30; y + 30 < height_px; y += 50) {
       for (int x = 80; x + 30 < width_px; x += 50) {
@@ -80,7 +80,7 @@ struct PlaneBeforePair {
         const double angle = draws.uniform(0, 2 * M_PI);
         const Eigen::Vector2d half =
             0.5 * draws.uniform(26, 34) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-        SeenEdge edge;
+        VisibleEdge edge;
         edge.a_m = point(centre - half);
         edge.b_m = point(centre + half);
         edge.segment = static_cast<int>(++feature);
@@ -99,7 +99,7 @@ struct PlaneBeforePair {
 inline ImageEdges drawn_edges(const std::vector<ImageSegment>& lines,
                               const PlaneBeforePair& plane,
                               double noise_px,
-                              Draws& draws) {
+                              RandomStream& draws) {
   ImageEdges edges{plane.width_px, plane.height_px, {}, {}};
   for (const ImageSegment& line : lines) {
     const Eigen::Vector2d along = (line.b_px - line.a_px).normalized();
@@ -148,7 +148,7 @@ inline ImageEdges drawn_edges(const std::vector<ImageSegment>& lines,
 }
 
 /// The lines that one eye senses.
-inline std::vector<ImageSegment> lines_of(const StereoSighting& sighting, bool left) {
+inline std::vector<ImageSegment> lines_of(const StereoObservation& sighting, bool left) {
   std::vector<ImageSegment> lines;
   for (const StereoSegment& s : sighting.segments) lines.push_back(left ? s.left : s.right);
   return lines;

@@ -72,7 +72,7 @@ inline GreyLevels photographed(int width,
 }
 
 /// With white noise, rounded to whole grey levels from 0 to 255.
-inline GreyLevels with_noise(GreyLevels image, double sigma, Draws& draws) {
+inline GreyLevels with_noise(GreyLevels image, double sigma, RandomStream& draws) {
   for (float& value : image.values) {
     value = std::clamp(std::round(value + static_cast<float>(sigma * draws.normal())), 0.F, 255.F);
   }
@@ -94,7 +94,7 @@ struct ConvexPolygon {
 };
 
 /// Of three to six corners about `centre`, at 50 to 65 px from it.
-inline ConvexPolygon random_polygon(const Eigen::Vector2d& centre, Draws& draws) {
+inline ConvexPolygon random_polygon(const Eigen::Vector2d& centre, RandomStream& draws) {
   ConvexPolygon polygon;
   const int corners = 3 + static_cast<int>(draws.below(4));
   const double turn = draws.uniform(0, 2 * std::numbers::pi);

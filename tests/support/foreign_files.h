@@ -39,9 +39,9 @@ class Folder {
     return path_ / name;
   }
 
-  std::vector<std::filesystem::path> write(const std::vector<ForeignFile>& files) const {
+  std::vector<std::filesystem::path> write(const std::vector<ExportedFile>& files) const {
     std::vector<std::filesystem::path> written;
-    for (const ForeignFile& file : files) written.push_back(write(file.name.string(), file.text));
+    for (const ExportedFile& file : files) written.push_back(write(file.name.string(), file.text));
     return written;
   }
 

@@ -22,7 +22,7 @@ struct LeafPlane {
   int width_px = 320, height_px = 240;
   double disparity_px = 20, by_x = 0, by_y = 0;  ///< in the middle, and per left pixel
   double contrast = 60, noise = 2, point_spread_px = 0.8;
-  double least_radius_px = 4, most_radius_px = 30;
+  double min_radius_px = 4, max_radius_px = 30;
 
   double disparity_at(double x, double y) const {
     return disparity_px + by_x * (x - 0.5 * width_px) + by_y * (y - 0.5 * height_px);
@@ -32,7 +32,7 @@ struct LeafPlane {
 /// The leaves as they lie in the left image's plane, `fine` samples a pixel and margins about.
 class LeafTexture {
  public:
-  LeafTexture(const LeafPlane& plane, Draws& draws) {
+  LeafTexture(const LeafPlane& plane, RandomStream& draws) {
     texture_.create((plane.height_px + 2 * margin) * fine, (plane.width_px + 2 * wide) * fine,
                     CV_32F);
     texture_.setTo(128);
@@ -41,7 +41,7 @@ class LeafTexture {
     for (int i = 0; i < leaves; ++i) {
       const double share = std::pow(draws.uniform(), 3);
       const double radius =
-          plane.least_radius_px + (plane.most_radius_px - plane.least_radius_px) * share;
+          plane.min_radius_px + (plane.max_radius_px - plane.min_radius_px) * share;
       const double cx = draws.uniform() * texture_.cols, cy = draws.uniform() * texture_.rows;
       const int corners = 3 + static_cast<int>(4 * draws.uniform());
       const double turn = 2 * M_PI * draws.uniform();
@@ -75,7 +75,7 @@ class LeafTexture {
 /// The pair as two cameras see it: point spread and pixels as large as the raster's, noise, whole
 /// grey levels.
 inline RectifiedPair leaf_pair(const LeafPlane& plane, std::uint64_t seed) {
-  Draws draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+  RandomStream draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
   const LeafTexture texture(plane, draws);
   constexpr int fine = LeafTexture::fine;
   RectifiedPair pair;

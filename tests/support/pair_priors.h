@@ -21,17 +21,17 @@ inline Eigen::VectorXd datasheet_sd() {
 }
 
 /// That knowledge with its mean drawn about the truth.
-inline RigKnowledge datasheet(const Rig& truth,
-                              std::uint64_t seed,
-                              std::uint32_t trial,
-                              double scale = 1) {
+inline GaussianRigPrior datasheet(const Rig& truth,
+                                  std::uint64_t seed,
+                                  std::uint32_t trial,
+                                  double scale = 1) {
   const Eigen::VectorXd sd = scale * datasheet_sd();
-  Draws draws({.seed = seed,
-               .trial = trial,
-               .source = static_cast<std::uint32_t>(DrawSource::noisy_copy),
-               .frame = 1});
-  RigKnowledge known{retract(truth, sd.cwiseProduct(draws.normals(16))),
-                     {CovarianceKind::prior, parameter_names(truth), {}}};
+  RandomStream draws({.seed = seed,
+                      .trial = trial,
+                      .source = static_cast<std::uint32_t>(DrawSource::noisy_copy),
+                      .frame = 1});
+  GaussianRigPrior known{retract(truth, sd.cwiseProduct(draws.normals(16))),
+                         {CovarianceKind::prior, parameter_names(truth), {}}};
   known.covariance.matrix = sd.cwiseAbs2().asDiagonal();
   return known;
 }

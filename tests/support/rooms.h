@@ -16,7 +16,7 @@ using namespace localise;
 inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {
   std::vector<PlaceLine> room;
   for (int i = 0; i < lines; ++i) {
-    Draws d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
+    RandomStream d({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
     PlaceLine line;
     line.a_m = {d.uniform(0.5, 5), d.uniform(-3, 3), d.uniform(0, 2)};
     line.sigma_m = 0.02;
@@ -37,7 +37,7 @@ inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {
 }
 
 /// The same lines seen by a robot at `pose` in their frame.
-inline std::vector<PlaceLine> seen_from(const std::vector<PlaceLine>& room, const PlanePose& pose) {
+inline std::vector<PlaceLine> seen_from(const std::vector<PlaceLine>& room, const Pose2D& pose) {
   const double c = std::cos(pose.heading_rad), s = std::sin(pose.heading_rad);
   std::vector<PlaceLine> seen = room;
   for (PlaceLine& line : seen) {

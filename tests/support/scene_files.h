@@ -22,7 +22,7 @@ inline StereoSceneFile files_of(const StereoScene& scene, const std::filesystem:
   files.right = scene.right;
   files.truth = scene.disparity;
   files.truth_scale = scene.disparity_scale;
-  files.range.most_px = static_cast<int>(scene.most_disparity_px);
+  files.range.max_px = static_cast<int>(scene.max_disparity_px);
   if (std::filesystem::exists(scene.right_disparity)) files.right_truth = scene.right_disparity;
   if (files.truth.extension() == ".npz") {
     const GreyLevels left = read_grey_levels(scene.left);

@@ -36,7 +36,7 @@ inline SceneScore score_of(const Matcher& matcher, const StereoSceneFile& files)
   const auto truth = truth_at(read_stereo_truth(files, width, pair.left.height_px), edges);
   const auto found = matcher.match(pair, edges, files.range);
   return {evaluate(edges, found, truth, width),
-          evaluate(edges, found, truth, width, {.outline = OutlineRule::foreground})};
+          evaluate(edges, found, truth, width, {.outline = DiscontinuityRule::foreground})};
 }
 
 /// Means over scenes.

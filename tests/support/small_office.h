@@ -4,7 +4,7 @@
 
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/route.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -37,12 +37,12 @@ inline const RigEstimate& nominal_rig() {
 }
 
 /// One look at the office by the nominal rig, corners included.
-inline const Look& office_look() {
-  static const Look seen = [] {
-    LookOptions options;
+inline const NoiseFreeView& office_look() {
+  static const NoiseFreeView seen = [] {
+    NoiseFreeViewOptions options;
     options.with_corners = true;
-    return look(small_office_visibility(), nominal_rig().rig,
-                map_places(small_office().route, 2)[2], options);
+    return look(small_office_visibility(), nominal_rig().rig, map_poses(small_office().route, 2)[2],
+                options);
   }();
   return seen;
 }

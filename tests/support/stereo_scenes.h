@@ -27,8 +27,8 @@ struct StereoScene {
   std::filesystem::path left, right, disparity, right_disparity;
   double disparity_scale = 1;  ///< grey values a pixel
   double f_px = 1000, baseline_m = 0.16;
-  double offset_px = 0;          ///< disparity + offset = f b / z
-  double most_disparity_px = 0;  ///< of its group of scenes
+  double offset_px = 0;         ///< disparity + offset = f b / z
+  double max_disparity_px = 0;  ///< of its group of scenes
 };
 
 /// The eleven Middlebury pairs below `folder` (Scharstein and Szeliski 2002, 2003; Scharstein and
@@ -45,7 +45,7 @@ inline std::vector<StereoScene> middlebury_scenes(const std::filesystem::path& f
     s.disparity = at / ("disp" + std::to_string(first) + ".png");
     s.right_disparity = at / ("disp" + std::to_string(second) + ".png");
     s.disparity_scale = scale;
-    s.most_disparity_px = most;
+    s.max_disparity_px = most;
     scenes.push_back(s);
   };
   const auto early = folder / "stereo_mb2001_2003";
@@ -67,7 +67,7 @@ inline std::vector<StereoScene> middlebury_scenes(const std::filesystem::path& f
   m.f_px = 994.978;
   m.baseline_m = 0.193001;
   m.offset_px = 31.086;
-  m.most_disparity_px = 70;
+  m.max_disparity_px = 70;
   scenes.push_back(m);
   return scenes;
 }
@@ -105,7 +105,7 @@ inline StereoScene aloe_scene(const std::filesystem::path& folder) {
   scene.right = folder / "aloeR.jpg";
   scene.disparity = folder / "aloeGT.png";
   scene.f_px = 3740;
-  scene.most_disparity_px = 255;
+  scene.max_disparity_px = 255;
   return scene;
 }
 
@@ -213,7 +213,7 @@ inline Rig rig_of(const StereoScene& scene) {
 
 /// Depth at which the disparity is the largest of the scene's group.
 inline double nearest_m(const StereoScene& scene) {
-  return scene.f_px * scene.baseline_m / (scene.most_disparity_px + scene.offset_px);
+  return scene.f_px * scene.baseline_m / (scene.max_disparity_px + scene.offset_px);
 }
 
 }  // namespace vernier::test

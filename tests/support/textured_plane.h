@@ -25,9 +25,10 @@ struct TexturedPlane {
     const double turned_x = 0.96 * X.x() + 0.28 * X.y(), turned_y = -0.28 * X.x() + 0.96 * X.y();
     const auto column = static_cast<std::uint32_t>(std::floor(turned_x / square_m) + 1000);
     // each column has its rows in other places
-    const double shift = Draws({.seed = seed, .trial = column, .source = 202}).uniform();
+    const double shift = RandomStream({.seed = seed, .trial = column, .source = 202}).uniform();
     const auto row = static_cast<std::uint32_t>(std::floor(turned_y / square_m + shift) + 1000);
-    return Draws({.seed = seed, .trial = column, .feature = row, .source = 203}).uniform(30, 220);
+    return RandomStream({.seed = seed, .trial = column, .feature = row, .source = 203})
+        .uniform(30, 220);
   }
 
   /// The point seen at a pixel of a camera at T_camera_first.

@@ -70,18 +70,18 @@ inline Polygon wall(double y, std::initializer_list<Vector2d> points) {
   return polygon;
 }
 
-inline Vector3d random_point(Draws& draws, const Vector3d& low, const Vector3d& high) {
+inline Vector3d random_point(RandomStream& draws, const Vector3d& low, const Vector3d& high) {
   const double x = draws.uniform(low[0], high[0]), y = draws.uniform(low[1], high[1]);
   return {x, y, draws.uniform(low[2], high[2])};
 }
 
-inline Pose random_pose(Draws& draws, const Vector3d& low, const Vector3d& high) {
+inline Pose random_pose(RandomStream& draws, const Vector3d& low, const Vector3d& high) {
   const double x = draws.normal(), y = draws.normal(), z = draws.normal();
   return {rotation_from_vector({x, y, z}), random_point(draws, low, high)};
 }
 
 /// A star with spikes of random length: anything but convex.
-inline Polygon random_star(Draws& draws, const Pose& T) {
+inline Polygon random_star(RandomStream& draws, const Pose& T) {
   Polygon polygon;
   const int n = 5 + static_cast<int>(draws.below(10));
   for (int i = 0; i < n; ++i) {
@@ -105,7 +105,7 @@ inline Polygon comb(const Pose& T) {
   return polygon;
 }
 
-inline World random_world(Draws& draws) {
+inline World random_world(RandomStream& draws) {
   World world;
   const Vector3d low(-3, -3, 0), high(3, 3, 2.5);
   add_box(world, {Eigen::Matrix3d::Identity(), {-4, -4, 0}}, {8, 8, 2.5});

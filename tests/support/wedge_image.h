@@ -42,7 +42,7 @@ inline cv::Mat photograph(const Wedge& wedge, int side_px, double blur_px = 0.5)
 }
 
 /// With white noise, as 8-bit grey values.
-inline cv::Mat with_noise(const cv::Mat& image, double sigma, Draws& draws) {
+inline cv::Mat with_noise(const cv::Mat& image, double sigma, RandomStream& draws) {
   cv::Mat noisy(image.size(), CV_8U);
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {

@@ -72,7 +72,7 @@ class KalibrTarget : public testing::Test {
     write_atomically(file_, text);
     return read_kalibr_target(file_);
   }
-  std::string complaint(const std::string& text) {
+  std::string error_output(const std::string& text) {
     const std::string what = test::error_message([&] { read(text); });
     return what.rfind(file_.string(), 0) == 0 ? what.substr(file_.string().size()) : what;
   }
@@ -103,27 +103,28 @@ TEST_F(KalibrTarget, TagsMayBeSaidToCountFromZero) {
   const std::string text =
       "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\n";
   EXPECT_EQ(std::get<AprilTagGrid>(read(text + "codeOffset: 0\n")).columns, 6);
-  EXPECT_EQ(complaint(text + "codeOffset: 12\n"),
+  EXPECT_EQ(error_output(text + "codeOffset: 12\n"),
             ":6: codeOffset is \"12\"; Vernier counts tags from 0: give a board that does");
 }
 
 TEST_F(KalibrTarget, FaultsAreNamedWithTheirLine) {
-  EXPECT_EQ(complaint("\ntarget_type: circlegrid\n"),
+  EXPECT_EQ(error_output("\ntarget_type: circlegrid\n"),
             ":2: a circlegrid is not detected by Vernier; use a checkerboard, a ChArUco board or "
             "an aprilgrid");
-  EXPECT_EQ(complaint("target_type: hexgrid\n"),
+  EXPECT_EQ(error_output("target_type: hexgrid\n"),
             ":1: target_type is \"hexgrid\"; it is aprilgrid or checkerboard");
-  EXPECT_EQ(complaint("tagCols: 6\n").substr(0, 31), ": the key target_type is missin");
-  EXPECT_EQ(complaint("target_type: aprilgrid\ntagCols: six\n"),
+  EXPECT_EQ(error_output("tagCols: 6\n").substr(0, 31), ": the key target_type is missin");
+  EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: six\n"),
             ":2: tagCols is \"six\"; give a whole number above 0");
-  EXPECT_EQ(complaint("target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: -0.1\n"),
+  EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: -0.1\n"),
             ":4: tagSize is \"-0.1\"; give a number above 0");
-  EXPECT_EQ(complaint("target_type: aprilgrid\ntagCols: 6\ntagCols: 6\n").substr(0, 3), ":3:");
-  EXPECT_NE(complaint("target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\n"
-                      "tagSpacing: 0.3\nlowId: 4\n")
+  EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: 6\ntagCols: 6\n").substr(0, 3), ":3:");
+  EXPECT_NE(error_output("target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\n"
+                         "tagSpacing: 0.3\nlowId: 4\n")
                 .find(":6: unknown key 'lowId'"),
             std::string::npos);
-  EXPECT_NE(complaint("just text\n").find(":1: is not of the form key: value"), std::string::npos);
+  EXPECT_NE(error_output("just text\n").find(":1: is not of the form key: value"),
+            std::string::npos);
 }
 
 }  // namespace

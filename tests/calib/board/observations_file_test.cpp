@@ -110,20 +110,20 @@ TEST_F(ObservationsFile, PixelsOutsideTheImageAreNamedByLineRowAndColumn) {
 }
 
 TEST_F(ObservationsFile, CornersOutsideTheImageAreNamedByLineRowAndColumn) {
-  const auto complaint = [&](const std::string& text, const BoardTarget& target) {
+  const auto error_output = [&](const std::string& text, const BoardTarget& target) {
     write_atomically(folder_ / "c.vnl", text);
     return test::error_message([&] { read_corners(folder_ / "c.vnl", target, {{640, 480}}); });
   };
   std::string text = "# filename x y level\n";
   for (int i = 0; i < 8; ++i) text += "left3.png 10 10 0\n";
   EXPECT_NE(
-      complaint(text + "left3.png 10 480 0\n", Chessboard{4, 3})
+      error_output(text + "left3.png 10 480 0\n", Chessboard{4, 3})
           .find("c.vnl:10: left3.png, corner (row 2, col 0): its pixel (10, 480) lies outside"),
       std::string::npos);
-  EXPECT_NE(complaint(text + "left3.png nan 48 0\n", Chessboard{4, 3})
+  EXPECT_NE(error_output(text + "left3.png nan 48 0\n", Chessboard{4, 3})
                 .find("c.vnl:10: left3.png, corner (row 2, col 0): its pixel is not a finite"),
             std::string::npos);
-  EXPECT_EQ(complaint(text, CharucoBoard{8, 6, 0.022, 0.03}),
+  EXPECT_EQ(error_output(text, CharucoBoard{8, 6, 0.022, 0.03}),
             "8x6 ChArUco board: its markers are not smaller than its squares; give the side of a "
             "square and the smaller one of a marker");
 }
@@ -146,20 +146,22 @@ TEST_F(ObservationsFile, CamerasOfCornersKeepTheirPlaceWhereTheFirstBoardIsMissi
 }
 
 TEST_F(ObservationsFile, ImagesThatWouldNotReadBackAreRefused) {
-  const auto complaint = [&](const std::string& left, const std::string& right) -> std::string {
+  const auto error_output = [&](const std::string& left, const std::string& right) -> std::string {
     auto observations = simulate_board(test::stereo_rig(), {}, 1).observations;
     for (auto& view : observations.views) {
       view.image = (view.camera == 0 ? left : right) + std::to_string(view.frame) + ".png";
     }
     return test::error_message([&] { write_corners(observations, {}, folder_ / "corners.vnl"); });
   };
-  EXPECT_EQ(complaint("L/", "R/"), "");
-  EXPECT_NE(complaint("my board/left", "right").find("my board/left0.png: a corners file cannot"),
+  EXPECT_EQ(error_output("L/", "R/"), "");
+  EXPECT_NE(
+      error_output("my board/left", "right").find("my board/left0.png: a corners file cannot"),
+      std::string::npos);
+  EXPECT_NE(error_output("left", "#right").find("#right0.png: a corners file cannot"),
             std::string::npos);
-  EXPECT_NE(complaint("left", "#right").find("#right0.png: a corners file cannot"),
-            std::string::npos);
-  EXPECT_NE(complaint("image", "image").find("image0.png: by its name it would be read as camera"),
-            std::string::npos);
+  EXPECT_NE(
+      error_output("image", "image").find("image0.png: by its name it would be read as camera"),
+      std::string::npos);
 }
 
 TEST(ImageName, LastNumberIsTheFrame) {

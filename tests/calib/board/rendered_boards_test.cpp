@@ -77,7 +77,7 @@ double told_rms(const BoardDetection& found,
   const double rms = rms_error(found, target, camera);
   testing::Test::RecordProperty(name, std::to_string(rms) + " px, " +
                                           std::to_string(found.ids.size()) + " corners, " +
-                                          refused_corners_text(found));
+                                          rejected_corners_text(found));
   return rms;
 }
 
@@ -286,7 +286,7 @@ TEST_F(RenderedBoards, ReasonsAreMeasured) {
 
 TEST_F(RenderedBoards, DamagedFilesAreNamed) {
   const cv::Mat image = photograph(draw(chessboard), usual_camera(chessboard, 0.4));
-  const auto complaint = [&](const std::string& name, auto damage) {
+  const auto error_output = [&](const std::string& name, auto damage) {
     const auto file = save(image, name);
     std::string bytes = read_whole(file);
     damage(bytes);
@@ -299,21 +299,21 @@ TEST_F(RenderedBoards, DamagedFilesAreNamed) {
     return std::string("none");
   };
   const auto cut = [](std::string& bytes) { bytes.resize(bytes.size() * 2 / 3); };
-  EXPECT_EQ(complaint("a1.png", cut),
+  EXPECT_EQ(error_output("a1.png", cut),
             ": is cut off (its PNG data have no end); copy it again, or leave it out");
-  EXPECT_EQ(complaint("a1.jpg", cut),
+  EXPECT_EQ(error_output("a1.jpg", cut),
             ": is cut off (its JPEG data have no end); copy it again, or leave it out");
-  EXPECT_EQ(complaint("a1.pgm", cut),
+  EXPECT_EQ(error_output("a1.pgm", cut),
             ": is cut off (it has fewer pixels than its header says); copy it again, or leave it "
             "out");
-  EXPECT_EQ(complaint("a1.png", [](std::string& bytes) { bytes[bytes.size() / 2] ^= 1; }),
+  EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes[bytes.size() / 2] ^= 1; }),
             ": is damaged (a PNG checksum is wrong); copy it again, or leave it out");
-  EXPECT_EQ(complaint("a1.png", [](std::string& bytes) { bytes = "text"; }),
+  EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes = "text"; }),
             ": is not an image that can be read; check the file");
-  EXPECT_EQ(complaint("a1.png", [](std::string& bytes) { bytes.clear(); }),
+  EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes.clear(); }),
             ": is not an image that can be read; check the file");
-  EXPECT_EQ(complaint("a1.png", [](std::string&) {}), "none");
-  EXPECT_EQ(complaint("a1.jpg", [](std::string&) {}), "none");
+  EXPECT_EQ(error_output("a1.png", [](std::string&) {}), "none");
+  EXPECT_EQ(error_output("a1.jpg", [](std::string&) {}), "none");
 }
 
 TEST_F(RenderedBoards, ImagesOfAnotherSizeAreAnError) {

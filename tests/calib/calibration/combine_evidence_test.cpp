@@ -14,7 +14,7 @@
 #include "calib/joint_calibration.h"
 #include "calib/opencv_models.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -95,8 +95,8 @@ TEST(CombineEvidence, NewPriorsOfAnInputAreCompared) {
   const Rig truth = test::stereo_rig();
   const PairObservations a = simulate_pairs(truth, 35), b = simulate_pairs(truth, 36);
   const JointOptions noise{.pair_sigma_scale = 1};
-  const RigKnowledge known = test::datasheet(truth, 35, 0);
-  RigKnowledge elsewhere = known;  // of another rig: the baseline a tenth longer
+  const GaussianRigPrior known = test::datasheet(truth, 35, 0);
+  GaussianRigPrior elsewhere = known;  // of another rig: the baseline a tenth longer
   elsewhere.rig.T_camera_first[1].t *= 1.1;
   elsewhere.covariance.matrix *= 0.01;
   const RigEstimate first = calibrate_from_pairs(a, known, noise).estimate;
@@ -109,7 +109,7 @@ TEST(CombineEvidence, NewPriorsOfAnInputAreCompared) {
 
 TEST(CombineEvidence, FewPairsAnImageAndAnEstimatedScaleKeepTheOrderIndifferent) {
   const Rig truth = test::stereo_rig(OpenCv4{});
-  RigKnowledge known{truth, {CovarianceKind::prior, parameter_names(truth), {}}};
+  GaussianRigPrior known{truth, {CovarianceKind::prior, parameter_names(truth), {}}};
   Eigen::VectorXd sd(22);
   sd << 10, 0.002, 8, 8, 0.02, 0.02, 0.001, 0.001, 10, 0.002, 8, 8, 0.02, 0.02, 0.001, 0.001, 0.01,
       0.01, 0.01, 0.002, 0.002, 0.002;
@@ -137,7 +137,7 @@ TEST(CombineEvidence, AgreementWithHeldParametersIsOfThePriorGivenThem) {
   // C_0 ties the right focal length to the left one within 1.4 px; its mean has both 40 px off.
   // Once the left one is held where it is, the prior's right one follows, and all agrees.
   const Rig truth = test::stereo_rig();
-  RigKnowledge known = test::datasheet(truth, 39, 0);
+  GaussianRigPrior known = test::datasheet(truth, 39, 0);
   Eigen::MatrixXd& C = known.covariance.matrix;
   C(0, 5) = C(5, 0) = 0.99 * std::sqrt(C(0, 0) * C(5, 5));
   Eigen::VectorXd off = Eigen::VectorXd::Zero(16);
@@ -146,23 +146,23 @@ TEST(CombineEvidence, AgreementWithHeldParametersIsOfThePriorGivenThem) {
   const PairObservations pairs = simulate_pairs(truth, 39);
   JointOptions at_truth{.held = {{"left.f_px", truth.cameras[0].f_px()}}, .pair_sigma_scale = 1};
   const RigEstimate right = calibrate_from_pairs(pairs, known, at_truth).estimate;
-  EXPECT_GT(agreement_with(known, right).dof, 3);
-  EXPECT_GT(agreement_with(known, right).p_value, 1e-3);
-  EXPECT_TRUE(right.calibration->doubts.empty());
+  EXPECT_GT(consistency_with(known, right).dof, 3);
+  EXPECT_GT(consistency_with(known, right).p_value, 1e-3);
+  EXPECT_TRUE(right.calibration->trust_warnings.empty());
   EXPECT_EQ(right.calibration->prior_dof, 15);
   // Tied the other way round, the prior's right one falls where the pairs need it to rise.
-  RigKnowledge apart = known;
+  GaussianRigPrior apart = known;
   apart.rig = truth;
   apart.covariance.matrix(0, 5) *= -1;
   apart.covariance.matrix(5, 0) *= -1;
   at_truth.held = {{"left.f_px", truth.cameras[0].f_px() + 40}};
-  EXPECT_LT(agreement_with(apart, calibrate_from_pairs(pairs, apart, at_truth).estimate).p_value,
+  EXPECT_LT(consistency_with(apart, calibrate_from_pairs(pairs, apart, at_truth).estimate).p_value,
             1e-4);
 }
 
 TEST(CombineEvidence, OneComponentOfARotationMayBeUnlisted) {
   const Rig truth = test::stereo_rig();
-  RigKnowledge whole = test::datasheet(truth, 45, 0), part = whole;
+  GaussianRigPrior whole = test::datasheet(truth, 45, 0), part = whole;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < 16; ++i) {
     if (whole.covariance.names[static_cast<std::size_t>(i)] != "right.wx_rad") kept.push_back(i);
@@ -175,8 +175,8 @@ TEST(CombineEvidence, OneComponentOfARotationMayBeUnlisted) {
   part.rig.T_camera_first[1].R = truth.T_camera_first[1].R;
   const PairObservations pairs = simulate_pairs(truth, 45);
   const JointCalibration found = calibrate_from_pairs(pairs, part, {.pair_sigma_scale = 1});
-  EXPECT_TRUE(found.estimate.calibration->doubts.empty());
-  const PriorAgreement agreement = agreement_with(part, found.estimate);
+  EXPECT_TRUE(found.estimate.calibration->trust_warnings.empty());
+  const PriorConsistency agreement = consistency_with(part, found.estimate);
   EXPECT_GT(agreement.dof, 3);
   EXPECT_GT(agreement.p_value, 1e-4);
 }
@@ -201,7 +201,7 @@ TEST(CombineEvidence, ACalibrationAndWhatItWasThePriorOfCountItOnce) {
   const PairObservations pairs = simulate_pairs(truth, 49);
   const JointOptions noise{.pair_sigma_scale = 1};
   const RigEstimate after =
-      calibrate_from_pairs(pairs, knowledge_of(board, "board"), noise).estimate;
+      calibrate_from_pairs(pairs, gaussian_prior_of(board, "board"), noise).estimate;
   for (const bool board_first : {true, false}) {
     std::vector<CombineInput> inputs{{"board", board, {}}, {"after", after, {}}};
     if (!board_first) std::swap(inputs[0], inputs[1]);
@@ -234,7 +234,7 @@ TEST(CombineEvidence, ABatchLeftOutDriftsByItsOwnNoiseOnly) {
   const Rig truth = test::stereo_rig();
   Eigen::VectorXd turn = Eigen::VectorXd::Zero(16);
   turn[12] = 2e-3;
-  const RigKnowledge known = test::datasheet(truth, 41, 0);
+  const GaussianRigPrior known = test::datasheet(truth, 41, 0);
   RigEstimate prior;
   prior.rig = known.rig;
   prior.covariance = known.covariance;

@@ -40,7 +40,7 @@ namespace {
 using test::datasheet;
 using test::error_message;
 
-CombineInput as_input(const RigKnowledge& known) {
+CombineInput as_input(const GaussianRigPrior& known) {
   RigEstimate estimate;
   estimate.rig = known.rig;
   estimate.covariance = known.covariance;
@@ -52,7 +52,7 @@ Eigen::Vector4d exchanged(const Eigen::Vector4d& y) { return {y[2], y[3], y[0], 
 TEST(JointCalibration, CeresAndTheResolverAgreeWithJetsOnPairs) {
   const Rig truth = test::stereo_rig();
   const PairObservations pairs = simulate_pairs(truth, 51);
-  const RigKnowledge known = datasheet(truth, 51, 0);
+  const GaussianRigPrior known = datasheet(truth, 51, 0);
   const JointCalibration ours =
       calibrate_from_pairs(pairs, known, {.pair_sigma_scale = 1, .reject_outliers = false});
   const RigPrior prior = rig_prior(known.rig, known);
@@ -147,7 +147,7 @@ TEST(JointCalibration, SampsonIsFullBundleAdjustmentToATenThousandthOfASigma) {
 
 TEST(Combine, BatchesInAnyOrderAreTheBatchSolution) {
   const Rig truth = test::stereo_rig();
-  const RigKnowledge known = datasheet(truth, 53, 0, 0.5);
+  const GaussianRigPrior known = datasheet(truth, 53, 0, 0.5);
   std::vector<CombineInput> batches;
   PairObservations all;
   for (int b = 0; b < 8; ++b) {
@@ -183,7 +183,7 @@ TEST(Combine, TheInformationFilterSaysHowFarItIsFromTheBatch) {
   }
   const CombineOptions options{.joint = {.pair_sigma_scale = 1, .reject_outliers = false}};
   const Combination batch = combine(inputs, options);
-  const FilteredRig filtered = information_filter(inputs, batch, options);
+  const InformationFilterResult filtered = information_filter(inputs, batch, options);
   RecordProperty("filter_off_by_sigma", std::to_string(filtered.worst_in_sigma));
   EXPECT_GT(filtered.worst_in_sigma, 1e-3);
   EXPECT_LT(filtered.worst_in_sigma, 3);
@@ -195,7 +195,7 @@ TEST(Combine, BoardsPairsAndDatasheetsGoThroughOneCost) {
   const SimulatedBoard first = simulate_board(truth, {8, 6, 0.03}, 71);
   const SimulatedBoard second = simulate_board(truth, {7, 5, 0.04}, 72);
   const RigEstimate a = calibrate(first.observations), b = calibrate(second.observations);
-  const RigKnowledge known = datasheet(truth, 71, 0);
+  const GaussianRigPrior known = datasheet(truth, 71, 0);
   const PairObservations pairs = simulate_pairs(truth, 73);
   const Combination combined =
       combine({{"a", a, {}}, {"b", b, {}}, {"pairs", {}, pairs}, as_input(known)},
@@ -275,20 +275,21 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
   EXPECT_EQ(read.pixels_px, pairs.pixels_px);
   EXPECT_EQ(read.sigma_px, pairs.sigma_px);
   const std::string header = "pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px\n";
-  const auto complaint = [&](const std::string& text) {
+  const auto error_output = [&](const std::string& text) {
     write_atomically(folder / "bad.csv", text);
     const std::string said = error_message([&] { read_pairs(folder / "bad.csv"); });
     return said.substr(std::min(said.size(), said.find("bad.csv")));
   };
-  EXPECT_EQ(complaint("u,v\n").substr(0, 48), "bad.csv:1: it does not begin with the header of ");
-  EXPECT_EQ(complaint(header), "bad.csv: it holds no pair; match some corners");
-  EXPECT_EQ(complaint(header + "0,1,2,3,4,0.3\n0,1,2,3,0.3\n").substr(0, 44),
+  EXPECT_EQ(error_output("u,v\n").substr(0, 48),
+            "bad.csv:1: it does not begin with the header of ");
+  EXPECT_EQ(error_output(header), "bad.csv: it holds no pair; match some corners");
+  EXPECT_EQ(error_output(header + "0,1,2,3,4,0.3\n0,1,2,3,0.3\n").substr(0, 44),
             "bad.csv:3: 5 fields where 6 are expected; a ");
-  EXPECT_EQ(complaint(header + "0,1,nan,3,4,0.3\n"),
+  EXPECT_EQ(error_output(header + "0,1,nan,3,4,0.3\n"),
             "bad.csv:2: a pixel coordinate is not finite; remove the line");
-  EXPECT_EQ(complaint(header + "0,1,2,3,4,0\n"),
+  EXPECT_EQ(error_output(header + "0,1,2,3,4,0\n"),
             "bad.csv:2: sigma_px is 0; give a standard deviation above 0 and below a million");
-  EXPECT_EQ(complaint(header + "0,1,2,3,4,1\n1,1,2,3,4,1\n0,1,2,3,5,1\n"),
+  EXPECT_EQ(error_output(header + "0,1,2,3,4,1\n1,1,2,3,4,1\n0,1,2,3,5,1\n"),
             "bad.csv:4: image pair 0 comes a second time; keep its lines together");
   std::filesystem::remove_all(folder);
 }
@@ -299,7 +300,7 @@ class BadPairs : public testing::Test {
     return error_message([&] { calibrate_from_pairs(pairs, known_, {}, "p.csv"); });
   }
   Rig truth_ = test::stereo_rig();
-  RigKnowledge known_ = datasheet(truth_, 96, 0);
+  GaussianRigPrior known_ = datasheet(truth_, 96, 0);
   PairObservations pairs_ = simulate_pairs(truth_, 96);
 };
 
@@ -337,15 +338,16 @@ TEST_F(BadPairs, SomeSwappedImagePairsAreNamed) {
 TEST_F(BadPairs, AFlatSceneIsADoubt) {
   const PairObservations flat = simulate_pairs(truth_, 97, 0, {.scene = SimulatedScene::plane});
   const JointCalibration joint = calibrate_from_pairs(flat, known_);
-  ASSERT_EQ(joint.estimate.calibration->doubts.size(), 1u);
-  EXPECT_NE(joint.estimate.calibration->doubts[0].find("lie on one plane"), std::string::npos);
+  ASSERT_EQ(joint.estimate.calibration->trust_warnings.size(), 1u);
+  EXPECT_NE(joint.estimate.calibration->trust_warnings[0].find("lie on one plane"),
+            std::string::npos);
   const JointCalibration deep = calibrate_from_pairs(pairs_, known_);
-  EXPECT_TRUE(deep.estimate.calibration->doubts.empty());
+  EXPECT_TRUE(deep.estimate.calibration->trust_warnings.empty());
   EXPECT_LT(joint.observability->from_data, deep.observability->from_data);
 }
 
 TEST_F(BadPairs, SoAreBadPriors) {
-  RigKnowledge bad = known_;
+  GaussianRigPrior bad = known_;
   bad.covariance.matrix(0, 5) = bad.covariance.matrix(5, 0) = 150;  // of variances of 100
   const std::string indefinite =
       error_message([&] { calibrate_from_pairs(pairs_, bad, {}, "p.csv"); });
@@ -359,13 +361,13 @@ TEST_F(BadPairs, SoAreBadPriors) {
 }
 
 TEST_F(BadPairs, APriorThatThePairsContradictIsADoubt) {
-  RigKnowledge narrow = known_;
+  GaussianRigPrior narrow = known_;
   narrow.covariance.matrix *= 1e-4;  // claims to know everything a hundred times better
   const JointCalibration joint = calibrate_from_pairs(pairs_, narrow);
-  ASSERT_FALSE(joint.estimate.calibration->doubts.empty());
-  EXPECT_NE(joint.estimate.calibration->doubts.back().find("pairs and prior disagree"),
+  ASSERT_FALSE(joint.estimate.calibration->trust_warnings.empty());
+  EXPECT_NE(joint.estimate.calibration->trust_warnings.back().find("pairs and prior disagree"),
             std::string::npos)
-      << joint.estimate.calibration->doubts.back();
+      << joint.estimate.calibration->trust_warnings.back();
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class RealPairs : public testing::TestWithParam<RealSet> {
 TEST_P(RealPairs, AreNotComplainedOf) {
   ObservationDiagnosis said = check_observations(observations_);
   said.add(check_views(observations_, initial_state(observations_, {Radial1{}, Radial1{}})));
-  EXPECT_TRUE(said.doubts.empty()) << said.doubts[0];
+  EXPECT_TRUE(said.trust_warnings.empty()) << said.trust_warnings[0];
   EXPECT_TRUE(said.warnings.empty()) << said.warnings[0];
 }
 
@@ -58,7 +58,7 @@ TEST_P(RealPairs, StartByThemselvesWithEveryModel) {
   for (const char* model : {"radial1", "opencv4", "opencv5", "fisheye4"}) {
     const RigEstimate estimate = calibrate(observations_, {.model = camera_model(model)});
     EXPECT_LT(estimate.calibration->rms_px, GetParam().rms_px) << model;
-    EXPECT_TRUE(estimate.calibration->doubts.empty()) << model;
+    EXPECT_TRUE(estimate.calibration->trust_warnings.empty()) << model;
   }
   const BoardState radial = initial_state(observations_, {Radial1{}, Radial1{}});
   const BoardState rational = initial_state(observations_, {OpenCv8{}, OpenCv8{}});
@@ -97,7 +97,7 @@ TEST(SolvedProblems, AreNotComplainedOf) {
     const BoardObservations seen = read_observations(file, {size});
     ObservationDiagnosis said = check_observations(seen);
     said.add(check_views(seen, initial_state(seen, {Radial1{}, Radial1{}})));
-    EXPECT_TRUE(said.doubts.empty()) << name << ": " << said.doubts[0];
+    EXPECT_TRUE(said.trust_warnings.empty()) << name << ": " << said.trust_warnings[0];
   }
 }
 

@@ -50,7 +50,7 @@ class ObservationChecks : public testing::Test {
 
 TEST_F(ObservationChecks, GoodOnesPassInSilence) {
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  EXPECT_TRUE(diagnosis.doubts.empty());
+  EXPECT_TRUE(diagnosis.trust_warnings.empty());
   EXPECT_TRUE(diagnosis.warnings.empty());
 }
 
@@ -75,8 +75,8 @@ TEST_F(ObservationChecks, AMirroredCameraIsNamed) {
 TEST_F(ObservationChecks, ABoardMirroredEverywhereIsDoubted) {
   for (BoardView& view : good_.views) test::mirror(view, 9);
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  ASSERT_EQ(diagnosis.doubts.size(), 1u);
-  EXPECT_EQ(diagnosis.doubts[0].find("every view shows the board mirrored"), 0u);
+  ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
+  EXPECT_EQ(diagnosis.trust_warnings[0].find("every view shows the board mirrored"), 0u);
 }
 
 TEST_F(ObservationChecks, AGridOfTagsWithItsYUpwardsIsNoMirroredBoard) {
@@ -97,7 +97,7 @@ TEST_F(ObservationChecks, AGridOfTagsWithItsYUpwardsIsNoMirroredBoard) {
     }
   }
   check_and_sort(good_);
-  EXPECT_TRUE(check_observations(good_).doubts.empty());
+  EXPECT_TRUE(check_observations(good_).trust_warnings.empty());
 }
 
 TEST_F(ObservationChecks, AMirroredImageIsNamedAsMirroredNumbering) {
@@ -117,14 +117,14 @@ TEST_F(ObservationChecks, AViewCountedTwiceIsNamed) {
 
 TEST_F(ObservationChecks, ARepeatedViewWithItsOwnNoiseIsAWarning) {
   test::append_frame(good_, 4, 20);
-  Draws draws({.seed = 3, .source = 200});
+  RandomStream draws({.seed = 3, .source = 200});
   for (BoardView& view : good_.views) {
     if (view.frame != 20) continue;
     for (auto& pixel : view.pixels_px) pixel += 0.05 * draws.normals(2);
   }
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
   EXPECT_TRUE(holds(diagnosis.warnings, "the board had not moved between frames 4 and 20"));
-  EXPECT_TRUE(diagnosis.doubts.empty());
+  EXPECT_TRUE(diagnosis.trust_warnings.empty());
 }
 
 TEST_F(ObservationChecks, LeftAndRightFromOneImageAreNamed) {
@@ -183,7 +183,7 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
   BoardView& view = test::view_of(good_, 5, 1);
   view.image = "right05.png";
   const BoardView whole = view;
-  const auto complaint = [&](const std::vector<int>& ids) {
+  const auto error_output = [&](const std::vector<int>& ids) {
     view.ids = ids;
     view.pixels_px.clear();
     for (const int id : ids) view.pixels_px.push_back(whole.pixels_px[id]);
@@ -192,12 +192,12 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
   const std::string expected =
       "frame 5, camera 1 (right05.png): its corners, all but one at most, lie on one line of the "
       "board, which fixes no pose of it; leave the view out";
-  EXPECT_EQ(complaint({9, 10, 11, 12, 13, 14, 15, 16, 17}), expected);  // a row
-  EXPECT_EQ(complaint({0, 10, 20, 30, 40, 50}), expected);              // a diagonal
-  EXPECT_EQ(complaint({0, 1, 2, 3, 31}), expected);                     // and one elsewhere
-  EXPECT_EQ(complaint({31, 3, 12, 21}), expected);                      // four, three in a column
-  EXPECT_EQ(complaint({0, 1, 9, 10}), "");
-  EXPECT_EQ(complaint({0, 1, 2, 9, 10}), "");
+  EXPECT_EQ(error_output({9, 10, 11, 12, 13, 14, 15, 16, 17}), expected);  // a row
+  EXPECT_EQ(error_output({0, 10, 20, 30, 40, 50}), expected);              // a diagonal
+  EXPECT_EQ(error_output({0, 1, 2, 3, 31}), expected);                     // and one elsewhere
+  EXPECT_EQ(error_output({31, 3, 12, 21}), expected);  // four, three in a column
+  EXPECT_EQ(error_output({0, 1, 9, 10}), "");
+  EXPECT_EQ(error_output({0, 1, 2, 9, 10}), "");
 }
 
 TEST_F(ObservationChecks, ATargetThatIsNotFlatIsRefused) {
@@ -219,12 +219,12 @@ TEST_F(ObservationChecks, UnpairedFramesAreCountedAndSaid) {
 
 TEST_F(ObservationChecks, AnImageSizeTwiceTooLargeIsDoubted) {
   for (auto& size : good_.size_px) size *= 2;
-  EXPECT_TRUE(holds(diagnosis_of(good_).doubts, "check the image size"));
+  EXPECT_TRUE(holds(diagnosis_of(good_).trust_warnings, "check the image size"));
 }
 
 TEST_F(ObservationChecks, MillimetresAreSuspected) {
   for (auto& X : good_.target_m) X *= 1000;
-  EXPECT_TRUE(holds(diagnosis_of(good_).doubts,
+  EXPECT_TRUE(holds(diagnosis_of(good_).trust_warnings,
                     "the board measures 200 m, its points stand 25 m apart: did you mean 0.025?"));
 }
 

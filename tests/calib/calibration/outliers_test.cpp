@@ -178,7 +178,8 @@ TEST(Outliers, ACameraOfWorseCornersLosesNone) {
   auto board = simulate_board(test::stereo_rig(), {}, 31, 0, {.frames = 14, .pixel_sigma_px = 0.1});
   for (BoardView& view : board.observations.views) {
     if (view.camera == 0) continue;
-    Draws draws({.seed = 31, .feature = static_cast<std::uint32_t>(view.frame), .source = 200});
+    RandomStream draws(
+        {.seed = 31, .feature = static_cast<std::uint32_t>(view.frame), .source = 200});
     for (auto& pixel : view.pixels_px) pixel += 2 * draws.normals(2);
   }
   BoardObservations spoilt = board.observations;
@@ -210,12 +211,12 @@ TEST(Outliers, MoreThanHalfOfACamerasViewsAreNotLeftOut) {
       "as outliers: look at the images of frames 5, 6, 7, 8, 9, 10 and 2 more";
   const RigEstimate e = calibrate(mostly_displaced(4), {.check_input = false});
   EXPECT_EQ(e.calibration->outliers.size(), 0u);
-  EXPECT_EQ(e.calibration->doubts, std::vector<std::string>{words});
+  EXPECT_EQ(e.calibration->trust_warnings, std::vector<std::string>{words});
   // farther away, least squares has no minimum with them
-  const std::string complaint =
+  const std::string error_output =
       test::error_message([] { calibrate(mostly_displaced(8), {.check_input = false}); });
-  EXPECT_NE(complaint.find("did not converge"), std::string::npos) << complaint;
-  EXPECT_NE(complaint.find(words), std::string::npos) << complaint;
+  EXPECT_NE(error_output.find("did not converge"), std::string::npos) << error_output;
+  EXPECT_NE(error_output.find(words), std::string::npos) << error_output;
 }
 
 }  // namespace

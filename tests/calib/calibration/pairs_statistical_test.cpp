@@ -88,7 +88,7 @@ TEST(PairsStatistics, NormalisedErrorOfTheResolverIsChiSquared) {
   Trials trials;
   for (std::uint32_t t = 0; t < 500; ++t) {
     const PairResolver resolver(simulate_pairs(truth, 21, t));
-    const RigKnowledge known = test::datasheet(truth, 21, t);
+    const GaussianRigPrior known = test::datasheet(truth, 21, t);
     const RigPrior prior = rig_prior(truth, known);
     const EpipolarMinimum found = resolver.minimise(known.rig, {.priors = {prior}});
     ASSERT_TRUE(found.converged) << t;
@@ -110,16 +110,16 @@ TEST(PairsStatistics, WrongMatchesDoLittleHarm) {
     std::size_t listed = 0, count = 0;
     for (std::uint32_t t = 0; t < 200; ++t) {
       const PairObservations pairs = simulate_pairs(truth, 22, t, {.wrong_share = share});
-      const RigKnowledge known = test::datasheet(truth, 22, t);
+      const GaussianRigPrior known = test::datasheet(truth, 22, t);
       const JointCalibration found = calibrate_from_pairs(pairs, known, {.pair_sigma_scale = 1});
       robust.add(difference(truth, found.estimate.rig), found.estimate.covariance->matrix);
       bound.add(difference(truth, found.estimate.rig), *found.estimate.covariance_mvb);
       listed += found.estimate.calibration->pair_outliers.size();
       count += pairs.size();
-      const JointCalibration least_squares = calibrate_from_pairs(
+      const JointCalibration min_squares = calibrate_from_pairs(
           pairs, known, {.pair_sigma_scale = 1, .reject_outliers = false, .white_noise = true});
-      plain.add(difference(truth, least_squares.estimate.rig),
-                least_squares.estimate.covariance->matrix);
+      plain.add(difference(truth, min_squares.estimate.rig),
+                min_squares.estimate.covariance->matrix);
     }
     const std::string name = std::to_string(static_cast<int>(100 * share)) + "_percent";
     if (share == 0) clean_rms = plain.rms(clean);
@@ -140,10 +140,10 @@ TEST(PairsStatistics, WrongMatchesDoLittleHarm) {
 /// A tenth of the pairs with three times the noise, all of them with more than they state.
 PairObservations with_heavy_tails(PairObservations pairs, std::uint64_t seed, std::uint32_t trial) {
   constexpr double stated_px = 0.3, more_px = 0.35;
-  Draws draws({.seed = seed,
-               .trial = trial,
-               .source = static_cast<std::uint32_t>(DrawSource::noisy_copy),
-               .frame = 2});
+  RandomStream draws({.seed = seed,
+                      .trial = trial,
+                      .source = static_cast<std::uint32_t>(DrawSource::noisy_copy),
+                      .frame = 2});
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double sigma = i % 10 == 0 ? 3 * stated_px : more_px;
     pairs.pixels_px[i] += sigma * draws.normals(4);
@@ -163,7 +163,7 @@ TEST(PairsStatistics, HeavyTailsWithTheScaleEstimated) {
     honest.add(difference(truth, found.estimate.rig), found.estimate.covariance->matrix);
     bound.add(difference(truth, found.estimate.rig), *found.estimate.covariance_mvb);
     scale += found.pair_sigma_scale / trials;
-    EXPECT_TRUE(found.estimate.calibration->doubts.empty()) << t;
+    EXPECT_TRUE(found.estimate.calibration->trust_warnings.empty()) << t;
   }
   RecordProperty("nees_sandwich", std::to_string(honest.mean()));
   RecordProperty("nees_bound", std::to_string(bound.mean()));
@@ -179,7 +179,7 @@ TEST(PairsStatistics, AKnockIsFoundAndNothingElse) {
   int caught = 0;
   for (std::uint32_t t = 0; t < 100; ++t) {
     CombineInput known{"prior", RigEstimate{}, {}};
-    const RigKnowledge datasheet = test::datasheet(truth, 23, t);
+    const GaussianRigPrior datasheet = test::datasheet(truth, 23, t);
     known.estimate->rig = datasheet.rig;
     known.estimate->covariance = datasheet.covariance;
     const SimulatedPairsOptions scene{.image_pairs = 60, .pairs_per_image = 40};
@@ -210,7 +210,7 @@ TEST(CombineStatistics, DriftHasTheSpreadThatIsStated) {
   double squares = 0;
   int count = 0;
   for (std::uint32_t t = 0; t < 12; ++t) {
-    const RigKnowledge known = test::datasheet(truth, 52, t, 0.3);
+    const GaussianRigPrior known = test::datasheet(truth, 52, t, 0.3);
     RigEstimate prior;
     prior.rig = known.rig;
     prior.covariance = known.covariance;

@@ -65,7 +65,7 @@ TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
   const std::string name = found.first().substr(found.first().rfind(' ') + 1);
   const RigEstimate better = calibrate(seen, {.model = camera_model(name)});
   EXPECT_LT(better.calibration->rms_px, 0.25) << name;
-  EXPECT_TRUE(better.calibration->doubts.empty());
+  EXPECT_TRUE(better.calibration->trust_warnings.empty());
 }
 
 // opencv8 has two words of parameters more than radial1: nothing of the poorer problem may be asked
@@ -84,10 +84,10 @@ TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
       simulate_board(wide, {}, 7, 0, {.frames = 12, .distance_m = 0.2, .tilt_rad = 0.35})
           .observations;
   const RigEstimate estimate = calibrate(seen, {.model = Radial1{}});
-  ASSERT_EQ(estimate.calibration->doubts.size(), 1u);
-  EXPECT_NE(estimate.calibration->doubts[0].find("the lens needs another model: with "),
+  ASSERT_EQ(estimate.calibration->trust_warnings.size(), 1u);
+  EXPECT_NE(estimate.calibration->trust_warnings[0].find("the lens needs another model: with "),
             std::string::npos)
-      << estimate.calibration->doubts[0];
+      << estimate.calibration->trust_warnings[0];
 }
 
 TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
@@ -167,11 +167,12 @@ TEST_F(ResidualDiagnosis, CalibrateSaysItAsADoubt) {
     }
   }
   const RigEstimate estimate = calibrate(good_, {.reject_outliers = false});
-  ASSERT_EQ(estimate.calibration->doubts.size(), 1u);
-  EXPECT_NE(estimate.calibration->doubts[0].find("px are no corner noise: cameras 0 and 1 did not "
-                                                 "see the board at one place"),
+  ASSERT_EQ(estimate.calibration->trust_warnings.size(), 1u);
+  EXPECT_NE(estimate.calibration->trust_warnings[0].find(
+                "px are no corner noise: cameras 0 and 1 did not "
+                "see the board at one place"),
             std::string::npos)
-      << estimate.calibration->doubts[0];
+      << estimate.calibration->trust_warnings[0];
 }
 
 }  // namespace

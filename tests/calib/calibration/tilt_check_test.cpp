@@ -29,7 +29,7 @@ std::string complaint_of(BoardObservations observations) {
   const BoardState start = initial_state(observations, models);
   try {
     const ObservationDiagnosis diagnosis = check_tilts(observations, start);
-    return diagnosis.doubts.empty() ? "" : "doubt: " + diagnosis.doubts[0];
+    return diagnosis.trust_warnings.empty() ? "" : "doubt: " + diagnosis.trust_warnings[0];
   } catch (const Error& error) {
     return error.what();
   }
@@ -41,12 +41,12 @@ TEST_P(BoardTilts, BoardsAllParallelToTheImageAreNamed) {
   const auto flat =
       simulate_board(test::stereo_rig(), {}, GetParam(), 0, {.frames = 12, .tilt_rad = 0.0});
   // simulate_board turns the board about the axis too, which is no tilt
-  const std::string complaint = complaint_of(flat.observations);
-  EXPECT_NE(complaint.find(
+  const std::string error_output = complaint_of(flat.observations);
+  EXPECT_NE(error_output.find(
                 ": every board is parallel to the image, or nearly so, which leaves the "
                 "focal length undetermined; tilt the board by 20 to 45 degrees about both axes"),
             std::string::npos)
-      << complaint;
+      << error_output;
 }
 
 TEST_P(BoardTilts, TwoTiltsAreTooFew) {

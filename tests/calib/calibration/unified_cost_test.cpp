@@ -102,7 +102,7 @@ TEST(HeldParameters, ARotationHeldInPartSurvivesItsFileAndIsAPrior) {
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-12);
   }
 
-  options.prior = rig_knowledge(file, "a.json");
+  options.prior = gaussian_rig_prior(file, "a.json");
   const RigEstimate both = calibrate(second, options);
   EXPECT_EQ(both.calibration->prior_dof, 15);
   EXPECT_LT(worst_sigmas(both.rig, whole.rig, *whole.covariance_mvb), 0.05);
@@ -132,13 +132,13 @@ TEST(HeldParameters, AreHeldInACombination) {
 
 TEST(HeldParameters, AreNamedWhereTheyAreWrong) {
   const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
-  const auto complaint = [&](const HeldParameter& held) {
+  const auto error_output = [&](const HeldParameter& held) {
     return test::error_message([&] { calibrate(observations, {.held = {held}}); });
   };
-  EXPECT_NE(complaint({"left.k7", {}}).find("held parameter left.k7: the rig has no such"),
+  EXPECT_NE(error_output({"left.k7", {}}).find("held parameter left.k7: the rig has no such"),
             std::string::npos);
-  EXPECT_NE(complaint({"left.ay", 1.0}).find("ay is 1 by definition"), std::string::npos);
-  EXPECT_NE(complaint({"left.f_px", -3.0}).find("-3 is no value for it"), std::string::npos);
+  EXPECT_NE(error_output({"left.ay", 1.0}).find("ay is 1 by definition"), std::string::npos);
+  EXPECT_NE(error_output({"left.f_px", -3.0}).find("-3 is no value for it"), std::string::npos);
   EXPECT_NE(test::error_message([&] {
               calibrate(observations, {.held = {{"left.ax", {}}, {"left.ax", {}}}});
             }).find("is held twice"),
@@ -183,7 +183,7 @@ TEST(Prior, HalfTheViewsAsPriorOfTheOtherHalf) {
   const CalibrationOptions white{.pixel_sigma_px = 0.2, .white_noise = true};
   const RigEstimate a = calibrate(first, white), whole = calibrate(board.observations, white);
   CalibrationOptions with_prior = white;
-  with_prior.prior = RigKnowledge{a.rig, *a.covariance};
+  with_prior.prior = GaussianRigPrior{a.rig, *a.covariance};
   const RigEstimate both = calibrate(second, with_prior);
   EXPECT_LT(worst_sigmas(both.rig, whole.rig, *whole.covariance_mvb), 0.05);
   const Eigen::ArrayXd ratio =
@@ -194,23 +194,23 @@ TEST(Prior, HalfTheViewsAsPriorOfTheOtherHalf) {
 
 TEST(Prior, IsRefusedWithItsDirection) {
   const auto observations = simulate_board(test::stereo_rig(), {}, 11).observations;
-  const auto complaint = [&](const Eigen::Matrix2d& C) {
+  const auto error_output = [&](const Eigen::Matrix2d& C) {
     return test::error_message([&] {
       calibrate(observations,
-                {.prior = RigKnowledge{test::stereo_rig(),
-                                       {CovarianceKind::prior, {"left.f_px", "left.ox_px"}, C}}});
+                {.prior = GaussianRigPrior{
+                     test::stereo_rig(), {CovarianceKind::prior, {"left.f_px", "left.ox_px"}, C}}});
     });
   };
   Eigen::Matrix2d indefinite, singular, zero;
   indefinite << 4, 7, 7, 9;
   singular << 4, 6, 6, 9;
   zero << 4, 0, 0, 0;
-  EXPECT_NE(complaint(indefinite).find("not positive semi-definite: negative variance where"),
+  EXPECT_NE(error_output(indefinite).find("not positive semi-definite: negative variance where"),
             std::string::npos);
-  EXPECT_NE(complaint(indefinite).find("the left focal length against the left centre (x)"),
+  EXPECT_NE(error_output(indefinite).find("the left focal length against the left centre (x)"),
             std::string::npos);
-  EXPECT_NE(complaint(singular).find("singular: no variance where"), std::string::npos);
-  EXPECT_NE(complaint(zero).find("prior of left.ox_px: its variance is 0"), std::string::npos);
+  EXPECT_NE(error_output(singular).find("singular: no variance where"), std::string::npos);
+  EXPECT_NE(error_output(zero).find("prior of left.ox_px: its variance is 0"), std::string::npos);
   EXPECT_NE(test::error_message([&] {
               calibrate(observations, {.known = {{"left.f_px", 525, 0}}});
             }).find("0 is no standard deviation"),

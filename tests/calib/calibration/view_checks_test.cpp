@@ -44,7 +44,7 @@ class ViewChecks : public testing::TestWithParam<std::uint64_t> {
 
 TEST_P(ViewChecks, GoodOnesPassInSilence) {
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  EXPECT_TRUE(diagnosis.doubts.empty());
+  EXPECT_TRUE(diagnosis.trust_warnings.empty());
   EXPECT_TRUE(diagnosis.warnings.empty());
 }
 
@@ -52,21 +52,22 @@ TEST_P(ViewChecks, OneTurnedViewIsNamed) {
   BoardView& view = test::view_of(good_, 7, 1);
   test::half_turn(view);
   view.image = "right07.png";
-  const std::string complaint = complaint_of(good_);
-  EXPECT_EQ(complaint.find("frame 7, camera 1 (right07.png): its corners are numbered half a turn "
-                           "(180 degrees) away from those of camera 0"),
-            0u)
-      << complaint;
-  EXPECT_NE(complaint.find("; reverse the order of its corners or leave the frame out"),
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(
+      error_output.find("frame 7, camera 1 (right07.png): its corners are numbered half a turn "
+                        "(180 degrees) away from those of camera 0"),
+      0u)
+      << error_output;
+  EXPECT_NE(error_output.find("; reverse the order of its corners or leave the frame out"),
             std::string::npos);
 }
 
 TEST_P(ViewChecks, SeveralTurnedViewsOfTheFirstCameraAreCounted) {
   for (const int frame : {2, 5, 11}) test::half_turn(test::view_of(good_, frame, 0));
-  const std::string complaint = complaint_of(good_);
-  EXPECT_EQ(complaint.find("frame 2, camera 0: its corners are numbered half a turn"), 0u)
-      << complaint;
-  EXPECT_NE(complaint.find("(and 2 more frames like it)"), std::string::npos) << complaint;
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(error_output.find("frame 2, camera 0: its corners are numbered half a turn"), 0u)
+      << error_output;
+  EXPECT_NE(error_output.find("(and 2 more frames like it)"), std::string::npos) << error_output;
 }
 
 TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
@@ -81,29 +82,32 @@ TEST_P(ViewChecks, ACameraTurnedThroughoutIsNamed) {
 
 TEST_P(ViewChecks, BothCamerasTurnedInAFrameIsNoFault) {
   for (const int camera : {0, 1}) test::half_turn(test::view_of(good_, 7, camera));
-  EXPECT_TRUE(diagnosis_of(good_).doubts.empty());
+  EXPECT_TRUE(diagnosis_of(good_).trust_warnings.empty());
 }
 
 TEST_P(ViewChecks, SwappedViewsAreNamed) {
   test::view_of(good_, 3, 0).image = "left03.png";
   for (const int frame : {3, 8}) test::exchange(good_, frame);
-  const std::string complaint = complaint_of(good_);
-  EXPECT_EQ(complaint.find("frame 3, camera 0 (left03.png) and frame 3, camera 1: left and right "
-                           "are swapped against the other frames"),
-            0u)
-      << complaint;
-  EXPECT_NE(complaint.find("(and 1 more frame like it); exchange the two images"),
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(
+      error_output.find("frame 3, camera 0 (left03.png) and frame 3, camera 1: left and right "
+                        "are swapped against the other frames"),
+      0u)
+      << error_output;
+  EXPECT_NE(error_output.find("(and 1 more frame like it); exchange the two images"),
             std::string::npos)
-      << complaint;
+      << error_output;
 }
 
 TEST_P(ViewChecks, CamerasExchangedThroughoutAreDoubted) {
   for (int frame = 0; frame < 13; ++frame) test::exchange(good_, frame);
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  ASSERT_EQ(diagnosis.doubts.size(), 1u);
-  EXPECT_EQ(diagnosis.doubts[0].find("camera 1 (\"right\") stands 0."), 0u) << diagnosis.doubts[0];
-  EXPECT_NE(diagnosis.doubts[0].find("m to the left of camera 0 (\"left\"): the cameras seem to be "
-                                     "exchanged"),
+  ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
+  EXPECT_EQ(diagnosis.trust_warnings[0].find("camera 1 (\"right\") stands 0."), 0u)
+      << diagnosis.trust_warnings[0];
+  EXPECT_NE(diagnosis.trust_warnings[0].find(
+                "m to the left of camera 0 (\"left\"): the cameras seem to be "
+                "exchanged"),
             std::string::npos);
 }
 
@@ -111,32 +115,35 @@ TEST_P(ViewChecks, ImagesPairedOneFrameLateAreNamed) {
   for (BoardView& view : good_.views) {
     if (view.camera == 1) ++view.frame;
   }
-  const std::string complaint = complaint_of(good_);
-  EXPECT_EQ(complaint.find("cameras 0 and 1: their images are paired wrongly"), 0u) << complaint;
-  EXPECT_NE(complaint.find("13 of 13 do when camera 1's images are taken 1 frame later"),
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(error_output.find("cameras 0 and 1: their images are paired wrongly"), 0u)
+      << error_output;
+  EXPECT_NE(error_output.find("13 of 13 do when camera 1's images are taken 1 frame later"),
             std::string::npos)
-      << complaint;
+      << error_output;
 }
 
 TEST_P(ViewChecks, ImagesWithoutAnyPairingAreNamed) {
   for (BoardView& view : good_.views) {
     if (view.camera == 1) view.frame = view.frame * 5 % 13;
   }
-  const std::string complaint = complaint_of(good_);
-  EXPECT_EQ(complaint.find("cameras 0 and 1: only "), 0u) << complaint;
-  EXPECT_NE(complaint.find("of 13 frames agree on the pose between the two: their images are not "
-                           "simultaneous"),
-            std::string::npos)
-      << complaint;
+  const std::string error_output = complaint_of(good_);
+  EXPECT_EQ(error_output.find("cameras 0 and 1: only "), 0u) << error_output;
+  EXPECT_NE(
+      error_output.find("of 13 frames agree on the pose between the two: their images are not "
+                        "simultaneous"),
+      std::string::npos)
+      << error_output;
 }
 
 TEST_P(ViewChecks, OneFrameTakenAtOtherTimesIsDoubted) {
   test::view_of(good_, 6, 1).pixels_px = test::view_of(good_, 5, 1).pixels_px;
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  ASSERT_EQ(diagnosis.doubts.size(), 1u);
-  EXPECT_EQ(diagnosis.doubts[0].find("frame 6, camera 1: each image fits the board to "), 0u)
-      << diagnosis.doubts[0];
-  EXPECT_NE(diagnosis.doubts[0].find("leave the frame out"), std::string::npos);
+  ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
+  EXPECT_EQ(diagnosis.trust_warnings[0].find("frame 6, camera 1: each image fits the board to "),
+            0u)
+      << diagnosis.trust_warnings[0];
+  EXPECT_NE(diagnosis.trust_warnings[0].find("leave the frame out"), std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ViewChecks, testing::Range<std::uint64_t>(400, 410));

@@ -106,9 +106,10 @@ TEST(ScaledDecomposition, FactorReproducesTheCovariance) {
   EXPECT_LT((d.factor() * d.factor().transpose() - c.matrix).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GE(d.directions()[0].variance_share, d.directions()[1].variance_share);
   EXPECT_LT(d.scaled_condition(), d.raw_condition());
-  EXPECT_NE(d.directions()[0].words.find("the right centre (x) against the right rotation about y"),
-            std::string::npos)
-      << d.directions()[0].words;
+  EXPECT_NE(
+      d.directions()[0].description.find("the right centre (x) against the right rotation about y"),
+      std::string::npos)
+      << d.directions()[0].description;
 }
 
 TEST(ScaledDecomposition, NegativeVarianceIsNamed) {
@@ -152,8 +153,9 @@ TEST(NormalEquations, ARowOfCornersFixesNoPose) {
                   [&] { reduced_normal_equations(board.observations, board.truth, 0.2); }),
               expected)
         << seed;
-    EXPECT_EQ(test::error_message([&] { board_poses_given_rig(board.observations, board.truth); }),
-              expected)
+    EXPECT_EQ(
+        test::error_message([&] { conditional_board_poses(board.observations, board.truth); }),
+        expected)
         << seed;
   }
 }

@@ -16,7 +16,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/solver/normal_equations.h"
 #include "calib/uncertainty/next_view.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 #include "tests/support/data_folder.h"
 
 namespace vernier {
@@ -87,9 +87,9 @@ TEST(RealPairs, PredictedGainOfAViewIsWhatItBrings) {
     const BoardState state{
         now.rig, {frames_of(all)[f]}, {everything.evidence->T_first_board[f]}, {0, 0}};
     const Eigen::MatrixXd S = reduced_normal_equations(one, state, 0.18).information;
-    predicted.push_back(sd_of(wanted_error(now.rig, "depth", 5), updated_factor(F, S)));
-    found.push_back(
-        sd_of(wanted_error(then.rig, "depth", 5), ScaledDecomposition(*then.covariance).factor()));
+    predicted.push_back(sd_of(target_quantity(now.rig, "depth", 5), updated_factor(F, S)));
+    found.push_back(sd_of(target_quantity(then.rig, "depth", 5),
+                          ScaledDecomposition(*then.covariance).factor()));
     RecordProperty("sd_m_view_" + std::to_string(f),
                    std::to_string(predicted.back()) + " " + std::to_string(found.back()));
     EXPECT_NEAR(predicted.back() / found.back(), 1, 0.02) << f;

@@ -60,7 +60,7 @@ void expect_rank(const Rig& rig,
 TEST(Observability, PairsSeeFifteenOfSixteen) {
   const Rig rig = test::stereo_rig();
   const PairObservations pairs = simulate_pairs(rig, 1, 0, {.pixel_sigma_px = 0});
-  const Eigen::MatrixXd unseen = unseen_directions(rig);
+  const Eigen::MatrixXd unseen = unobservable_directions(rig);
   expect_rank(rig, pairs, unseen, 15);
   const Eigen::Vector3d T = rig.T_camera_first[1].t;
   EXPECT_NEAR(std::abs(unseen.col(0).tail<3>().normalized().dot(T.normalized())), 1, 1e-12);
@@ -71,21 +71,21 @@ TEST(Observability, PairsSeeNineWithoutDistortion) {
   Rig rig = test::stereo_rig();
   for (Camera& camera : rig.cameras) camera.parameters[4] = 0;
   const PairObservations pairs = simulate_pairs(rig, 2, 0, {.pixel_sigma_px = 0});
-  expect_rank(rig, pairs, unseen_directions(rig), 9);
+  expect_rank(rig, pairs, unobservable_directions(rig), 9);
 }
 
 TEST(Observability, PairsSeeTwelveWithOneLensUndistorted) {
   Rig rig = test::stereo_rig();
   rig.cameras[0].parameters[4] = 0;
   const PairObservations pairs = simulate_pairs(rig, 3, 0, {.pixel_sigma_px = 0});
-  expect_rank(rig, pairs, unseen_directions(rig), 12);
+  expect_rank(rig, pairs, unobservable_directions(rig), 12);
 }
 
 TEST(Observability, PairsSeeThirteenOnAPlane) {
   const Rig rig = test::stereo_rig();
   const PairObservations pairs =
       simulate_pairs(rig, 4, 0, {.scene = SimulatedScene::plane, .pixel_sigma_px = 0});
-  expect_rank(rig, pairs, unseen_directions(rig, plane_of(pairs, rig)), 13);
+  expect_rank(rig, pairs, unobservable_directions(rig, plane_of(pairs, rig)), 13);
 }
 
 TEST(Observability, AnotherLensAtAnotherScaleIsTheSameLens) {
@@ -94,7 +94,7 @@ TEST(Observability, AnotherLensAtAnotherScaleIsTheSameLens) {
     const Rig rig = test::stereo_rig(camera_model(name));
     const PairObservations pairs =
         simulate_pairs(rig, 5, 0, {.scene = SimulatedScene::plane, .pixel_sigma_px = 0});
-    const Eigen::MatrixXd unseen = unseen_directions(rig, plane_of(pairs, rig));
+    const Eigen::MatrixXd unseen = unobservable_directions(rig, plane_of(pairs, rig));
     ASSERT_EQ(unseen.cols(), 3) << name;
     const Eigen::MatrixXd S = epipolar_sums(PackedPairs(pairs), rig, {}).information;
     const Eigen::VectorXd d = S.diagonal().cwiseSqrt();

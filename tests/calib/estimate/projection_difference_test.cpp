@@ -107,16 +107,16 @@ TEST(ProjectionDifference, LeavesOutPixelsWithoutARay) {
 
 TEST(ProjectionDifference, RefusesBadOptions) {
   const Rig rig = test::stereo_rig();
-  const auto complaint = [&](const ProjectionDifferenceOptions& options) {
+  const auto error_output = [&](const ProjectionDifferenceOptions& options) {
     return test::error_message([&] { projection_difference(rig, rig, options); });
   };
-  EXPECT_EQ(complaint({.distances_m = {}}), "distances: none is given; give at least one");
-  EXPECT_EQ(complaint({.distances_m = {1, -2}}),
+  EXPECT_EQ(error_output({.distances_m = {}}), "distances: none is given; give at least one");
+  EXPECT_EQ(error_output({.distances_m = {1, -2}}),
             "distances: one is not above 0; give metres, or inf");
-  EXPECT_EQ(complaint({.grid = {0, 5}}),
+  EXPECT_EQ(error_output({.grid = {0, 5}}),
             "grid: it has no pixels; give at least one column and one row");
-  EXPECT_NE(complaint({.focus_share = 0}).find("focus"), std::string::npos);
-  EXPECT_NE(complaint({.distances_m = {1}, .grid = {1, 1}}).find("fewer than 6 pixels"),
+  EXPECT_NE(error_output({.focus_share = 0}).find("focus"), std::string::npos);
+  EXPECT_NE(error_output({.distances_m = {1}, .grid = {1, 1}}).find("fewer than 6 pixels"),
             std::string::npos);
 }
 

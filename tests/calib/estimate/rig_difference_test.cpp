@@ -51,7 +51,7 @@ TEST(RigDifference, IsNothingForTheSameRig) {
   EXPECT_EQ(d.dof, 16);
   EXPECT_EQ(d.p_value, 1);
   EXPECT_EQ(d.parameters.size(), 16u);
-  EXPECT_TRUE(d.only_in_a.empty() && d.only_in_b.empty() && d.held_apart.empty());
+  EXPECT_TRUE(d.only_in_a.empty() && d.only_in_b.empty() && d.fixed_at_different_values.empty());
 }
 
 TEST(RigDifference, IsTheQuadraticFormAndTheSumOfItsDirections) {
@@ -118,7 +118,7 @@ TEST(RigDifference, HoldsApartWhatIsHeldAtDifferentValues) {
   const RigDifference d = of(a, b);
   EXPECT_TRUE(std::isinf(d.mahalanobis2));
   EXPECT_EQ(d.p_value, 0);
-  EXPECT_TRUE(says(d.held_apart, "left.ax is held at"));
+  EXPECT_TRUE(says(d.fixed_at_different_values, "left.ax is held at"));
 
   // held in one alone is no contradiction: the other's variance decides
   b.covariance->matrix(1, 1) = 1e-6;
@@ -138,9 +138,10 @@ TEST(RigDifference, ComparesTheRestOfARotationThatBothHoldInPart) {
   EXPECT_EQ(d.dof, 15);
   EXPECT_TRUE(d.parameters[11].held);
   EXPECT_FALSE(d.parameters[10].held);
-  EXPECT_TRUE(d.held_apart.empty());
+  EXPECT_TRUE(d.fixed_at_different_values.empty());
   EXPECT_GT(d.p_value, 1e-3);
-  EXPECT_TRUE(says(of(a, calibrated_with(2, -0.0201)).held_apart, "right.wy_rad is held at"));
+  EXPECT_TRUE(says(of(a, calibrated_with(2, -0.0201)).fixed_at_different_values,
+                   "right.wy_rad is held at"));
 }
 
 TEST(RigDifference, NamesADirectionThatNeitherGivesAVariance) {
@@ -156,26 +157,27 @@ TEST(RigDifference, NamesADirectionThatNeitherGivesAVariance) {
   EXPECT_NEAR(of(a, b).mahalanobis2, 2, 1e-9);  // 2² / (1 + 1)
   b.rig.cameras[1].parameters[2] -= 1;
   EXPECT_TRUE(std::isinf(of(a, b).mahalanobis2));
-  EXPECT_TRUE(says(of(a, b).held_apart, "without variance")) << of(a, b).held_apart.size();
+  EXPECT_TRUE(says(of(a, b).fixed_at_different_values, "without variance"))
+      << of(a, b).fixed_at_different_values.size();
 }
 
 TEST(RigDifference, RefusesOtherCameras) {
   const Rig a = test::stereo_rig();
-  const auto complaint = [&](const Rig& b) {
+  const auto error_output = [&](const Rig& b) {
     return test::error_message([&] { check_same_cameras(a, b, "b.json"); });
   };
   Rig b = a;
   b.cameras[1].size_px = {1280, 960};
   EXPECT_EQ(
-      complaint(b),
+      error_output(b),
       "b.json: its camera \"right\" has images of 1280x960 and that of the first rig 640x480; "
       "calibrate both at one image size");
   b.cameras[1].name = "up";
-  EXPECT_NE(complaint(b).find("its camera 2 is \"up\" and that of the first rig \"right\""),
+  EXPECT_NE(error_output(b).find("its camera 2 is \"up\" and that of the first rig \"right\""),
             std::string::npos);
   b.cameras.resize(1);
   b.T_camera_first.resize(1);
-  EXPECT_NE(complaint(b).find("it has 1 camera and the first rig 2"), std::string::npos);
+  EXPECT_NE(error_output(b).find("it has 1 camera and the first rig 2"), std::string::npos);
 }
 
 TEST(RigDifference, RefusesACovarianceOfOtherParameters) {

@@ -28,7 +28,7 @@ using test::rig_of_cameras;
 
 /// A change of a good file and what is said of it.
 struct Change {
-  const char *from, *to, *complaint;
+  const char *from, *to, *error_output;
 };
 
 /// The text with its first `from` replaced.
@@ -48,7 +48,8 @@ void expect_complaints(const std::string& name,
   for (const Change& change : changes) {
     const std::string text = replaced(good, change.from, change.to);
     const std::string said = error_message([&] { read(folder.write(name, text)); });
-    EXPECT_NE(said.find(change.complaint), std::string::npos) << change.to << "\n  said " << said;
+    EXPECT_NE(said.find(change.error_output), std::string::npos)
+        << change.to << "\n  said " << said;
     EXPECT_NE(said.find(name), std::string::npos) << said;
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   }
@@ -267,7 +268,7 @@ TEST(ConvertBadFiles, RosPairsWithoutABaselineAndMessages) {
 }
 
 TEST(ConvertBadFiles, Colmap) {
-  const std::vector<ForeignFile> files = colmap_cameras(rig_of_cameras(OpenCv4{}, 2));
+  const std::vector<ExportedFile> files = colmap_cameras(rig_of_cameras(OpenCv4{}, 2));
   const auto read = [](const std::filesystem::path& file) { read_colmap_cameras(file); };
   Folder folder;
   expect_complaints("cameras.txt", colmap_cameras(one_camera(OpenCv4{}))[0].text,
@@ -356,7 +357,7 @@ class ColmapRigConfig : public testing::Test {
   }
 
   const Rig rig_ = rig_of_cameras(OpenCv4{}, 2);
-  const std::vector<ForeignFile> files_ = colmap_cameras(rig_);
+  const std::vector<ExportedFile> files_ = colmap_cameras(rig_);
   Folder folder_;
 };
 
@@ -385,7 +386,7 @@ TEST_F(ColmapRigConfig, CamerasAlikeAreToldByTheirImages) {
   Rig rig = rig_;
   rig.cameras[1] = rig.cameras[0];
   rig.cameras[1].name = "right";
-  for (const ForeignFile& file : colmap_cameras(rig)) folder_.write(file.name.string(), file.text);
+  for (const ExportedFile& file : colmap_cameras(rig)) folder_.write(file.name.string(), file.text);
   EXPECT_TRUE(read().notes.empty());
 }
 
@@ -393,7 +394,7 @@ TEST(ConvertBadFiles, ColmapNamesAreEscaped) {
   Folder folder;
   Rig rig = rig_of_cameras(OpenCv4{}, 2);
   rig.cameras[1].name = "the\"right\"one";
-  for (const ForeignFile& file : colmap_cameras(rig)) folder.write(file.name.string(), file.text);
+  for (const ExportedFile& file : colmap_cameras(rig)) folder.write(file.name.string(), file.text);
   EXPECT_EQ(read_colmap_cameras(folder.path()).rig.cameras[1].name, rig.cameras[1].name);
 }
 

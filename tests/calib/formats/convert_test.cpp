@@ -52,8 +52,8 @@ void expect_equal(const Rig& read, const Rig& written) {
   }
 }
 
-std::vector<ForeignFile> ros_files(const Rig& rig) {
-  std::vector<ForeignFile> files;
+std::vector<ExportedFile> ros_files(const Rig& rig) {
+  std::vector<ExportedFile> files;
   for (const RosCameraInfo& info : rectified_camera_info(rig)) {
     files.push_back(format_ros_camera_info(info));
   }

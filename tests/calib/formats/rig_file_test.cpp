@@ -161,23 +161,23 @@ TEST(RigFile, NewNamesOfCamerasStandEverywhere) {
 
 TEST(RigFile, NumbersThatAreNotFiniteAreNotWritten) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto complaint = [](const RigEstimate& e) {
+  const auto error_output = [](const RigEstimate& e) {
     return test::error_message([&] { format_rig(e); });
   };
   RigEstimate e = estimate();
   e.rig.T_camera_first[1].t.y() = nan;
-  EXPECT_EQ(complaint(e),
+  EXPECT_EQ(error_output(e),
             "rig.cameras[1].from_first.translation_m[1]: is not a finite number; a "
             "rig file cannot hold it");
   e = estimate();
   e.covariance_mvb->coeffRef(2, 3) = std::numeric_limits<double>::infinity();
-  EXPECT_NE(complaint(e).find("rig.covariance_mvb.matrix[2][3]"), std::string::npos);
+  EXPECT_NE(error_output(e).find("rig.covariance_mvb.matrix[2][3]"), std::string::npos);
   e = estimate();
   e.calibration->chi2 = nan;
-  EXPECT_NE(complaint(e).find("rig.calibration.chi2"), std::string::npos);
+  EXPECT_NE(error_output(e).find("rig.calibration.chi2"), std::string::npos);
   e = estimate();
   e.calibration->outliers.push_back({0, 0, 1, "", {3, 4}, nan});  // its frame went with it
-  EXPECT_EQ(complaint(e), "");
+  EXPECT_EQ(error_output(e), "");
 }
 
 }  // namespace

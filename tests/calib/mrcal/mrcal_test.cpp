@@ -289,7 +289,7 @@ class Answer : public testing::Test {
     const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
     return compare_uncertainty(file, board_.observations, ours, sigma_px);
   }
-  std::string complaint(const std::string& lines) {
+  std::string error_output(const std::string& lines) {
     return test::error_message([&] { compared(lines); });
   }
 
@@ -327,15 +327,15 @@ TEST_F(Answer, NullsAreNoNumbersAndTheWorst) {
 
 TEST_F(Answer, WhatIsNoJsonOrTooLittleIsAnError) {
   const std::string said = "mrcal: its Python's answer is not what was asked for";
-  EXPECT_NE(complaint(ones("a['projection'][0][0][0][0] = math.nan")).find(said),
+  EXPECT_NE(error_output(ones("a['projection'][0][0][0][0] = math.nan")).find(said),
             std::string::npos);
-  EXPECT_NE(complaint(ones("del a['projection'][0][0]")).find(said), std::string::npos);
-  EXPECT_NE(complaint(ones("del a['version']")).find(said), std::string::npos);
-  EXPECT_NE(complaint("").find(said), std::string::npos);
+  EXPECT_NE(error_output(ones("del a['projection'][0][0]")).find(said), std::string::npos);
+  EXPECT_NE(error_output(ones("del a['version']")).find(said), std::string::npos);
+  EXPECT_NE(error_output("").find(said), std::string::npos);
 }
 
 TEST_F(Answer, AScriptThatFailsIsSaidAndAMissingOneIsAbsent) {
-  EXPECT_NE(complaint("sys.exit('no such lens')\n").find("its Python failed: no such lens"),
+  EXPECT_NE(error_output("sys.exit('no such lens')\n").find("its Python failed: no such lens"),
             std::string::npos);
   const RefinedMinimum ours = refine_minimum(board_.observations, board_.truth);
   for (const char* missing : {"/nowhere/script.py", "script.py"}) {

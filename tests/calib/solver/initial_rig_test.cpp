@@ -59,10 +59,10 @@ TEST_P(Starts, ByThemselvesAndWithoutAComplaint) {
   for (std::uint64_t seed = 600; seed < 606; ++seed) {
     BoardObservations seen = simulate_board(rig_of(lens), {}, seed, 0, lens.board).observations;
     check_and_sort(seen);
-    EXPECT_TRUE(check_observations(seen).doubts.empty());
+    EXPECT_TRUE(check_observations(seen).trust_warnings.empty());
     const BoardState start = initial_state(seen, {lens.model, lens.model});
     EXPECT_NEAR(start.rig.cameras[0].f_px() / lens.f_px, 1, 0.1) << "seed " << seed;
-    EXPECT_TRUE(check_views(seen, start).doubts.empty());
+    EXPECT_TRUE(check_views(seen, start).trust_warnings.empty());
     const BoardState end = minimise_reprojection(seen, start);
     EXPECT_NEAR(robust_pixel_sigma(corner_residuals(seen, end)), 0.2, 0.02) << "seed " << seed;
   }

@@ -33,7 +33,7 @@ class CameraWithoutViews : public testing::Test {
             {"right.tx_m", {}}, {"right.ty_m", {}},   {"right.tz_m", {}}};
   }
 
-  std::string complaint(const ReprojectionProblem& problem) const {
+  std::string error_output(const ReprojectionProblem& problem) const {
     return error_message(
         [&] { minimise_reprojection(board_.observations, board_.truth, problem); });
   }
@@ -47,8 +47,8 @@ TEST_F(CameraWithoutViews, IsNamed) {
   const std::string expected =
       "camera 1 (\"right\"): no view of the board is left of it, and nothing else is known of its "
       "f_px; give views of it, or hold or know all of its parameters";
-  EXPECT_EQ(complaint({}), expected);
-  EXPECT_EQ(complaint({.held = held_mask(rig_, {{"right.k1", {}}})}), expected);
+  EXPECT_EQ(error_output({}), expected);
+  EXPECT_EQ(error_output({.held = held_mask(rig_, {{"right.k1", {}}})}), expected);
 }
 
 TEST_F(CameraWithoutViews, MayBeHeld) {
@@ -57,12 +57,13 @@ TEST_F(CameraWithoutViews, MayBeHeld) {
   EXPECT_EQ(solved.rig.cameras[1].parameters, rig_.cameras[1].parameters);
   EXPECT_NE(solved.rig.cameras[0].parameters, rig_.cameras[0].parameters);
   all_.erase(all_.begin() + 6);
-  EXPECT_NE(complaint({.held = held_mask(rig_, all_)}).find("nothing else is known of its wy_rad"),
-            std::string::npos);
+  EXPECT_NE(
+      error_output({.held = held_mask(rig_, all_)}).find("nothing else is known of its wy_rad"),
+      std::string::npos);
 }
 
 TEST_F(CameraWithoutViews, MayBeKnownFromElsewhere) {
-  std::vector<KnownParameter> known;
+  std::vector<ParameterPrior> known;
   const Eigen::VectorXd values = parameters(rig_);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     known.push_back({all_[i].name, values[5 + static_cast<Eigen::Index>(i)] + 1e-3, 1e-3});
@@ -77,15 +78,15 @@ TEST_F(CameraWithoutViews, MayBeKnownFromElsewhere) {
 
 TEST(MinimiseReprojection, RefusesAProblemOfAnotherRig) {
   const SimulatedBoard board = simulate_board(test::stereo_rig(), {}, 5);
-  const auto complaint = [&](const ReprojectionProblem& problem) {
+  const auto error_output = [&](const ReprojectionProblem& problem) {
     return error_message([&] { minimise_reprojection(board.observations, board.truth, problem); });
   };
-  EXPECT_EQ(complaint({.held = held_mask(test::stereo_rig(Pinhole{}), {})}),
+  EXPECT_EQ(error_output({.held = held_mask(test::stereo_rig(Pinhole{}), {})}),
             "held parameters: there is not one flag a parameter of the rig; make them with "
             "held_mask");
-  EXPECT_EQ(complaint({.priors = {{board.truth.rig, Eigen::MatrixXd::Identity(3, 3)}}}),
+  EXPECT_EQ(error_output({.priors = {{board.truth.rig, Eigen::MatrixXd::Identity(3, 3)}}}),
             "prior: it is of other parameters than the rig's; make it with rig_prior");
-  EXPECT_EQ(complaint({.corner_weights = {{1.0}}}),
+  EXPECT_EQ(error_output({.corner_weights = {{1.0}}}),
             "corner weights: there is not one a corner; give one a corner");
 }
 

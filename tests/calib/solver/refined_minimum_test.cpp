@@ -24,7 +24,7 @@ using namespace internal;
 namespace {
 
 Eigen::MatrixXd random_matrix(int rows, int columns, std::uint32_t feature) {
-  Draws draws({.seed = 5, .feature = feature});
+  RandomStream draws({.seed = 5, .feature = feature});
   return draws.normals(rows * columns).reshaped(rows, columns);
 }
 

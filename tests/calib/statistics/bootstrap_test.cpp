@@ -30,7 +30,7 @@ TEST(Bootstrap, CoversTheMeanAsOftenAsItSays) {
   constexpr int trials = 400, clusters = 40;
   int covered = 0;
   for (int t = 0; t < trials; ++t) {
-    Draws draws({.seed = 71, .trial = static_cast<std::uint32_t>(t)});
+    RandomStream draws({.seed = 71, .trial = static_cast<std::uint32_t>(t)});
     std::vector<double> values(clusters);
     for (double& v : values) v = -std::log(draws.uniform());  // mean 1
     const Interval i =

@@ -15,25 +15,26 @@ using namespace internal;
 
 namespace {
 
-TEST(Draws, SamePlaceSameNumbers) {
-  const DrawPlace place{.seed = 7, .trial = 3, .feature = 11, .source = 2, .eye = 1, .frame = 5};
-  Draws a(place), b(place);
+TEST(RandomStream, SamePlaceSameNumbers) {
+  const RandomCounter place{
+      .seed = 7, .trial = 3, .feature = 11, .source = 2, .eye = 1, .frame = 5};
+  RandomStream a(place), b(place);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(a.uniform(), b.uniform());
 }
 
-TEST(Draws, EveryPartOfThePlaceMatters) {
-  const DrawPlace places[] = {{},           {.seed = 1},    {.seed = 1ull << 32},
-                              {.trial = 1}, {.feature = 1}, {.source = 1},
-                              {.eye = 1},   {.frame = 1}};
+TEST(RandomStream, EveryPartOfThePlaceMatters) {
+  const RandomCounter places[] = {{},           {.seed = 1},    {.seed = 1ull << 32},
+                                  {.trial = 1}, {.feature = 1}, {.source = 1},
+                                  {.eye = 1},   {.frame = 1}};
   std::set<double> firsts;
-  for (const auto& place : places) firsts.insert(Draws(place).uniform());
+  for (const auto& place : places) firsts.insert(RandomStream(place).uniform());
   EXPECT_EQ(firsts.size(), std::size(places));
 }
 
-TEST(Draws, RefusesFieldsBeyondTheirBits) {
-  EXPECT_THROW(Draws({.source = 256}), Error);
-  EXPECT_THROW(Draws({.eye = 4}), Error);
-  EXPECT_THROW(Draws({.frame = 1u << 22}), Error);
+TEST(RandomStream, RefusesFieldsBeyondTheirBits) {
+  EXPECT_THROW(RandomStream({.source = 256}), Error);
+  EXPECT_THROW(RandomStream({.eye = 4}), Error);
+  EXPECT_THROW(RandomStream({.frame = 1u << 22}), Error);
 }
 
 TEST(NormalQuantile, InvertsTheDistribution) {
@@ -44,8 +45,8 @@ TEST(NormalQuantile, InvertsTheDistribution) {
 }
 
 // The published example of Random123 for Philox4x32-10 with zero counter and key.
-TEST(Draws, IsPhilox) {
-  Draws draws(DrawPlace{});
+TEST(RandomStream, IsPhilox) {
+  RandomStream draws(RandomCounter{});
   const std::uint64_t first = (0xe169c58dull << 32 | 0x6627e8d5ull) >> 11;
   EXPECT_EQ(draws.uniform(), (static_cast<double>(first) + 0.5) * 0x1p-53);
 }

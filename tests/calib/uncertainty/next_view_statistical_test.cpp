@@ -17,7 +17,7 @@
 #include "calib/simulated_board.h"
 #include "calib/statistics/random.h"
 #include "calib/uncertainty/next_view.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -49,9 +49,9 @@ class DepthTrials {
     for (int trial = 0; trial < trials; ++trial) {
       BoardObservations noisy = exact;
       for (BoardView& view : noisy.views) {
-        Draws draws({.seed = 77,
-                     .trial = static_cast<std::uint32_t>(trial),
-                     .feature = static_cast<std::uint32_t>(64 * view.frame + view.camera)});
+        RandomStream draws({.seed = 77,
+                            .trial = static_cast<std::uint32_t>(trial),
+                            .feature = static_cast<std::uint32_t>(64 * view.frame + view.camera)});
         for (auto& q : view.pixels_px) q += sigma_px * Eigen::Vector2d(draws.normals(2));
       }
       const Rig rig =
@@ -87,9 +87,9 @@ std::vector<Pose> advised(const DepthTrials& trials, int views) {
   const ViewAdvice advice =
       advise_views(ScaledDecomposition(*now.covariance).factor(),
                    candidate_views(now.rig, trials.first().observations.target_m, {0, 0}, sigma_px),
-                   wanted_error(now.rig, "depth", 5), {.views = views, .more = 1});
+                   target_quantity(now.rig, "depth", 5), {.views = views, .more = 1});
   std::vector<Pose> poses;
-  for (const RatedView& view : advice.views) poses.push_back(view.placement.T_first_board);
+  for (const ScoredView& view : advice.views) poses.push_back(view.placement.T_first_board);
   return poses;
 }
 

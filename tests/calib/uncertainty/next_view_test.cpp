@@ -19,7 +19,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
@@ -65,16 +65,16 @@ TEST(NextView, PredictsTheBoundOfTheCalibrationWithIt) {
   const SimulatedBoard board = first_views(0);
   const RigEstimate before = calibrated(board.observations);
   for (const char* what : {"depth", "projection", "rectification", "baseline", "left.f_px"}) {
-    const WantedError wanted = wanted_error(before.rig, what, 5);
+    const TargetQuantity wanted = target_quantity(before.rig, what, 5);
     const ViewAdvice advice =
         advise_views(ScaledDecomposition(*before.covariance).factor(), candidates_of(before.rig),
                      wanted, {.views = 2, .more = 2});
     BoardObservations more = board.observations;
-    for (const RatedView& view : advice.views) {
+    for (const ScoredView& view : advice.views) {
       more = with_view(more, board.truth.rig, view.placement.T_first_board);
       const RigEstimate after = calibrated(more);
-      const double sd =
-          sd_of(wanted_error(after.rig, what, 5), ScaledDecomposition(*after.covariance).factor());
+      const double sd = sd_of(target_quantity(after.rig, what, 5),
+                              ScaledDecomposition(*after.covariance).factor());
       EXPECT_NEAR(view.sd_after / sd, 1, 1e-5) << what;
       EXPECT_LT(view.sd_after, view.sd_before) << what;
     }
@@ -88,7 +88,7 @@ TEST(NextView, PredictsTheBoundWithinAFewPerCentUnderNoise) {
   const RigEstimate before = calibrated(board.observations);
   const ViewAdvice advice =
       advise_views(ScaledDecomposition(*before.covariance).factor(), candidates_of(before.rig),
-                   wanted_error(before.rig, "depth", 5), {.more = 1});
+                   target_quantity(before.rig, "depth", 5), {.more = 1});
   const RigEstimate after = calibrated(
       with_view(board.observations, board.truth.rig, advice.views[0].placement.T_first_board));
   EXPECT_NEAR(depth_uncertainty(after, {5}, 1, 2)[0].sigma_linear_m / advice.views[0].sd_after, 1,
@@ -118,7 +118,7 @@ TEST(NextView, HeldParametersStayHeld) {
   const auto candidates = candidates_of(estimate.rig, {.places = 3, .angles = 3});
   EXPECT_EQ(updated_factor(F, candidates[0].information).row(1).norm(), 0);
   EXPECT_NE(test::error_message([&] {
-              advise_views(F, candidates, wanted_error(estimate.rig, "left.ax", 5));
+              advise_views(F, candidates, target_quantity(estimate.rig, "left.ax", 5));
             }).find("left.ax: it has no error to reduce: what it depends on is held"),
             std::string::npos);
 }
@@ -127,7 +127,7 @@ TEST(NextView, RatesEveryCandidate) {
   const RigEstimate estimate = calibrated(first_views(0).observations);
   const Eigen::MatrixXd F = ScaledDecomposition(*estimate.covariance).factor();
   const auto candidates = candidates_of(estimate.rig);
-  const WantedError wanted = wanted_error(estimate.rig, "depth", 5);
+  const TargetQuantity wanted = target_quantity(estimate.rig, "depth", 5);
   const ViewAdvice advice = advise_views(F, candidates, wanted);
   double best = 1e9, worst = 0;
   for (const CandidateView& view : candidates) {
@@ -136,7 +136,7 @@ TEST(NextView, RatesEveryCandidate) {
     worst = std::max(worst, sd);
   }
   EXPECT_NEAR(advice.views[0].sd_after, best, 1e-9 * best);
-  EXPECT_NEAR(advice.least_helpful.sd_after, worst, 1e-9 * worst);
+  EXPECT_NEAR(advice.worst_candidate.sd_after, worst, 1e-9 * worst);
   EXPECT_EQ(advice.alternatives.size(), 5u);
   EXPECT_EQ(advice.sd_after_more.size(), 10u);
   for (std::size_t i = 1; i < 10; ++i) {
@@ -168,7 +168,7 @@ TEST(BoardPlacements, WordsSayWhichEdgeIsNearer) {
   const auto target = target_points({});
   for (const PlacedBoard& board : placed_boards(rig, target)) {
     const Pose& T = board.placement.T_first_board;
-    const std::string words = placement_in_words(board.placement, rig.cameras[0]);
+    const std::string words = describe_placement(board.placement, rig.cameras[0]);
     const auto says = [&](const char* edge) { return words.find(edge) != std::string::npos; };
     // corner 8 ends the first row, 45 begins the last
     const double rightwards = (T * target[8]).z() - (T * target[0]).z();
@@ -183,7 +183,7 @@ TEST(BoardPlacements, WordsSayWhichEdgeIsNearer) {
   p.distance_m = 0.55;
   p.turn_rad = 0.611;
   EXPECT_EQ(
-      placement_in_words(p, rig.cameras[0]),
+      describe_placement(p, rig.cameras[0]),
       "hold the board 0.55 m away, its centre in the upper right of the left image (480, 120), "
       "turned 35° about the vertical axis (right edge nearer), tilted 0°");
 }
@@ -203,10 +203,10 @@ TEST(BoardPlacements, RefuseABoardThatFitsNowhere) {
             std::string::npos);
 }
 
-TEST(WantedError, DepthIsThatOfDepthUncertainty) {
+TEST(TargetQuantity, DepthIsThatOfDepthUncertainty) {
   const RigEstimate estimate = calibrated(first_views(sigma_px).observations);
   for (const double range : {1.0, 5.0, 20.0}) {
-    const double sd = sd_of(wanted_error(estimate.rig, "depth", range),
+    const double sd = sd_of(target_quantity(estimate.rig, "depth", range),
                             ScaledDecomposition(*estimate.covariance).factor());
     EXPECT_NEAR(sd / depth_uncertainty(estimate, {range}, 1, 2)[0].sigma_linear_m, 1, 1e-4);
   }
@@ -214,11 +214,11 @@ TEST(WantedError, DepthIsThatOfDepthUncertainty) {
 
 // A shift of one image's rows by ε px is a vertical disparity of ε everywhere; a turn about the
 // baseline of both, none.
-TEST(WantedError, RectificationSeesWhatPartsTheRows) {
+TEST(TargetQuantity, RectificationSeesWhatPartsTheRows) {
   Rig rig = test::stereo_rig(Pinhole{});
   rig.T_camera_first[1].R.setIdentity();
   rig.T_camera_first[1].t = {-0.2, 0, 0};
-  const WantedError wanted = wanted_error(rig, "rectification", 3);
+  const TargetQuantity wanted = target_quantity(rig, "rectification", 3);
   const auto names = parameter_names(rig);
   const auto column = [&](const std::string& name) {
     const auto at = std::find(names.begin(), names.end(), name) - names.begin();
@@ -230,9 +230,9 @@ TEST(WantedError, RectificationSeesWhatPartsTheRows) {
   EXPECT_EQ(wanted.unit, "px");
 }
 
-TEST(WantedError, RefusesWhatIsNoError) {
+TEST(TargetQuantity, RefusesWhatIsNoError) {
   const Rig rig = test::stereo_rig();
-  const std::string unknown = test::error_message([&] { wanted_error(rig, "sharpness", 5); });
+  const std::string unknown = test::error_message([&] { target_quantity(rig, "sharpness", 5); });
   EXPECT_NE(unknown.find("\"sharpness\": there is no such error to reduce; use depth, projection, "
                          "rectification, baseline or a parameter: left.f_px"),
             std::string::npos)
@@ -240,10 +240,10 @@ TEST(WantedError, RefusesWhatIsNoError) {
   Rig one = rig;
   one.cameras.resize(1);
   one.T_camera_first.resize(1);
-  EXPECT_EQ(test::error_message([&] { wanted_error(one, "depth", 5); }),
+  EXPECT_EQ(test::error_message([&] { target_quantity(one, "depth", 5); }),
             "depth: it needs a pair and the rig has 1 camera; choose projection or a parameter");
-  EXPECT_GT(wanted_error(one, "projection", 5).gradient.rows(), 10);
-  EXPECT_NE(test::error_message([&] { wanted_error(rig, "depth", -1); }).find("above 0"),
+  EXPECT_GT(target_quantity(one, "projection", 5).gradient.rows(), 10);
+  EXPECT_NE(test::error_message([&] { target_quantity(rig, "depth", -1); }).find("above 0"),
             std::string::npos);
 }
 

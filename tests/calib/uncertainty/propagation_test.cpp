@@ -46,7 +46,7 @@ bool says(const std::string& text, const std::string& part) {
 }
 
 template <typename Call>
-std::string complaint(Call call) {
+std::string error_output(Call call) {
   try {
     call();
   } catch (const Error& error) {
@@ -236,7 +236,7 @@ TEST(JointInformation, IsTheInverseOfTheFullNormalMatrixForFlatAndWarpedBoards) 
                              state.frames,
                              state.T_first_board,
                              full.topLeftCorner(n, n),
-                             board_poses_given_rig(board.observations, state),
+                             conditional_board_poses(board.observations, state),
                              1.0};
     const Eigen::VectorXd sd = full.diagonal().cwiseSqrt();
     const Eigen::MatrixXd difference = sd.cwiseInverse().asDiagonal() *
@@ -321,7 +321,7 @@ TEST(ProjectionUncertainty, AnHonestCovarianceThatIsAMultipleOfTheBoundScalesEve
 TEST(ProjectionUncertainty, APriorIsNotInflatedWithTheViews) {
   const SimulatedBoard board =
       simulate_board(test::stereo_rig(), {6, 5, 0.05}, 7, 0, {.frames = 10, .pixel_sigma_px = 0.2});
-  std::vector<KnownParameter> known;
+  std::vector<ParameterPrior> known;
   const Eigen::VectorXd values = parameters(test::stereo_rig());
   const std::vector<std::string> names = parameter_names(test::stereo_rig());
   for (std::size_t i = 0; i < 13; ++i) {
@@ -382,15 +382,15 @@ TEST(ProjectionUncertainty, BadInputIsNamed) {
   const Rig& rig = estimate().rig;
   const Eigen::MatrixXd& C = estimate().covariance->matrix;
   const ProjectionUncertainty u(rig, C, 0, PointFixedTo::camera);
-  EXPECT_PRED2(says, complaint([&] { u.covariance({1, 1}, 0); }), "a distance of 0 m");
-  EXPECT_PRED2(says, complaint([&] { u.covariance({1, 1}, std::nan("")); }), "distance of nan");
-  EXPECT_PRED2(says, complaint([&] { projection_grid(u, 0, 0, 1); }), "a grid of 0x0");
-  EXPECT_PRED2(says, complaint([&] { projection_grid(u, 3, 3, -1); }), "a distance of -1 m");
-  EXPECT_PRED2(says, complaint([&] { ProjectionUncertainty(rig, C, 2, PointFixedTo::camera); }),
+  EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, 0); }), "a distance of 0 m");
+  EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, std::nan("")); }), "distance of nan");
+  EXPECT_PRED2(says, error_output([&] { projection_grid(u, 0, 0, 1); }), "a grid of 0x0");
+  EXPECT_PRED2(says, error_output([&] { projection_grid(u, 3, 3, -1); }), "a distance of -1 m");
+  EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 2, PointFixedTo::camera); }),
                "no camera 2: it has 2");
-  EXPECT_PRED2(says, complaint([&] { ProjectionUncertainty(rig, C, 0, PointFixedTo::boards); }),
+  EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 0, PointFixedTo::boards); }),
                "needs their poses");
-  EXPECT_PRED2(says, complaint([&] {
+  EXPECT_PRED2(says, error_output([&] {
                  ProjectionUncertainty(rig, Eigen::MatrixXd::Identity(3, 3), 0,
                                        PointFixedTo::camera);
                }),
@@ -401,7 +401,7 @@ TEST(RigAndBoards, WhatIsMissingIsNamed) {
   const auto with = [&](auto change) {
     RigEstimate e = estimate();
     change(e);
-    return complaint([&] { rig_and_boards(e, CovarianceChoice::mvb, "r.json"); });
+    return error_output([&] { rig_and_boards(e, CovarianceChoice::mvb, "r.json"); });
   };
   EXPECT_PRED2(says, with([](RigEstimate& e) { e.evidence.reset(); }),
                "r.json: it holds no views of a board");
@@ -454,11 +454,11 @@ TEST(Triangulation, OfARigOfOneCameraIsRefused) {
   Rig one = test::stereo_rig();
   one.cameras.pop_back();
   one.T_camera_first.pop_back();
-  EXPECT_PRED2(says, complaint([&] {
+  EXPECT_PRED2(says, error_output([&] {
                  triangulate_point(one, {{1, 1}, {1, 1}});
                }),
                "the rig has 1 camera(s)");
-  EXPECT_PRED2(says, complaint([&] {
+  EXPECT_PRED2(says, error_output([&] {
                  TriangulationUncertainty(estimate().rig, estimate().covariance->matrix)
                      .at({{1, 1}, {1, 1}}, -1);
                }),
@@ -499,7 +499,7 @@ TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
   const auto from_all = TriangulationUncertainty(three, all.covariance->matrix, 2).at(q, 0.1);
   const auto from_pair = TriangulationUncertainty(pair.rig, pair.covariance->matrix).at(q, 0.1);
   EXPECT_LT(relative_difference(from_all->calibration, from_pair->calibration), 1e-12);
-  EXPECT_PRED2(says, complaint([&] { pair_of(all, 3); }), "no camera 3");
+  EXPECT_PRED2(says, error_output([&] { pair_of(all, 3); }), "no camera 3");
 }
 
 TEST(DepthUncertainty, IntervalHoldsTheRangeAndReachesInfinityWhereRaysPart) {
@@ -512,9 +512,9 @@ TEST(DepthUncertainty, IntervalHoldsTheRangeAndReachesInfinityWhereRaysPart) {
   const auto wild = depth_uncertainty(estimate(), {20}, 100, 500, 3)[0];
   EXPECT_GT(wild.non_physical_share, 0.025);
   EXPECT_EQ(wild.interval_95_m[1], infinity);
-  EXPECT_PRED2(says, complaint([] { depth_uncertainty(estimate(), {infinity}); }),
+  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {infinity}); }),
                "a range of inf m");
-  EXPECT_PRED2(says, complaint([] { depth_uncertainty(estimate(), {1}, 1, 1); }),
+  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {1}, 1, 1); }),
                "fewer than 2 samples");
 }
 
@@ -539,18 +539,18 @@ TEST(SampledPropagation, BadInputIsNamed) {
   const RigSampler sampler(estimate());
   const FixedPoint point{{0, 0, 1}, false};
   const std::span<const FixedPoint> points(&point, 1);
-  EXPECT_PRED2(says,
-               complaint([&] { sampled_projection(sampler, {}, 0, PointFixedTo::boards, points); }),
-               "needs their poses");
-  EXPECT_PRED2(says,
-               complaint([&] { sampled_projection(sampler, {}, 5, PointFixedTo::camera, points); }),
-               "no such camera");
-  EXPECT_PRED2(says, complaint([&] {
+  EXPECT_PRED2(
+      says, error_output([&] { sampled_projection(sampler, {}, 0, PointFixedTo::boards, points); }),
+      "needs their poses");
+  EXPECT_PRED2(
+      says, error_output([&] { sampled_projection(sampler, {}, 5, PointFixedTo::camera, points); }),
+      "no such camera");
+  EXPECT_PRED2(says, error_output([&] {
                  sampled_projection(sampler, {}, 0, PointFixedTo::camera, points, {.samples = 1});
                }),
                "fewer than 2 samples");
   const PixelPair parting{{100, 240}, {600, 240}};
-  EXPECT_PRED2(says, complaint([&] {
+  EXPECT_PRED2(says, error_output([&] {
                  sampled_triangulation(sampler, {}, TriangulationFrame::rig, {&parting, 1}, 0);
                }),
                "no point under the rig itself");

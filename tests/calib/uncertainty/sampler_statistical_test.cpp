@@ -62,7 +62,7 @@ TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
   };
   double lowest = 1, lowest_high = 9, highest = 1, highest_low = 0;
   for (int repeat = 0; repeat < 200; ++repeat) {
-    Draws draws({.seed = 99, .trial = static_cast<std::uint32_t>(repeat)});
+    RandomStream draws({.seed = 99, .trial = static_cast<std::uint32_t>(repeat)});
     Eigen::MatrixXd Z(p, n);
     for (int i = 0; i < n; ++i) Z.col(i) = draws.normals(p);
     const auto [low, high] = extremes(Z * Z.transpose());

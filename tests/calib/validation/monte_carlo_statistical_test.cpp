@@ -125,8 +125,8 @@ TEST(MonteCarloCheck, CopiesThatCannotBeSolvedSpeakAgainstIt) {
   EXPECT_TRUE(check.consistent());
   check.failed = 6;
   EXPECT_FALSE(check.consistent());
-  EXPECT_FALSE(check.copies_solved());
-  EXPECT_TRUE(check.scatter_as_stated());
+  EXPECT_FALSE(check.enough_trials_solved());
+  EXPECT_TRUE(check.scatter_matches_covariance());
 }
 
 // A view's noise is its own: leaving out another view changes what is estimated from it, not what
@@ -181,7 +181,7 @@ TEST(Distributions, ChiSquared) {
   for (const double p : {0.001, 0.3, 0.999}) {
     EXPECT_NEAR(chi_squared_cdf(chi_squared_quantile(p, 8000), 8000), p, 1e-10);
   }
-  Draws draws({.seed = 5});
+  RandomStream draws({.seed = 5});
   double sum = 0, squares = 0;
   constexpr int n = 20000;
   for (int i = 0; i < n; ++i) {

@@ -24,7 +24,7 @@ TEST(ViewInfluenceStatistical, NoiseAloneGivesWhatIsExpectedOfIt) {
     for (const ViewInfluence& one :
          view_influence(calibrate(board.observations, {.pixel_sigma_px = 0.2}))) {
       seen += one.influence * one.influence;
-      expected += one.influence_noise * one.influence_noise;
+      expected += one.expected_influence * one.expected_influence;
     }
   }
   EXPECT_NEAR(expected / 12, 9.05, 0.05);

@@ -54,7 +54,7 @@ TEST(ViewInfluence, MovesCancelAndLeveragesAddUpToTheParameters) {
     sum += one.delta;
     EXPECT_NEAR(one.influence, mahalanobis(one.delta, *estimate.covariance_mvb), 1e-6);
     EXPECT_EQ(one.corners, 2 * 54);
-    EXPECT_GT(one.influence_left_out, one.influence);
+    EXPECT_GT(one.leave_one_out_influence, one.influence);
   }
   EXPECT_LT(mahalanobis(sum, *estimate.covariance_mvb), 1e-4);
   EXPECT_NEAR(total_leverage(influences), 16, 1e-6);
@@ -80,7 +80,7 @@ TEST(ViewInfluence, HeldParametersDoNotMove) {
   const auto k1 = std::find(names.begin(), names.end(), "right.k1") - names.begin();
   for (const ViewInfluence& one : influences) {
     EXPECT_EQ(one.delta[1], 0);
-    EXPECT_EQ(one.move_if_left_out[k1], 0);
+    EXPECT_EQ(one.leave_one_out_delta[k1], 0);
   }
 }
 
@@ -103,8 +103,8 @@ TEST(ViewInfluence, MoveIfLeftOutIsWhatCalibratingWithoutTheFrameGives) {
     std::erase_if(rest.views, [&](const BoardView& view) { return view.frame == one.frame; });
     const Eigen::VectorXd moved =
         difference(calibrate(rest, {.pixel_sigma_px = 0.01}).rig, whole.rig);
-    EXPECT_LT(mahalanobis(moved - one.move_if_left_out, *whole.covariance_mvb),
-              0.02 * one.influence_left_out)
+    EXPECT_LT(mahalanobis(moved - one.leave_one_out_delta, *whole.covariance_mvb),
+              0.02 * one.leave_one_out_influence)
         << "frame " << one.frame;
   }
 }
@@ -121,7 +121,7 @@ TEST(ViewInfluence, FrameWithAnErrorOfItsOwnStandsOut) {
       std::max_element(influences.begin(), influences.end(),
                        [](const auto& a, const auto& b) { return a.influence < b.influence; });
   EXPECT_EQ(worst->frame, 5);
-  EXPECT_GT(worst->influence, 3 * worst->influence_noise);
+  EXPECT_GT(worst->influence, 3 * worst->expected_influence);
 }
 
 TEST(ViewInfluence, SaysWhatIsMissing) {

@@ -47,8 +47,8 @@ int run(const char* world_file) {
   const vernier::sim::Visibility visibility(world);
   const vernier::sim::ExperimentSettings settings{
       .protocol = vernier::sim::QueryProtocol::near_path, .map_spacing_m = 2};
-  const auto looks = std::make_shared<const vernier::sim::MapLooks>(
-      vernier::sim::map_looks(visibility, calibrated.rig, settings));
+  const auto looks = std::make_shared<const vernier::sim::MapViews>(
+      vernier::sim::map_views(visibility, calibrated.rig, settings));
   const vernier::sim::LocalisationExperiment experiment(visibility, calibrated, looks, settings);
   const auto results = experiment.run_block(0, 0, 2);
   for (const vernier::sim::TrialResult& trial : results) {

@@ -42,7 +42,7 @@ TEST(MeasuredSourcesOfMiddlebury, AreWhatIsDocumented) {
     pairs.push_back(samples_of(test::files_of(scene, scratch.path())));
   }
   const MeasuredSources s = measure_sources(pairs);
-  const auto expect = [](const char* name, const Measured& measured, double low, double high) {
+  const auto expect = [](const char* name, const MeasuredValue& measured, double low, double high) {
     testing::Test::RecordProperty(name, std::to_string(measured.value));
     EXPECT_TRUE(measured.value > low && measured.value < high) << name << " " << measured.value;
     EXPECT_LE(measured.interval.low, measured.value) << name;

@@ -14,7 +14,7 @@
 #include "calib/interval.h"
 #include "calib/statistics/cluster_interval.h"
 #include "calib/statistics/random.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
@@ -22,7 +22,7 @@
 #include "stereo/corners/corner_match.h"
 #include "stereo/edge_point.h"
 #include "stereo/edges/image_edges.h"
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/edge_loss.h"
 #include "stereo/evaluation/end_difference.h"
 #include "stereo/evaluation/line_match.h"
@@ -46,7 +46,7 @@ using namespace stereo::internal;
 namespace {
 
 constexpr double point_noise_px = 0.05;
-constexpr int experiments = 100, least_held = 86;
+constexpr int experiments = 100, min_held = 86;
 constexpr std::uint32_t frames = 8;  // pairs of an experiment
 
 const test::PlaneBeforePair plane;
@@ -60,21 +60,22 @@ const StereoTruth& truth() {
 /// eye has no error.
 struct Frame {
   Frame(const SourceSettings& settings, std::uint32_t trial, std::uint32_t frame, bool clean_left) {
-    const Look look = plane.look(frame);
+    const NoiseFreeView look = plane.look(frame);
     sighting = Sensor(plane.rig(), settings, 1).sense(look, 5, trial, frame);
-    const StereoSighting clean = Sensor(plane.rig(), no_sources(), 1).sense(look, 5, trial, frame);
-    Draws draws({.seed = 6, .trial = trial, .frame = frame});
+    const StereoObservation clean =
+        Sensor(plane.rig(), no_sources(), 1).sense(look, 5, trial, frame);
+    RandomStream draws({.seed = 6, .trial = trial, .frame = frame});
     left = test::drawn_edges(test::lines_of(clean_left ? clean : sighting, true), plane,
                              point_noise_px, draws);
     right = test::drawn_edges(test::lines_of(sighting, false), plane, point_noise_px, draws);
-    for (const SeenCorner& corner : look.corners) {
+    for (const VisibleCorner& corner : look.corners) {
       corners_px.push_back(project(plane.rig().cameras[0], corner.at_m));
     }
     samples.width_px = plane.width_px;
     samples.height_px = plane.height_px;
   }
 
-  StereoSighting sighting;
+  StereoObservation sighting;
   ImageEdges left, right;
   std::vector<Eigen::Vector2d> corners_px;
   PairSamples samples;
@@ -98,14 +99,14 @@ MeasuredSources experiment(const SourceSettings& settings,
   return measure_sources(pairs, options);
 }
 
-bool holds(const Measured& measured, double value) {
+bool holds(const MeasuredValue& measured, double value) {
   return measured.interval.low <= value && value <= measured.interval.high;
 }
 
 /// Intervals of many experiments.
 class Intervals {
  public:
-  void add(const Measured& measured, double truth) {
+  void add(const MeasuredValue& measured, double truth) {
     held_ += holds(measured, truth);
     sum_ += measured.value;
     squares_ += measured.value * measured.value;
@@ -113,7 +114,7 @@ class Intervals {
     ++count_;
   }
 
-  void expect_true(const std::string& name, int least = least_held) const {
+  void expect_true(const std::string& name, int least = min_held) const {
     testing::Test::RecordProperty("held_" + name, held_);
     EXPECT_GE(held_, least) << name;
     const double mean = sum_ / count_;
@@ -140,7 +141,7 @@ void sample_ends(Frame& frame) {
 void sample_corners(Frame& frame) {
   std::vector<Eigen::Vector2d> right;
   for (const SensedCorner& corner : frame.sighting.corners) right.push_back(corner.pixel_px[1]);
-  frame.samples.corners = corner_repeats(frame.corners_px, right, truth());
+  frame.samples.corners = corner_repeatabilities(frame.corners_px, right, truth());
   std::vector<CornerMatch> matches;
   for (const SensedCorner& corner : frame.sighting.corners) {
     matches.push_back({0, 0, corner.pixel_px[0], corner.pixel_px[1], 0.1, 1});
@@ -201,7 +202,7 @@ TEST(MeasuredSources, EdgeLossIntervalHoldsTheMeanOverScenes) {
     std::vector<PairSamples> pairs;
     for (std::uint32_t k = 0; k < frames; ++k) {
       SourceSettings settings = no_sources();
-      settings.edge_loss = Draws({.seed = 8, .trial = trial, .frame = k}).uniform(0, 0.3);
+      settings.edge_loss = RandomStream({.seed = 8, .trial = trial, .frame = k}).uniform(0, 0.3);
       Frame frame(settings, trial, trial * frames + k, true);
       sample_loss(frame);
       pairs.push_back(std::move(frame.samples));
@@ -239,7 +240,7 @@ TEST(MeasuredSources, LateralShiftLeavesOutWhatTheTruthErrsBy) {
   for (std::uint32_t k = 0; k < 16; ++k) {
     Frame frame(settings, 3, k, false);
     sample_shift(frame);
-    Draws draws({.seed = 9, .frame = k});
+    RandomStream draws({.seed = 9, .frame = k});
     for (SegmentShift& shift : frame.samples.shifts) {
       const double error = 0.12 + 0.15 * draws.normal();  // biased as well
       shift.shift_px += shift.normal.x() * error;
@@ -322,11 +323,11 @@ TEST(MeasuredSources, IntervalOfOnePairHoldsItsShare) {
     loss += holds(s.corners.loss, 0.15);
     ends += holds(s.endpoints.across_px, 0.15);
   }
-  constexpr int least_of_one = 84;
+  constexpr int min_of_one = 84;
   RecordProperty("held_loss_of_one", loss);
   RecordProperty("held_ends_of_one", ends);
-  EXPECT_GE(loss, least_of_one);
-  EXPECT_GE(ends, least_of_one);
+  EXPECT_GE(loss, min_of_one);
+  EXPECT_GE(ends, min_of_one);
 }
 
 TEST(MeasuredSources, FewSamplesSayNothingAndFewPairsArePartsOfImages) {
@@ -359,7 +360,7 @@ TEST(ClusterInterval, HoldsTheMeanOfFewClusters) {
   for (const int clusters : {6, 12}) {
     int held = 0;
     for (std::uint32_t trial = 0; trial < 1000; ++trial) {
-      Draws draws({.seed = 10, .trial = trial});
+      RandomStream draws({.seed = 10, .trial = trial});
       const Eigen::VectorXd values = draws.normals(clusters);
       const auto mean = [&](std::span<const std::size_t> drawn) {
         double sum = 0;
@@ -376,7 +377,7 @@ TEST(ClusterInterval, HoldsTheMeanOfFewClusters) {
 }
 
 TEST(VarianceLine, PartsTwoVariancesBesideOutliers) {
-  Draws draws({.seed = 11});
+  RandomStream draws({.seed = 11});
   std::vector<SquareSample> samples;
   for (int i = 0; i < 20000; ++i) {
     const double share = draws.uniform();

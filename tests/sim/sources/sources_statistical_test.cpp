@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/statistics/random.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sensed_view.h"
 #include "sim/sources.h"
@@ -17,7 +17,7 @@ using namespace sim;
 
 namespace {
 
-const Look& seen() { return test::office_look(); }
+const NoiseFreeView& seen() { return test::office_look(); }
 
 // Seed 3, 40 trials. Sum of squares of end-point errors over sigma² is chi-squared; two-sided
 // false-alarm rate 1e-3.

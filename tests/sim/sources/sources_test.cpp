@@ -13,7 +13,7 @@
 #include "calib/rig.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/sensed_view.h"
@@ -35,12 +35,12 @@ namespace {
 /// A look at the office with corners, and sightings of it under given settings.
 class Sources : public testing::Test {
  protected:
-  static const Look& seen() { return test::office_look(); }
-  static StereoSighting sense(const SourceSettings& settings, std::uint32_t trial = 0) {
+  static const NoiseFreeView& seen() { return test::office_look(); }
+  static StereoObservation sense(const SourceSettings& settings, std::uint32_t trial = 0) {
     return Sensor(test::nominal_rig().rig, settings, 1e-6).sense(seen(), 7, trial, 0);
   }
-  static const StereoSighting& exact() {
-    static const StereoSighting sighting = sense(no_sources());
+  static const StereoObservation& exact() {
+    static const StereoObservation sighting = sense(no_sources());
     return sighting;
   }
   static Eigen::Vector2d normal(const ImageSegment& s) {
@@ -54,8 +54,8 @@ class Sources : public testing::Test {
     return right.f_px() * (r.R_rectified_right * unproject(right, pixel)).hnormalized();
   }
   /// Displacement of every end in every eye between two sightings, by the segments' features.
-  static std::map<std::uint32_t, Eigen::Matrix<double, 8, 1>> moved(const StereoSighting& from,
-                                                                    const StereoSighting& to) {
+  static std::map<std::uint32_t, Eigen::Matrix<double, 8, 1>> moved(const StereoObservation& from,
+                                                                    const StereoObservation& to) {
     std::map<std::uint32_t, Eigen::Matrix<double, 8, 1>> all;
     if (from.segments.size() != to.segments.size()) return all;
     for (std::size_t i = 0; i < to.segments.size(); ++i) {
@@ -88,15 +88,15 @@ std::vector<Eigen::Vector3d> centroids(const World& world) {
 /// the world's segments; edges through the centroid have no such side and are left out.
 std::map<int, double> outward_shifts(const Sensor& sensor,
                                      const Sensor& exact,
-                                     const PlanePose& place,
+                                     const Pose2D& place,
                                      std::uint32_t frame) {
   static const std::vector<Eigen::Vector3d> centre_m = centroids(test::small_office());
-  const Look seen = look(test::small_office_visibility(), sensor.rig(), place);
-  const Pose T_left = T_left_world(place, LookOptions{}.mount);
-  const StereoSighting shifted = sensor.sense(seen, 7, 0, frame), e = exact.sense(seen, 7, 0, 0);
+  const NoiseFreeView seen = look(test::small_office_visibility(), sensor.rig(), place);
+  const Pose T_left = T_left_world(place, NoiseFreeViewOptions{}.mount);
+  const StereoObservation shifted = sensor.sense(seen, 7, 0, frame), e = exact.sense(seen, 7, 0, 0);
   std::map<int, double> outward;
   for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
-    const SeenEdge& edge = e.true_edges[i];
+    const VisibleEdge& edge = e.true_edges[i];
     const Eigen::Vector3d n = edge.a_m.cross(edge.b_m).normalized();
     const double side = n.dot(T_left * centre_m[edge.object]);
     if (edge.object == 0 || std::abs(side) < 1e-6) continue;
@@ -111,7 +111,7 @@ std::map<int, double> outward_shifts(const Sensor& sensor,
 TEST_F(Sources, LateralShiftMovesBothEyesAlikeAlongTheNormal) {
   SourceSettings settings = no_sources();
   settings.lateral_shift_px = 3;
-  const StereoSighting shifted = sense(settings);
+  const StereoObservation shifted = sense(settings);
   ASSERT_EQ(shifted.segments.size(), exact().segments.size());
   for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
     const StereoSegment &s = shifted.segments[i], &e = exact().segments[i];
@@ -131,7 +131,7 @@ TEST_F(Sources, LateralShiftStaysWithTheSurface) {
   settings.lateral_shift_px = 3;
   const Rig& rig = test::nominal_rig().rig;
   const Sensor sensor(rig, settings), clean(rig, no_sources());
-  const auto places = map_places(test::small_office().route, 0.5);
+  const auto places = map_poses(test::small_office().route, 0.5);
   std::map<int, double> before;
   int both = 0, in = 0;
   for (std::uint32_t frame = 0; frame < places.size(); ++frame) {
@@ -156,7 +156,7 @@ TEST_F(Sources, IndependentShiftsDifferBetweenEyes) {
   SourceSettings settings = no_sources();
   settings.lateral_shift_px = 3;
   settings.lateral_shift_mode = ShiftMode::independent;
-  const StereoSighting shifted = sense(settings);
+  const StereoObservation shifted = sense(settings);
   int differ = 0;
   for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
     const double left = (shifted.segments[i].left.a_px - exact().segments[i].left.a_px).norm();
@@ -169,7 +169,7 @@ TEST_F(Sources, IndependentShiftsDifferBetweenEyes) {
 TEST_F(Sources, EdgeLossTakesExactlyItsShareAndKeepsTheRestOnTheEdge) {
   SourceSettings settings = no_sources();
   settings.edge_loss = 0.2;
-  const StereoSighting left_over = sense(settings);
+  const StereoObservation left_over = sense(settings);
   std::map<std::uint32_t, double> kept;
   for (const StereoSegment& s : left_over.segments) {
     kept[s.feature / 2] += s.left.length_px();
@@ -185,12 +185,12 @@ TEST_F(Sources, EdgeLossLeavesPiecesWhoseEndsLieOnTheEdge) {
   SourceSettings settings = no_sources();
   settings.edge_loss = 0.2;
   const Rig& rig = test::nominal_rig().rig;
-  std::map<std::uint32_t, SeenEdge> truth;
-  for (const SeenEdge& edge : seen().edges) truth[edge.feature] = edge;
-  const StereoSighting left_over = sense(settings);
+  std::map<std::uint32_t, VisibleEdge> truth;
+  for (const VisibleEdge& edge : seen().edges) truth[edge.feature] = edge;
+  const StereoObservation left_over = sense(settings);
   EXPECT_GT(left_over.segments.size(), seen().edges.size());
   for (const StereoSegment& s : left_over.segments) {
-    const SeenEdge& edge = truth.at(s.feature / 2);
+    const VisibleEdge& edge = truth.at(s.feature / 2);
     for (int eye = 0; eye < 2; ++eye) {
       const Eigen::Vector3d a = (rig.T_camera_first[eye] * edge.a_m).normalized();
       const Eigen::Vector3d b = (rig.T_camera_first[eye] * edge.b_m).normalized();
@@ -209,7 +209,7 @@ TEST_F(Sources, EdgeLossLeavesPiecesWhoseEndsLieOnTheEdge) {
 TEST_F(Sources, EndpointErrorMovesEndsOnly) {
   SourceSettings settings = no_sources();
   settings.endpoint_sigma_px = 0.15;
-  const StereoSighting noisy = sense(settings);
+  const StereoObservation noisy = sense(settings);
   ASSERT_EQ(noisy.segments.size(), exact().segments.size());
   double sum = 0;
   for (std::size_t i = 0; i < noisy.segments.size(); ++i) {
@@ -224,7 +224,7 @@ TEST_F(Sources, EndpointErrorMovesEndsOnly) {
 TEST_F(Sources, EpipolarRejectionDropsFlatLinesOnly) {
   SourceSettings settings = no_sources();
   settings.epipolar_reject_deg = 5;
-  const StereoSighting steep = sense(settings);
+  const StereoObservation steep = sense(settings);
   std::set<std::uint32_t> kept;
   for (const StereoSegment& s : steep.segments) kept.insert(s.feature);
   const Rig& rig = test::nominal_rig().rig;
@@ -242,7 +242,7 @@ TEST_F(Sources, StereoMismatchMovesTheRightLineAlongItsEpipolarLine) {
   SourceSettings settings = no_sources();
   settings.stereo_mismatch = 1;
   settings.stereo_mismatch_px = 20;
-  const StereoSighting wrong = sense(settings);
+  const StereoObservation wrong = sense(settings);
   ASSERT_EQ(wrong.segments.size(), exact().segments.size());
   const auto n = static_cast<double>(wrong.segments.size());
   double to_the_right = 0, far = 0;
@@ -284,7 +284,7 @@ TEST_F(Sources, CornerSourcesTouchCornersOnly) {
   settings.corner_loss = 0.5;
   settings.corner_mismatch = 0.5;
   settings.corner_mismatch_px = 10;
-  const StereoSighting sighting = sense(settings);
+  const StereoObservation sighting = sense(settings);
   for (std::size_t i = 0; i < sighting.segments.size(); ++i) {
     EXPECT_EQ(sighting.segments[i].right.b_px, exact().segments[i].right.b_px);
   }
@@ -305,7 +305,7 @@ TEST_F(Sources, SwitchingOneOnLeavesTheDrawsOfOthers) {
   with.endpoint_sigma_px = without.endpoint_sigma_px = 0.15;
   with.corner_loss = 0.3;
   with.stereo_mismatch = 0.5;
-  const StereoSighting a = sense(with), b = sense(without);
+  const StereoObservation a = sense(with), b = sense(without);
   ASSERT_EQ(a.segments.size(), b.segments.size());
   for (std::size_t i = 0; i < a.segments.size(); ++i) {
     EXPECT_EQ(a.segments[i].left.a_px, b.segments[i].left.a_px);
@@ -321,7 +321,7 @@ TEST_F(Sources, EndpointErrorIsTheSameWhateverActsBeforeIt) {
   for (const auto before : {&SourceSettings::edge_loss, &SourceSettings::lateral_shift_px}) {
     SourceSettings settings = no_sources();
     settings.*before = 0.2;
-    const StereoSighting noise_free = sense(settings);
+    const StereoObservation noise_free = sense(settings);
     settings.endpoint_sigma_px = 0.15;
     std::size_t compared = 0;
     for (const auto& [feature, d] : moved(noise_free, sense(settings))) {
@@ -365,7 +365,7 @@ TEST_F(Sources, LargerSharesTakeASuperset) {
 }
 
 TEST_F(Sources, TheSamePlaceGivesTheSameBitsAndAnotherTrialOthers) {
-  const StereoSighting a = sense({}, 4), b = sense({}, 4), c = sense({}, 5);
+  const StereoObservation a = sense({}, 4), b = sense({}, 4), c = sense({}, 5);
   ASSERT_EQ(a.segments.size(), b.segments.size());
   for (std::size_t i = 0; i < a.segments.size(); ++i) {
     EXPECT_EQ(a.segments[i].left.a_px, b.segments[i].left.a_px);

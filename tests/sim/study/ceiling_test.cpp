@@ -73,8 +73,8 @@ TEST(AliasFinder, OneMoreCupboardTellsThemApart) {
 TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {
   const AliasFinder finder(test::small_office_visibility(), test::nominal_rig().rig, {});
   double sum = 0;
-  const auto places = map_places(test::small_office().route, 2);
-  for (const PlanePose& place : places) sum += finder.aliases(place).ceiling();
+  const auto places = map_poses(test::small_office().route, 2);
+  for (const Pose2D& place : places) sum += finder.aliases(place).ceiling();
   EXPECT_GT(sum / static_cast<double>(places.size()), 0.9);
 }
 

@@ -23,11 +23,11 @@ namespace {
 /// Least distance on the floor from the route, and least turn from the direction of travel among
 /// the route's points within `across_m`, by dense sampling: of two legs that are both near, either
 /// may be the one the query was drawn on.
-std::pair<double, double> from_route(const PlanePose& query, double across_m) {
+std::pair<double, double> from_route(const Pose2D& query, double across_m) {
   const auto& route = test::small_office().route;
   double nearest = 1e9, turn = 1e9;
   for (double s = 0; s < route_length_m(route); s += 0.005) {
-    const PlanePose p = route_point(route, s).pose;
+    const Pose2D p = route_point(route, s).pose;
     const double d = distance_m(p, query);
     nearest = std::min(nearest, d);
     if (d <= across_m) turn = std::min(turn, std::abs(heading_difference_rad(p, query)));
@@ -41,7 +41,7 @@ TEST(QueryProtocol, QueriesStayInTheirSpanAndFillIt) {
     const ProtocolSpan reach = span(protocol);
     double widest_m = 0, widest_rad = 0;
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
-      const PlanePose q = draw_query(test::small_office_visibility(), protocol, 1.2, 5, trial);
+      const Pose2D q = draw_query(test::small_office_visibility(), protocol, 1.2, 5, trial);
       const auto [distance, turn] = from_route(q, reach.across_m + 0.02);
       EXPECT_LE(distance, reach.across_m + 0.02);
       EXPECT_LE(turn, reach.heading_rad + 1e-9);

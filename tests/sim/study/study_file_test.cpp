@@ -90,7 +90,7 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
 /// All keys measured, each with a value of its own.
 MeasuredSources all_measured() {
   const auto measured = [](double value) {
-    return Measured{value, {0.9 * value, 1.1 * value}, 500};
+    return MeasuredValue{value, {0.9 * value, 1.1 * value}, 500};
   };
   MeasuredSources sources;
   sources.pairs = {"a \"pair\"", "b\n[study]"};
@@ -152,18 +152,20 @@ TEST(StudyFile, LeavesDefaultsWhereNothingWasMeasured) {
 TEST(StudyFile, ComplaintsAboutAFileOfSourcesNameIt) {
   const test::Folder folder;
   const std::filesystem::path file = folder.path() / "measured.toml";
-  const auto complaint = [&](const std::string& content) {
+  const auto error_output = [&](const std::string& content) {
     write_atomically(file, content);
     return test::error_message(
         [&] { parse_study("[study]\n[sources]\nfile = \"x\"\n", "s.toml", file); });
   };
-  EXPECT_NE(complaint("[sources]\nedge_los = 1\n").find("measured.toml:2: unknown key 'edge_los'"),
-            std::string::npos);
-  EXPECT_NE(complaint("[sources]\nedge_loss = 7\n").find("measured.toml:2: sources.edge_loss = 7"),
-            std::string::npos);
-  EXPECT_NE(complaint("[study]\n").find("unknown key 'study'"), std::string::npos);
-  EXPECT_NE(complaint("").find("has no 'sources'"), std::string::npos);
-  EXPECT_NE(complaint("[sources]\nfile = \"y\"\n").find("names another"), std::string::npos);
+  EXPECT_NE(
+      error_output("[sources]\nedge_los = 1\n").find("measured.toml:2: unknown key 'edge_los'"),
+      std::string::npos);
+  EXPECT_NE(
+      error_output("[sources]\nedge_loss = 7\n").find("measured.toml:2: sources.edge_loss = 7"),
+      std::string::npos);
+  EXPECT_NE(error_output("[study]\n").find("unknown key 'study'"), std::string::npos);
+  EXPECT_NE(error_output("").find("has no 'sources'"), std::string::npos);
+  EXPECT_NE(error_output("[sources]\nfile = \"y\"\n").find("names another"), std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sources]\nfile = \"nowhere.toml\"\n")
                 .find("s.toml:3: sources.file: there is no file"),
             std::string::npos);

@@ -42,7 +42,7 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   {
     StudyStore store(folder_ / "a.sqlite");
     store.put({"cell", 3, {t}});
-    store.put_note("k", "v");
+    store.set_metadata("k", "v");
   }
   const StudyStore again(folder_ / "a.sqlite");
   const auto blocks = again.blocks();
@@ -64,7 +64,7 @@ TEST_F(Store, AnotherKindOfFileIsRefusedAndKept) {
 TEST_F(Store, AnotherInstructionSetIsRefused) {
   {
     StudyStore store(folder_ / "c.sqlite");
-    store.put_note("instruction_set", "ABACUS");
+    store.set_metadata("instruction_set", "ABACUS");
   }
   try {
     StudyStore store(folder_ / "c.sqlite");

@@ -25,8 +25,8 @@ using namespace test;
 /// How many edges of a box the camera sees; all of them must be seen in full.
 int whole_edges(const World& world, const Vector3d& eye, const Vector3d& target) {
   const auto runs =
-      Visibility(world).visible_runs(camera_with(500, -0.1), looking_at(eye, target), {});
-  for (const VisibleRun& r : runs) {
+      Visibility(world).visible_intervals(camera_with(500, -0.1), looking_at(eye, target), {});
+  for (const VisibleInterval& r : runs) {
     EXPECT_EQ(r.t0, 0);
     EXPECT_EQ(r.t1, 1);
     EXPECT_EQ(r.run, 0);
@@ -47,7 +47,7 @@ TEST(VisibilityCases, BoxFromOutsideShowsTheEdgesOfItsFrontFaces) {
 }
 
 TEST(VisibilityCases, TurnedBoxesFromOutsideShowWholeEdges) {
-  Draws draws({.seed = 43});
+  RandomStream draws({.seed = 43});
   for (int trial = 0; trial < 200; ++trial) {
     World world;
     const Pose T = random_pose(draws, {-9, -9, -1}, {9, 9, 1});
@@ -59,11 +59,11 @@ TEST(VisibilityCases, TurnedBoxesFromOutsideShowWholeEdges) {
     for (int axis = 0; axis < 3; ++axis) fronts += x[axis] < 0 || x[axis] > size[axis];
     if (fronts == 0 || (eye - T * (size / 2)).norm() < 5) continue;
     const int expected[] = {0, 4, 7, 9};
-    const auto runs =
-        Visibility(world).visible_runs(camera_with(500, 0), looking_at(eye, T * (size / 2)),
-                                       {.far_m = 60, .min_length_px = 0.1, .surface_gap_m = 1e-6});
+    const auto runs = Visibility(world).visible_intervals(
+        camera_with(500, 0), looking_at(eye, T * (size / 2)),
+        {.far_m = 60, .min_length_px = 0.1, .surface_gap_m = 1e-6});
     ASSERT_EQ(runs.size(), expected[fronts]) << "trial " << trial;
-    for (const VisibleRun& r : runs) EXPECT_TRUE(r.t0 == 0 && r.t1 == 1);
+    for (const VisibleInterval& r : runs) EXPECT_TRUE(r.t0 == 0 && r.t1 == 1);
   }
 }
 
@@ -78,8 +78,8 @@ TEST(VisibilityCases, WallsOfARoomHideNothingInIt) {
     const Vector3d target = eye + Vector3d(std::cos(heading), std::sin(heading), pitch);
     const Camera camera = camera_with(300, -0.05);
     const Pose T = looking_at(eye, target);
-    const auto inside = Visibility(room).visible_runs(camera, T);
-    const auto open = Visibility(wires).visible_runs(camera, T);
+    const auto inside = Visibility(room).visible_intervals(camera, T);
+    const auto open = Visibility(wires).visible_intervals(camera, T);
     ASSERT_EQ(inside.size(), open.size());
     for (std::size_t k = 0; k < open.size(); ++k) {
       EXPECT_EQ(inside[k].segment, open[k].segment);
@@ -103,7 +103,7 @@ TEST(VisibilityCases, DoorHoleShowsWhatIsBehindItOnly) {
   world.corners = {{{0, 4, 1}, 0}, {{1.5, 4, 1}, 0}};
   const Visibility visibility(world);
   const Pose T = looking_at({0, 0, 1}, {0, 2, 1});
-  const auto runs = visibility.visible_runs(camera_with(400, 0), T);
+  const auto runs = visibility.visible_intervals(camera_with(400, 0), T);
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[0].segment, 0);
   EXPECT_NEAR(runs[0].t0, 0.25, 1e-12);  // the jambs at x = ±0.5, y = 2 are seen at ±1, y = 4
@@ -129,7 +129,7 @@ TEST(VisibilityCases, HoleJoinedToTheBorderByACutIsOpen) {
   world.segments.push_back({{-2, 4, 1}, {2, 4, 1}, 0});
   world.segments.push_back({{-2, 4, 0.3}, {2, 4, 0.3}, 0});
   const auto runs =
-      Visibility(world).visible_runs(camera_with(400, 0), looking_at({0, 0, 1}, {0, 2, 1}));
+      Visibility(world).visible_intervals(camera_with(400, 0), looking_at({0, 0, 1}, {0, 2, 1}));
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_EQ(runs[0].segment, 0);
   EXPECT_NEAR(runs[0].t0, 0.25, 1e-12);
@@ -145,9 +145,9 @@ TEST(VisibilityCases, SegmentsNearAWallFollowTheGap) {
   }
   const Visibility visibility(world);
   const Pose T = looking_at({0.3, -1, 1.3}, {0, 2, 1});
-  const auto runs = visibility.visible_runs(camera_with(500, 0), T);
+  const auto runs = visibility.visible_intervals(camera_with(500, 0), T);
   std::vector<int> seen;
-  for (const VisibleRun& r : runs) {
+  for (const VisibleInterval& r : runs) {
     seen.push_back(r.segment);
     EXPECT_TRUE(r.t0 == 0 && r.t1 == 1);
   }
@@ -169,8 +169,8 @@ TEST(VisibilityCases, RunsAreNumberedBeforeShortOnesAreLeftOut) {
   world.segments.push_back({{-2, 4, 1}, {2, 4, 1}, 0});
   const Visibility visibility(world);
   const Pose T = looking_at({0, 0, 1}, {0, 2, 1});
-  const auto all = visibility.visible_runs(camera_with(400, 0), T, {.min_length_px = 0});
-  const auto some = visibility.visible_runs(camera_with(400, 0), T, {.min_length_px = 10});
+  const auto all = visibility.visible_intervals(camera_with(400, 0), T, {.min_length_px = 0});
+  const auto some = visibility.visible_intervals(camera_with(400, 0), T, {.min_length_px = 10});
   ASSERT_EQ(all.size(), 4u);
   ASSERT_EQ(some.size(), 3u);  // the gap of 1 cm is 2 px wide
   for (int i = 0; i < 4; ++i) EXPECT_EQ(all[i].run, i);
@@ -179,7 +179,7 @@ TEST(VisibilityCases, RunsAreNumberedBeforeShortOnesAreLeftOut) {
 }
 
 TEST(VisibilityCases, SeamsOfWallsDoNotLeakLight) {
-  Draws draws({.seed = 44});
+  RandomStream draws({.seed = 44});
   for (int trial = 0; trial < 50; ++trial) {
     World world;  // a turned wall as a fan of triangles about an inner point, and lines behind
     const Pose T{rotation_from_vector({0, 0, draws.uniform(-0.6, 0.6)}), {0, 3, 0}};
@@ -201,7 +201,8 @@ TEST(VisibilityCases, SeamsOfWallsDoNotLeakLight) {
     const Visibility visibility(world);
     const Pose T_camera_world = looking_at(eye, {0, 3, 0});
     const VisibilityOptions options{.min_length_px = 0};
-    EXPECT_TRUE(visibility.visible_runs(camera_with(300, -0.05), T_camera_world, options).empty());
+    EXPECT_TRUE(
+        visibility.visible_intervals(camera_with(300, -0.05), T_camera_world, options).empty());
     EXPECT_TRUE(
         visibility.visible_corners(camera_with(300, -0.05), T_camera_world, options).empty());
     for (const WorldCorner& c : world.corners) EXPECT_FALSE(visibility.sees(eye, c.position_m));
@@ -215,7 +216,7 @@ TEST(VisibilityCases, ALineInLineWithASingleEdgeIsSeen) {
   world.corners.push_back({{0, 4, 0.5}, 0});
   const Visibility visibility(world);
   const Pose T = looking_at({0, 0, 0.4}, {0, 2, 0.4});
-  const auto runs = visibility.visible_runs(camera_with(400, 0), T);
+  const auto runs = visibility.visible_intervals(camera_with(400, 0), T);
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_TRUE(runs[0].t0 == 0 && runs[0].t1 == 1);
   EXPECT_EQ(visibility.visible_corners(camera_with(400, 0), T).size(), 1u);
@@ -223,7 +224,7 @@ TEST(VisibilityCases, ALineInLineWithASingleEdgeIsSeen) {
   for (double y : {2.0, 3.0}) {
     World closed = world;
     add_surface(closed, wall(y, {{0, -3}, {3, -3}, {3, 3}, {0, 3}}));
-    EXPECT_TRUE(Visibility(closed).visible_runs(camera_with(400, 0), T).empty());
+    EXPECT_TRUE(Visibility(closed).visible_intervals(camera_with(400, 0), T).empty());
     EXPECT_TRUE(Visibility(closed).visible_corners(camera_with(400, 0), T).empty());
   }
 }
@@ -231,7 +232,7 @@ TEST(VisibilityCases, ALineInLineWithASingleEdgeIsSeen) {
 TEST(VisibilityCases, DepthsAreAlongTheAxis) {
   World world;
   world.segments.push_back({{0.1, -5, 0.05}, {0.1, 15, 0.05}, 0});
-  const auto runs = Visibility(world).visible_runs(
+  const auto runs = Visibility(world).visible_intervals(
       camera_with(500, 0), looking_at({0, 0, 0}, {0, 1, 0}), {.near_m = 2, .far_m = 8});
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_NEAR(runs[0].t0, 7.0 / 20, 1e-12);
@@ -248,7 +249,7 @@ TEST(VisibilityCases, SurfacesWithoutAreaOrSeenEdgeOnHideNothing) {
   add_surface(world, {{-1, 1, 1}, {1, 1, 1}, {1, 3, 1}, {-1, 3, 1}});  // in the eye's height
   add_surface(world, {{0, -1, 0}, {0, 1, 0}, {0, 1, 2}, {0, -1, 2}});  // the eye lies in it
   const auto runs =
-      Visibility(world).visible_runs(camera_with(500, 0), looking_at({0, 0, 1}, {0, 4, 1}));
+      Visibility(world).visible_intervals(camera_with(500, 0), looking_at({0, 0, 1}, {0, 4, 1}));
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_TRUE(runs[0].t0 == 0 && runs[0].t1 == 1);
 }
@@ -257,13 +258,14 @@ TEST(VisibilityCases, BadArgumentsAreNamed) {
   const World world;
   const Visibility visibility(world);
   const Pose T;
-  EXPECT_TRUE(visibility.visible_runs(camera_with(500, 0), T).empty());
-  EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.near_m = 0}), Error);
-  EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.near_m = 3, .far_m = 2}), Error);
-  EXPECT_THROW(visibility.visible_runs(camera_with(500, 0), T, {.surface_gap_m = -1}), Error);
+  EXPECT_TRUE(visibility.visible_intervals(camera_with(500, 0), T).empty());
+  EXPECT_THROW(visibility.visible_intervals(camera_with(500, 0), T, {.near_m = 0}), Error);
+  EXPECT_THROW(visibility.visible_intervals(camera_with(500, 0), T, {.near_m = 3, .far_m = 2}),
+               Error);
+  EXPECT_THROW(visibility.visible_intervals(camera_with(500, 0), T, {.surface_gap_m = -1}), Error);
   Camera short_of_one = camera_with(500, 0);
   short_of_one.parameters.conservativeResize(4);
-  EXPECT_THROW(visibility.visible_runs(short_of_one, T), Error);
+  EXPECT_THROW(visibility.visible_intervals(short_of_one, T), Error);
 }
 
 // A real lens: barrel distortion whose polynomial folds just inside the image's corners. What lies
@@ -275,9 +277,9 @@ TEST(VisibilityCases, AFoldInsideTheCornersHidesOnlyWhatLiesBeyond) {
   const Camera camera = camera_with(533, -0.29);
   ASSERT_FALSE(try_unproject(camera, {-0.5, -0.5}));
   const Pose T = looking_at({0, 0, 1.5}, {0, 4, 1.5});
-  const auto runs = visibility.visible_runs(camera, T);
+  const auto runs = visibility.visible_intervals(camera, T);
   EXPECT_GT(runs.size(), 8u);
-  for (const VisibleRun& run : runs) {
+  for (const VisibleInterval& run : runs) {
     const WorldSegment& s = world.segments[run.segment];
     for (const double t : {run.t0, 0.5 * (run.t0 + run.t1), run.t1}) {
       const Eigen::Vector3d x = T * (s.a_m + t * (s.b_m - s.a_m));

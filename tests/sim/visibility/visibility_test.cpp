@@ -73,35 +73,35 @@ struct Oracle {
 
 Vector3d at(const WorldSegment& s, double t) { return s.a_m + t * (s.b_m - s.a_m); }
 
-std::vector<VisibleRun> runs_of(const std::vector<VisibleRun>& runs, int segment) {
-  std::vector<VisibleRun> own;
-  for (const VisibleRun& run : runs) {
+std::vector<VisibleInterval> runs_of(const std::vector<VisibleInterval>& runs, int segment) {
+  std::vector<VisibleInterval> own;
+  for (const VisibleInterval& run : runs) {
     if (run.segment == segment) own.push_back(run);
   }
   return own;
 }
 
 /// Distance in t to the nearest end of a run.
-double to_nearest_end(const std::vector<VisibleRun>& runs, double t) {
+double to_nearest_end(const std::vector<VisibleInterval>& runs, double t) {
   double least = 1;
-  for (const VisibleRun& r : runs) {
+  for (const VisibleInterval& r : runs) {
     least = std::min({least, std::abs(t - r.t0), std::abs(t - r.t1)});
   }
   return least;
 }
 
-bool in_runs(const std::vector<VisibleRun>& runs, double t) {
-  for (const VisibleRun& r : runs) {
+bool in_runs(const std::vector<VisibleInterval>& runs, double t) {
+  for (const VisibleInterval& r : runs) {
     if (t >= r.t0 && t <= r.t1) return true;
   }
   return false;
 }
 
 /// Compares runs with the oracle: samples, changes between samples to 1e-6, and both sides of ends.
-void expect_same(const Oracle& oracle, const std::vector<VisibleRun>& runs, int samples) {
+void expect_same(const Oracle& oracle, const std::vector<VisibleInterval>& runs, int samples) {
   for (int i = 0; i < static_cast<int>(oracle.world.segments.size()); ++i) {
     const WorldSegment& segment = oracle.world.segments[i];
-    const std::vector<VisibleRun> own = runs_of(runs, i);
+    const std::vector<VisibleInterval> own = runs_of(runs, i);
     bool before = false;
     for (int k = 0; k < samples; ++k) {
       const double t = (k + 0.5) / samples;
@@ -119,7 +119,7 @@ void expect_same(const Oracle& oracle, const std::vector<VisibleRun>& runs, int 
       }
       before = seen;
     }
-    for (const VisibleRun& r : own) {
+    for (const VisibleInterval& r : own) {
       if (r.t1 - r.t0 < 1e-6) continue;
       EXPECT_TRUE(oracle.sees(at(segment, 0.5 * (r.t0 + r.t1)))) << "segment " << i;
       EXPECT_TRUE(oracle.sees(at(segment, r.t0 + 1e-7))) << "segment " << i << " from " << r.t0;
@@ -138,7 +138,7 @@ TEST(Visibility, AgreesWithDenseRaysInRandomWorlds) {
   const std::vector<Camera> cameras{camera_with(525, 0), camera_with(500, -0.2),
                                     camera_with(420, -0.1), camera_with(480, 0.15)};
   for (std::uint32_t trial = 0; trial < 4; ++trial) {
-    Draws draws({.seed = 41, .trial = trial});
+    RandomStream draws({.seed = 41, .trial = trial});
     const World world = random_world(draws);
     const Visibility visibility(world);
     for (const Camera& camera : cameras) {
@@ -146,7 +146,7 @@ TEST(Visibility, AgreesWithDenseRaysInRandomWorlds) {
       const Pose T = looking_at(eye, random_point(draws, {-2, -2, 0.5}, {2, 2, 1.5}));
       const VisibilityOptions options{.far_m = 6, .min_length_px = 0};
       const Oracle oracle{world, camera, T, options};
-      expect_same(oracle, visibility.visible_runs(camera, T, options), 60);
+      expect_same(oracle, visibility.visible_intervals(camera, T, options), 60);
       const std::vector<int> corners = visibility.visible_corners(camera, T, options);
       const std::set<int> seen(corners.begin(), corners.end());
       EXPECT_TRUE(std::is_sorted(corners.begin(), corners.end()));
@@ -158,7 +158,7 @@ TEST(Visibility, AgreesWithDenseRaysInRandomWorlds) {
 }
 
 TEST(Visibility, SeesAgreesWithDenseRays) {
-  Draws draws({.seed = 42});
+  RandomStream draws({.seed = 42});
   const World world = random_world(draws);
   const Visibility visibility(world);
   int hidden = 0;
@@ -174,12 +174,12 @@ TEST(Visibility, SeesAgreesWithDenseRays) {
   EXPECT_LT(hidden, 1800);
 }
 
-Vector3d lattice_point(Draws& draws, std::uint32_t n) {
+Vector3d lattice_point(RandomStream& draws, std::uint32_t n) {
   const double x = draws.below(n), y = draws.below(n);
   return {x, y, static_cast<double>(draws.below(n))};
 }
 
-World lattice_world(Draws& draws) {
+World lattice_world(RandomStream& draws) {
   World world;
   const auto lattice = [&](std::uint32_t n) { return lattice_point(draws, n); };
   for (int i = 0; i < 6; ++i) {
@@ -200,7 +200,7 @@ World lattice_world(Draws& draws) {
 
 TEST(Visibility, RunsAgreeWithPointsInAWorldFullOfCoincidences) {
   // Everything on a small lattice: eyes in planes, lines in line with edges, seams behind seams.
-  Draws draws({.seed = 46});
+  RandomStream draws({.seed = 46});
   int seen = 0, hidden = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const World world = lattice_world(draws);
@@ -217,7 +217,7 @@ TEST(Visibility, RunsAgreeWithPointsInAWorldFullOfCoincidences) {
                 std::count(corners.begin(), corners.end(), i) == 1)
           << "trial " << trial << " corner " << i;
     }
-    const auto runs = visibility.visible_runs(camera, T, options);
+    const auto runs = visibility.visible_intervals(camera, T, options);
     for (int i = 0; i < static_cast<int>(world.segments.size()); ++i) {
       const WorldSegment& segment = world.segments[i];
       if ((segment.a_m - eye).cross(segment.b_m - eye).norm() < 1e-9) continue;  // seen end-on
@@ -242,7 +242,7 @@ double to_border(const Camera& camera, const Vector2d& pixel) {
 }
 
 TEST(Visibility, RunsEndOnTheImagesBorder) {
-  Draws draws({.seed = 45});
+  RandomStream draws({.seed = 45});
   World world;
   for (int i = 0; i < 500; ++i) {
     const Vector3d a = random_point(draws, {-4, 1, -4}, {4, 5, 4});
@@ -259,9 +259,9 @@ TEST(Visibility, RunsEndOnTheImagesBorder) {
   const Pose T = looking_at({0, -1, 0}, {0, 2, 0});
   for (const Camera& camera : {camera_with(500, -0.2), camera_with(350, 0.2), wide, tangential}) {
     const VisibilityOptions options{.near_m = 0.5, .far_m = 5.5, .min_length_px = 0};
-    const auto runs = Visibility(world).visible_runs(camera, T, options);
+    const auto runs = Visibility(world).visible_intervals(camera, T, options);
     int on_border = 0;
-    for (const VisibleRun& r : runs) {
+    for (const VisibleInterval& r : runs) {
       for (double t : {r.t0, r.t1}) {
         const Vector3d x = T * at(world.segments[r.segment], t);
         const double at_depth = std::min(std::abs(x.z() - 0.5), std::abs(x.z() - 5.5));
@@ -282,7 +282,7 @@ TEST(Visibility, ALineThatBowsOutOfTheImageIsSeenTwice) {
   world.segments.push_back({{x, 1, -0.6}, {x, 1, 0.6}, 0});
   const Pose T = looking_at({0, 0, 0}, {0, 1, 0});
   const VisibilityOptions options{.min_length_px = 1};
-  const auto runs = Visibility(world).visible_runs(camera, T, options);
+  const auto runs = Visibility(world).visible_intervals(camera, T, options);
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[0].run, 0);
   EXPECT_EQ(runs[1].run, 1);
@@ -290,7 +290,7 @@ TEST(Visibility, ALineThatBowsOutOfTheImageIsSeenTwice) {
 }
 
 TEST(Visibility, ThreadsMayShareIt) {
-  Draws draws({.seed = 47});
+  RandomStream draws({.seed = 47});
   const World world = random_world(draws);
   const Visibility visibility(world);
   const Camera camera = camera_with(500, -0.1);
@@ -299,7 +299,7 @@ TEST(Visibility, ThreadsMayShareIt) {
     const Vector3d eye(0.2, 0.1, 1.2);
     const Pose T = looking_at(eye, eye + Vector3d(std::cos(heading), std::sin(heading), 0));
     std::vector<double> ends;
-    for (const VisibleRun& r : visibility.visible_runs(camera, T)) {
+    for (const VisibleInterval& r : visibility.visible_intervals(camera, T)) {
       ends.insert(ends.end(), {static_cast<double>(r.segment), r.t0, r.t1});
     }
     return ends;

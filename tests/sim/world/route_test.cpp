@@ -30,15 +30,15 @@ TEST(Route, PointsAlongAllLegs) {
 }
 
 TEST(Route, MapPlacesAreEvenAndAtMostTheSpacingApart) {
-  const auto places = map_places(route, 0.5);
+  const auto places = map_poses(route, 0.5);
   EXPECT_EQ(places.size(), 8u + 4u + 6u);
   EXPECT_DOUBLE_EQ(places[1].x_m, 0.5);
-  EXPECT_EQ(map_places(route, 0.5, 8).size(), 8u * 18u);
+  EXPECT_EQ(map_poses(route, 0.5, 8).size(), 8u * 18u);
 }
 
 TEST(Route, BadRequestsAreRefused) {
-  EXPECT_THROW(map_places({}, 0.5), Error);
-  EXPECT_THROW(map_places(route, 0), Error);
+  EXPECT_THROW(map_poses({}, 0.5), Error);
+  EXPECT_THROW(map_poses(route, 0), Error);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int side = 40;
 
-Draws draws_of(std::uint32_t trial, std::uint32_t feature = 0) {
-  return Draws({.seed = 20, .trial = trial, .feature = feature, .source = 200});
+RandomStream draws_of(std::uint32_t trial, std::uint32_t feature = 0) {
+  return RandomStream({.seed = 20, .trial = trial, .feature = feature, .source = 200});
 }
 
 /// The corner nearest to a place, if there is one within 3 px.
@@ -35,7 +35,7 @@ std::optional<ImageCorner> corner_near(const cv::Mat& image,
   return nearest;
 }
 
-test::Wedge random_wedge(double opening_deg, Draws& draws) {
+test::Wedge random_wedge(double opening_deg, RandomStream& draws) {
   return {{side / 2 + draws.uniform(-0.5, 0.5), side / 2 + draws.uniform(-0.5, 0.5)},
           opening_deg * std::numbers::pi / 180,
           draws.uniform(0, 2 * std::numbers::pi)};
@@ -50,7 +50,7 @@ TEST_P(CornersByAngle, LieAtOnePlaceInsideTheTipWhereverThePixelsAre) {
   int n = 60;
   std::vector<Eigen::Vector2d> errors;
   for (int i = 0; i < n; ++i) {
-    Draws draws = draws_of(i);
+    RandomStream draws = draws_of(i);
     const test::Wedge wedge = random_wedge(GetParam(), draws);
     const auto corner = corner_near(test::photograph(wedge, side), 1, wedge.tip);
     ASSERT_TRUE(corner) << "wedge " << i;
@@ -78,12 +78,12 @@ TEST_P(CornersByAngle, ErrFromNoiseAsTheirCovarianceSays) {
   double chi2 = 0;
   int n = 0;
   for (int i = 0; i < wedges; ++i) {
-    Draws place = draws_of(i);
+    RandomStream place = draws_of(i);
     const cv::Mat clean = test::photograph(random_wedge(GetParam(), place), side);
     const auto truth = corner_near(clean, noise, {side / 2.0, side / 2.0});
     ASSERT_TRUE(truth);
     for (int k = 0; k < copies; ++k) {
-      Draws draws = draws_of(i, 1 + k);
+      RandomStream draws = draws_of(i, 1 + k);
       const auto corner =
           corner_near(test::with_noise(clean, noise, draws), noise, truth->pixel_px);
       ASSERT_TRUE(corner);
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Wedges, CornersByAngle, testing::Values(45, 60, 90, 120
 TEST(Corners, NoiseAloneHasNone) {
   const cv::Mat grey(240, 320, CV_32F, cv::Scalar(120));
   for (const double sigma : {0.0, 1.0, 5.0}) {
-    Draws draws = draws_of(1);
+    RandomStream draws = draws_of(1);
     const cv::Mat image = test::with_noise(grey, sigma, draws);
     EXPECT_LE(harris_corners(image, image_noise(image)).size(), 2u) << sigma;
   }
@@ -109,7 +109,7 @@ TEST(Corners, NoiseAloneHasNone) {
 
 /// Grey squares of 16 px with values drawn at random: half of the image lies within texture.
 cv::Mat squares_image(int width, int height, std::uint32_t trial) {
-  Draws draws = draws_of(trial, 99);
+  RandomStream draws = draws_of(trial, 99);
   cv::Mat small(height / 16, width / 16, CV_32F), image;
   for (int y = 0; y < small.rows; ++y) {
     for (int x = 0; x < small.cols; ++x) small.at<float>(y, x) = float(draws.uniform(30, 220));
@@ -121,12 +121,12 @@ cv::Mat squares_image(int width, int height, std::uint32_t trial) {
 
 TEST(ImageNoise, IsMeasuredBesideTexture) {
   for (const double sigma : {1.0, 2.0, 5.0}) {
-    Draws draws = draws_of(7);
+    RandomStream draws = draws_of(7);
     const cv::Mat image = test::with_noise(squares_image(320, 240, 1), sigma, draws);
     const double rounded = std::sqrt(sigma * sigma + 1.0 / 12);
     EXPECT_NEAR(image_noise(image) / rounded, 1, 0.15) << sigma;
   }
-  Draws draws({29});
+  RandomStream draws({29});
   const cv::Mat plain = test::with_noise(cv::Mat(480, 640, CV_32F, cv::Scalar(100)), 3, draws);
   EXPECT_NEAR(image_noise(plain) / std::sqrt(9 + 1.0 / 12), 1, 0.02);
   EXPECT_NEAR(image_noise(cv::Mat(100, 100, CV_8U, cv::Scalar(9))), 1 / std::sqrt(12), 1e-12);
@@ -136,7 +136,7 @@ TEST(Corners, AreTheStrongestOrSpreadEvenly) {
   cv::Mat image = squares_image(320, 320, 2);
   cv::Mat faint = image(cv::Rect(0, 0, 160, 320));
   faint = 0.3 * faint + 80;  // the left half has less contrast
-  Draws draws = draws_of(3);
+  RandomStream draws = draws_of(3);
   const cv::Mat grey = test::with_noise(image, 1, draws);
   const auto all = harris_corners(grey, 1, {.count = 0});
   const auto some = harris_corners(grey, 1, {.count = 60});
@@ -158,7 +158,7 @@ TEST(Corners, AreTheStrongestOrSpreadEvenly) {
 }
 
 TEST(Corners, AreTheSameForAnyNumberOfThreads) {
-  Draws draws = draws_of(4);
+  RandomStream draws = draws_of(4);
   const cv::Mat grey = test::with_noise(squares_image(640, 480, 3), 2, draws);
   const int threads = cv::getNumThreads();
   cv::setNumThreads(1);

@@ -37,7 +37,7 @@ struct Pair {
           0.5 * camera.oy_px();
     }
     for (int c = 0; c < 2; ++c) {
-      Draws draws({.seed = 3, .feature = std::uint32_t(c), .source = 204});
+      RandomStream draws({.seed = 3, .feature = std::uint32_t(c), .source = 204});
       clean[c] = test::photograph(plane, rig, c);
       image[c] = corner_image(test::with_noise(clean[c], noise, draws), {.count = 300 + 150 * c});
     }
@@ -104,13 +104,13 @@ TEST(CornerMatching, StatesItsNoise) {
   constexpr double noise = 8;
   CornerImage images[2];
   for (int c = 0; c < 2; ++c) {
-    Draws draws({.seed = 4, .feature = std::uint32_t(c), .source = 204});
+    RandomStream draws({.seed = 4, .feature = std::uint32_t(c), .source = 204});
     images[c] =
         corner_image(test::with_noise(pair().clean[c], noise, draws), {.count = 300 + 150 * c});
   }
   const EpipolarBand band(pair().rig, Pair::covariance(pair().rig), {.nearest_m = 1});
   const auto matches =
-      match_corners(images[0], images[1], band, {.least_aligned_score = 0.8, .sigma_floor_px = 0});
+      match_corners(images[0], images[1], band, {.min_aligned_score = 0.8, .sigma_floor_px = 0});
   ASSERT_GT(matches.size(), 120u);
   double squares = 0, mean = 0, variance = 0;
   const auto n = static_cast<double>(matches.size());
@@ -189,7 +189,7 @@ TEST(PatchAlignment, FindsTheShiftAsWellAsItSays) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   constexpr int n = 300;
   for (int i = 0; i < n; ++i) {
-    Draws draws({.seed = 8, .trial = std::uint32_t(i), .source = 205});
+    RandomStream draws({.seed = 8, .trial = std::uint32_t(i), .source = 205});
     cv::Mat images[2];
     test::with_noise(clean_left, 2, draws).convertTo(images[0], CV_32F);
     test::with_noise(clean_right, 2, draws).convertTo(images[1], CV_32F);

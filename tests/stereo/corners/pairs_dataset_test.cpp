@@ -52,7 +52,7 @@ double epipolar_rms(const PairObservations& pairs, const Rig& rig) {
 }
 
 /// The board calibration's values, known as badly as a datasheet would say.
-RigKnowledge wide_prior(const Rig& board, const Eigen::VectorXd& offset) {
+GaussianRigPrior wide_prior(const Rig& board, const Eigen::VectorXd& offset) {
   const std::vector<std::string> names = parameter_names(board);
   Eigen::VectorXd sd(static_cast<Eigen::Index>(names.size()));
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -65,7 +65,8 @@ RigKnowledge wide_prior(const Rig& board, const Eigen::VectorXd& offset) {
     if (name.substr(0, 1) == "w") s = 0.01;
     sd[static_cast<Eigen::Index>(i)] = s;
   }
-  RigKnowledge known{retract(board, sd.cwiseProduct(offset)), {CovarianceKind::prior, names, {}}};
+  GaussianRigPrior known{retract(board, sd.cwiseProduct(offset)),
+                         {CovarianceKind::prior, names, {}}};
   known.covariance.matrix = sd.cwiseAbs2().asDiagonal();
   return known;
 }
@@ -82,7 +83,7 @@ TEST(PairsOfRealImages, VerticalDisparityFallsToTheBoardsLevelAndDepthStaysThePr
   // Most of a standard deviation away in every parameter but the baseline's length.
   Eigen::VectorXd offset(22);
   for (Eigen::Index i = 0; i < 22; ++i) offset[i] = (i < 8 ? 0.7 : -0.7) * (i == 19 ? 0 : 1);
-  const RigKnowledge prior = wide_prior(board.rig, offset);
+  const GaussianRigPrior prior = wide_prior(board.rig, offset);
   RigEstimate wide;
   wide.rig = prior.rig;
   wide.covariance = prior.covariance;

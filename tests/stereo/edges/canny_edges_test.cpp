@@ -93,7 +93,7 @@ TEST(CannyEdges, ErrsByNoiseAsMuchAsItStates) {
       const test::Step step = step_at(angle, phase, 12, 0.8);
       const GreyLevels clean = image_of(step);
       for (unsigned trial = 0; trial < 7; ++trial) {
-        Draws draws({31, trial, static_cast<unsigned>(phase), static_cast<unsigned>(angle)});
+        RandomStream draws({31, trial, static_cast<unsigned>(phase), static_cast<unsigned>(angle)});
         for (const EdgePoint& point : canny_edges(test::with_noise(clean, 2, draws))) {
           if (!judged(point, step)) continue;
           errors.add(point, step);
@@ -114,7 +114,7 @@ TEST(CannyEdges, StatesADeviationThatGoesWithNoiseOverContrast) {
   const auto stated = [](double contrast, double noise) {
     test::Step step = step_at(30, 0, 1, 0.8);
     step.bright = step.dark + contrast;
-    Draws draws({32, 1});
+    RandomStream draws({32, 1});
     double sum = 0;
     int count = 0;
     for (const EdgePoint& point : canny_edges(test::with_noise(image_of(step), noise, draws))) {
@@ -161,22 +161,22 @@ GreyLevels fading_step(double factor) {
 }
 
 TEST(CannyEdges, FollowsAWeakEdgeFromAStrongOneOnly) {
-  const auto least_strength = [](const std::vector<EdgePoint>& edges) {
+  const auto min_strength = [](const std::vector<EdgePoint>& edges) {
     float least = 1e9F;
     for (const EdgePoint& point : edges) least = std::min(least, point.strength);
     return least;
   };
   const auto strong = canny_edges(fading_step(1));
   ASSERT_GT(strong.size(), 90U);
-  EXPECT_NEAR(least_strength(strong), 2, 0.3);          // down to `low`
+  EXPECT_NEAR(min_strength(strong), 2, 0.3);            // down to `low`
   EXPECT_TRUE(canny_edges(fading_step(0.25)).empty());  // 4.5 at most, never `high`
   EXPECT_GT(canny_edges(fading_step(0.25), {.high = 4}).size(), 40U);
-  EXPECT_NEAR(least_strength(canny_edges(fading_step(1), {.low = 4})), 4, 0.3);
+  EXPECT_NEAR(min_strength(canny_edges(fading_step(1), {.low = 4})), 4, 0.3);
 }
 
 /// A picture of everything: blobs and noise.
 GreyLevels textured(int width, int height, std::uint64_t seed) {
-  Draws draws({seed, 3});
+  RandomStream draws({seed, 3});
   cv::Mat image(height, width, CV_32F);
   for (float& value : cv::Mat_<float>(image)) value = static_cast<float>(draws.uniform(0, 255));
   cv::GaussianBlur(image, image, {0, 0}, 3);
@@ -293,7 +293,7 @@ TEST(CannyEdges, HasNoneInAnImageThatIsEmptyBlankTooSmallOrNoiseOnly) {
   }
   GreyLevels narrow{400, 6, std::vector<float>(2400, 10)};
   EXPECT_TRUE(canny_edges(narrow).empty());
-  Draws draws({34});
+  RandomStream draws({34});
   const GreyLevels grey{200, 200, std::vector<float>(40000, 128)};
   EXPECT_TRUE(canny_edges(test::with_noise(grey, 1, draws)).empty());
 }

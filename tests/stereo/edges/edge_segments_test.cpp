@@ -108,7 +108,7 @@ TEST(EdgeChains, DoNotStepToAnEdgeOfTheOtherSign) {
 }
 
 TEST(EdgeChains, HoldEveryPointOnceAtMost) {
-  Draws draws({51});
+  RandomStream draws({51});
   const auto polygon = test::random_polygon({80, 80}, draws);
   const auto points = canny_edges(test::with_noise(image_of(polygon, true), 12, draws));
   ASSERT_GT(points.size(), 400U);
@@ -174,7 +174,7 @@ void add(const std::vector<EdgeSegment>& segments,
 Recovered recover(double noise, unsigned polygons) {
   Recovered recovered;
   for (unsigned trial = 0; trial < polygons; ++trial) {
-    Draws draws({52, trial});
+    RandomStream draws({52, trial});
     const auto polygon =
         test::random_polygon({80 + draws.uniform(-0.5, 0.5), 80 + draws.uniform(-0.5, 0.5)}, draws);
     const bool bright = trial % 2 == 0;
@@ -224,7 +224,7 @@ TEST(EdgeSegments, ApproximateACurveWithinTheThreshold) {
   const auto points = canny_edges(image);
   std::size_t on_segments = 0, previous = 0;
   for (const double most : {0.08, 0.15, 0.4}) {
-    const auto segments = edge_segments(points, {.most_rms_px = most});
+    const auto segments = edge_segments(points, {.max_rms_px = most});
     on_segments = 0;
     for (const EdgeSegment& s : segments) {
       EXPECT_LE(s.rms_px, most);
@@ -245,7 +245,7 @@ TEST(EdgeSegments, ApproximateACurveWithinTheThreshold) {
 }
 
 TEST(EdgeSegments, ListTheirPointsInOrderAndEachPointOnce) {
-  Draws draws({53});
+  RandomStream draws({53});
   const auto polygon = test::random_polygon({80, 80}, draws);
   const auto points = canny_edges(test::with_noise(image_of(polygon, true), 6, draws));
   const auto segments = edge_segments(points);
@@ -276,7 +276,7 @@ TEST(EdgeSegments, EndShortOfAJunctionWithinWhatTheyState) {
   int stems = 0, within = 0;
   double z2 = 0;
   for (unsigned trial = 0; trial < 40; ++trial) {
-    Draws draws({54, trial});
+    RandomStream draws({54, trial});
     const double turn = draws.uniform(0, 2 * pi), opening = draws.uniform(60, 90) * pi / 180;
     const Eigen::Vector2d at(40 + draws.uniform(-0.5, 0.5), 40 + draws.uniform(-0.5, 0.5));
     const Eigen::Vector2d stem(std::cos(turn + opening), std::sin(turn + opening));
@@ -316,8 +316,8 @@ TEST(EdgeSegments, RefuseBadArguments) {
   const auto error = [&](const EdgeSegmentOptions& options) {
     return test::error_message([&] { edge_segments(points, options); });
   };
-  EXPECT_NE(error({.most_rms_px = 0}).find("rms"), std::string::npos);
-  EXPECT_NE(error({.least_points = 3}).find("4 points"), std::string::npos);
+  EXPECT_NE(error({.max_rms_px = 0}).find("rms"), std::string::npos);
+  EXPECT_NE(error({.min_points = 3}).find("4 points"), std::string::npos);
   EXPECT_NE(error({.scale_px = -1}).find("scale"), std::string::npos);
   std::swap(points[2], points[5]);
   EXPECT_NE(error({}).find("sorted"), std::string::npos);

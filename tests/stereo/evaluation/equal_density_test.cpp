@@ -27,8 +27,8 @@ std::vector<CurvePoint> curve(std::initializer_list<std::pair<double, double>> p
 }
 
 TEST(EqualDensity, ComparesAtTheLargestThatBothReach) {
-  const SceneCurves a{curve({{0.9, 0.02}, {0.5, 0.01}}), {curve({{0.8, 0.04}, {0.4, 0.02}})}};
-  const SceneCurves b{curve({{0.6, 0.03}}), {curve({{1.0, 0.10}, {0.5, 0.05}})}};
+  const DensityCurves a{curve({{0.9, 0.02}, {0.5, 0.01}}), {curve({{0.8, 0.04}, {0.4, 0.02}})}};
+  const DensityCurves b{curve({{0.6, 0.03}}), {curve({{1.0, 0.10}, {0.5, 0.05}})}};
   const EqualDensity e = at_equal_density({a, b});
   EXPECT_NEAR(e.density, 0.5 * (0.8 + 0.6), 1e-12);
   EXPECT_NEAR(e.own_bad_1, 0.5 * (0.0175 + 0.03), 1e-12);
@@ -38,8 +38,8 @@ TEST(EqualDensity, ComparesAtTheLargestThatBothReach) {
 }
 
 TEST(EqualDensity, TakesThePeersBestSetting) {
-  const SceneCurves scene{curve({{0.9, 0.02}}),
-                          {curve({{0.9, 0.04}}), curve({{0.9, 0.01}}), curve({{0.9, 0.03}})}};
+  const DensityCurves scene{curve({{0.9, 0.02}}),
+                            {curve({{0.9, 0.04}}), curve({{0.9, 0.01}}), curve({{0.9, 0.03}})}};
   const EqualDensity e = at_equal_density({scene});
   EXPECT_EQ(e.setting, 1u);
   EXPECT_NEAR(e.ratio, 2, 1e-12);
@@ -47,7 +47,7 @@ TEST(EqualDensity, TakesThePeersBestSetting) {
 }
 
 TEST(EqualDensity, AnIntervalHoldsTheRatioAndIsThatOfResampledScenes) {
-  std::vector<SceneCurves> scenes;
+  std::vector<DensityCurves> scenes;
   for (int k = 0; k < 12; ++k) {
     const double own = 0.02 + 0.005 * (k % 4);
     scenes.push_back({curve({{0.9, own}}), {curve({{0.9, 0.03 + 0.002 * (k % 3)}})}});
@@ -63,15 +63,15 @@ TEST(EqualDensity, AnIntervalHoldsTheRatioAndIsThatOfResampledScenes) {
 }
 
 TEST(EqualDensity, APeerWithoutErrorsIsTheBest) {
-  const SceneCurves scene{curve({{0.9, 0.02}}), {curve({{0.9, 0.04}}), curve({{0.9, 0}})}};
+  const DensityCurves scene{curve({{0.9, 0.02}}), {curve({{0.9, 0.04}}), curve({{0.9, 0}})}};
   const EqualDensity e = at_equal_density({scene});
   EXPECT_EQ(e.setting, 1u);
   EXPECT_TRUE(std::isinf(e.ratio));
-  const SceneCurves none{curve({{0.9, 0}}), {curve({{0.9, 0}})}};
+  const DensityCurves none{curve({{0.9, 0}}), {curve({{0.9, 0}})}};
   EXPECT_TRUE(std::isnan(at_equal_density({none}).ratio));
   // Resamples without the one scene where the peer errs are not left out.
-  const SceneCurves clean{curve({{0.9, 0.02}}), {curve({{0.9, 0}})}};
-  const SceneCurves dirty{curve({{0.9, 0.02}}), {curve({{0.9, 0.1}})}};
+  const DensityCurves clean{curve({{0.9, 0.02}}), {curve({{0.9, 0}})}};
+  const DensityCurves dirty{curve({{0.9, 0.02}}), {curve({{0.9, 0.1}})}};
   EXPECT_TRUE(std::isinf(at_equal_density({clean, clean, clean, dirty}).interval.high));
 }
 

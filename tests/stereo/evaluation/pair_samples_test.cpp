@@ -10,7 +10,7 @@
 #include "calib/statistics/random.h"
 #include "stereo/disparity_file.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/edge_loss.h"
 #include "stereo/evaluation/end_difference.h"
 #include "stereo/evaluation/line_match.h"
@@ -36,7 +36,7 @@ constexpr int width = columns * cell + 40, height = rows * cell;
 /// Polygons, each growing in the right image by an amount of its own.
 struct GrowingPolygons {
   explicit GrowingPolygons(double size_px) {
-    Draws draws({.seed = 41});
+    RandomStream draws({.seed = 41});
     for (int k = 0; k < columns * rows; ++k) {
       const Eigen::Vector2d centre(40 + (k % columns + 0.5) * cell, (k / columns + 0.5) * cell);
       polygons.push_back(test::random_polygon(centre, draws));
@@ -60,7 +60,7 @@ struct GrowingPolygons {
   }
 
   RectifiedPair pair() const {
-    Draws draws({.seed = 42});
+    RandomStream draws({.seed = 42});
     const auto image = [&](bool right) {
       const auto level_at = [&](const Eigen::Vector2d& p) {
         return level(right ? Eigen::Vector2d(p.x() + disparity, p.y()) : p, right);
@@ -176,7 +176,7 @@ TEST(PairSamples, LeavesOnASlantedPlaneAreFoundAgain) {
   }
   EXPECT_GT(matched, 100);
   EXPECT_LE(wrong, 0.02 * matched);
-  for (const CornerRepeat& corner : samples.corners) found += corner.found;
+  for (const CornerRepeatability& corner : samples.corners) found += corner.found;
   EXPECT_GT(found, 0.8 * static_cast<double>(samples.corners.size()));
   EXPECT_GT(samples.corner_matches.size(), 50u);
 }

@@ -26,7 +26,7 @@ class StereoSceneList : public testing::Test {
     return read_stereo_scenes(folder_.write("pairs.toml", text));
   }
   /// A pair with one line changed, and the complaint about it.
-  std::string complaint(const std::string& from, const std::string& to) const {
+  std::string error_output(const std::string& from, const std::string& to) const {
     std::string text = pair;
     const std::size_t at = text.find(from);
     text.replace(at, from.size(), to);
@@ -54,20 +54,20 @@ TEST_F(StereoSceneList, NamesFilesFromItsFolder) {
   EXPECT_TRUE(scenes[0].right_truth.empty() && scenes[0].rig.empty());
   EXPECT_EQ(scenes[0].truth_scale, 1);
   EXPECT_EQ(scenes[0].truth_kind, TruthKind::measured);
-  EXPECT_EQ(scenes[0].range.least_px, 0);
-  EXPECT_EQ(scenes[0].range.most_px, 64);
+  EXPECT_EQ(scenes[0].range.min_px, 0);
+  EXPECT_EQ(scenes[0].range.max_px, 64);
   EXPECT_EQ(scenes[1].right, absolute);
   EXPECT_EQ(scenes[1].right_truth, folder_.path() / "other.png");
   EXPECT_EQ(scenes[1].truth_scale, 2.5);
   EXPECT_EQ(name(scenes[1].truth_kind), "labelled");
-  EXPECT_EQ(scenes[1].range.least_px, -3);
-  EXPECT_EQ(scenes[1].range.most_px, 7);
+  EXPECT_EQ(scenes[1].range.min_px, -3);
+  EXPECT_EQ(scenes[1].range.max_px, 7);
   EXPECT_EQ(scenes[1].rig, folder_.path() / "a.rig.json");
 }
 
 TEST_F(StereoSceneList, IsRefusedWithTheLineOfTheFault) {
   const auto expect = [&](const std::string& from, const std::string& to, const std::string& part) {
-    const std::string message = complaint(from, to);
+    const std::string message = error_output(from, to);
     EXPECT_NE(message.find("pairs.toml:" + part), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   };

@@ -84,7 +84,7 @@ Tally compare(const Strips& strips, const StereoTruth& truth) {
 
 /// A background of a random slope and strips in front of it, all of disparities above 0.
 Strips random_strips(std::uint32_t trial, int in_front) {
-  Draws draws({.seed = 61, .trial = trial, .source = 200});
+  RandomStream draws({.seed = 61, .trial = trial, .source = 200});
   Strips strips = {{0, width - 1, 0, draws.uniform(-0.3, 0.3)}};
   strips[0].d = 10 + std::max(0.0, -strips[0].g * width);
   for (int i = 0; i < in_front; ++i) {
@@ -156,8 +156,8 @@ TEST(TruthAtEdge, IsThatOfTheSubpixelEdgeOnASlantedPlane) {
       EXPECT_FALSE(at.discontinuity);
       EXPECT_FALSE(at.occluded);
       if (y == 7 && x < 38) {
-        EXPECT_NEAR(at.least_px, 0.5f + 0.6f * (std::round(x) - 1) + 0.1f * 6, 1e-4);
-        EXPECT_NEAR(at.most_px, 0.5f + 0.6f * (std::round(x) + 1) + 0.1f * 8, 1e-4);
+        EXPECT_NEAR(at.min_px, 0.5f + 0.6f * (std::round(x) - 1) + 0.1f * 6, 1e-4);
+        EXPECT_NEAR(at.max_px, 0.5f + 0.6f * (std::round(x) + 1) + 0.1f * 8, 1e-4);
       }
     }
   }
@@ -174,7 +174,7 @@ TEST(TruthAtEdge, IsTheForegroundsAtAStep) {
   for (const float x : {59.0f, 59.4f, 60.0f, 79.0f, 80.4f}) {
     const TruthAtEdge at = truth_of(truth, x, 4);
     EXPECT_EQ(at.disparity_px, 20) << x;
-    EXPECT_EQ(at.least_px, 8);
+    EXPECT_EQ(at.min_px, 8);
     EXPECT_TRUE(at.discontinuity);
     EXPECT_FALSE(at.occluded) << x;
   }
@@ -202,7 +202,7 @@ TEST(TruthAtEdge, KnowsWhereNothingIsKnown) {
   const StereoTruth truth = stereo_truth(map);
   const TruthAtEdge none = truth_of(truth, 25, 4);
   EXPECT_FALSE(none.known);
-  EXPECT_TRUE(std::isnan(none.disparity_px) && std::isnan(none.least_px));
+  EXPECT_TRUE(std::isnan(none.disparity_px) && std::isnan(none.min_px));
   const TruthAtEdge beside = truth_of(truth, 19.4f, 4);
   EXPECT_TRUE(beside.known && beside.discontinuity);
   EXPECT_EQ(beside.disparity_px, 8);
@@ -220,16 +220,16 @@ TEST(StereoTruthOfFiles, IsRefusedWithTheFileNamed) {
   scene.truth = folder.path() / "left.pfm";
   write_disparity(scene.truth, map);
   EXPECT_EQ(read_stereo_truth(scene, 4, 3).disparity.values, map.values);
-  const auto complaint = [&](int w, int h) {
+  const auto error_output = [&](int w, int h) {
     return test::error_message([&] { read_stereo_truth(scene, w, h); });
   };
-  EXPECT_NE(complaint(5, 3).find("left.pfm: its size 4x3 is not that of the images, 5x3"),
+  EXPECT_NE(error_output(5, 3).find("left.pfm: its size 4x3 is not that of the images, 5x3"),
             std::string::npos);
   scene.right_truth = folder.path() / "right.pfm";
   write_disparity(scene.right_truth, {3, 4, map.values});
-  EXPECT_NE(complaint(4, 3).find("right.pfm: its size 3x4"), std::string::npos);
+  EXPECT_NE(error_output(4, 3).find("right.pfm: its size 3x4"), std::string::npos);
   write_disparity(scene.right_truth, {4, 3, std::vector<float>(12, unknown)});
-  EXPECT_NE(complaint(4, 3).find("right.pfm: holds no known disparity"), std::string::npos);
+  EXPECT_NE(error_output(4, 3).find("right.pfm: holds no known disparity"), std::string::npos);
   EXPECT_NE(test::error_message([&] {
               truth_at(stereo_truth(map), {test::edge_at(4, 0)});
             }).find("4x3 pixels large, and an edge is at (4, 0)"),

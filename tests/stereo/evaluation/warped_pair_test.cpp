@@ -125,7 +125,7 @@ Errors errors(const WarpedPair& warped) {
   const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
   const MatcherScore score =
       evaluate(edges, edge_matcher().match(warped.pair, edges, range), truth_at(warped, edges),
-               warped.pair.left.width_px, {.least_angle_rad = 0.35, .border_px = 40});
+               warped.pair.left.width_px, {.min_angle_rad = 0.35, .border_px = 40});
   return {score.all.rms_inlier_px, score.all.bad_1, score.all.matched};
 }
 
@@ -133,12 +133,12 @@ Errors errors(const WarpedPair& warped) {
 double errors_of_random(const WarpedPair& warped) {
   const std::vector<EdgePoint> edges = canny_edges(warped.pair.left);
   std::vector<EdgeDisparity> found(edges.size());
-  Draws draws({.seed = 913});
+  RandomStream draws({.seed = 913});
   for (EdgeDisparity& d : found) {
-    d.disparity_px = static_cast<float>(draws.uniform(range.least_px, range.most_px));
+    d.disparity_px = static_cast<float>(draws.uniform(range.min_px, range.max_px));
   }
   return evaluate(edges, found, truth_at(warped, edges), warped.pair.left.width_px,
-                  {.least_angle_rad = 0.35, .border_px = 40})
+                  {.min_angle_rad = 0.35, .border_px = 40})
       .all.bad_1;
 }
 
@@ -152,7 +152,7 @@ double largest(const DisparityMap& map) {
 
 TEST(WarpedPair, EdgesAreFoundWhereTheTruthSays) {
   const Scene scene;
-  const Errors exact = errors(with_rows_moved(scene.pair, scene.truth, 0));
+  const Errors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
   ASSERT_GT(exact.matched, 2000);
   double moved_px = 0;
   for (std::uint32_t trial = 0; trial < 3; ++trial) {
@@ -191,7 +191,7 @@ TEST(WarpedPair, LongEdgesAreFoundAtTheirCrossing) {
   for (const double lean : {-1.0, 0.7}) {
     const RectifiedPair pair = leaning_bars(lean, 20);
     const StereoTruth truth = stereo_truth({320, 240, std::vector<float>(320 * 240, 20)});
-    const WarpedPair moved = with_rows_moved(pair, truth, 1.5);
+    const WarpedPair moved = with_shifted_rows(pair, truth, 1.5);
     const std::vector<EdgePoint> edges = canny_edges(moved.pair.left);
     const std::vector<TruthAtEdge> at = truth_at(moved, edges);
     const std::vector<EdgeDisparity> found = edge_matcher().match(moved.pair, edges, {14, 26});
@@ -210,8 +210,8 @@ TEST(WarpedPair, LongEdgesAreFoundAtTheirCrossing) {
 
 TEST(WarpedPair, RepairTakesMovedRowsAway) {
   const Scene scene;
-  const Errors exact = errors(with_rows_moved(scene.pair, scene.truth, 0));
-  WarpedPair moved = with_rows_moved(scene.pair, scene.truth, 2);
+  const Errors exact = errors(with_shifted_rows(scene.pair, scene.truth, 0));
+  WarpedPair moved = with_shifted_rows(scene.pair, scene.truth, 2);
   EXPECT_EQ(largest(moved.vertical_px), 2);
   const VerticalField field = vertical_field(moved.pair, range);
   ASSERT_TRUE(field.significant);

@@ -65,17 +65,17 @@ class DisparityFile : public testing::Test {
     }
   }
   /// The complaint about a file of these bytes: one line that begins with its name.
-  std::string complaint(const std::string& bytes) const {
-    return complaint(folder_.write("bad", bytes));
+  std::string error_output(const std::string& bytes) const {
+    return error_output(folder_.write("bad", bytes));
   }
-  std::string complaint(const std::filesystem::path& file) const {
+  std::string error_output(const std::filesystem::path& file) const {
     const std::string message = test::error_message([&] { read_disparity(file); });
     EXPECT_EQ(message.rfind(file.string(), 0), 0u) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;
   }
   void expect_complaint(const std::string& bytes, const std::string& part) const {
-    EXPECT_NE(complaint(bytes).find(part), std::string::npos) << complaint(bytes);
+    EXPECT_NE(error_output(bytes).find(part), std::string::npos) << error_output(bytes);
   }
 
   test::Folder folder_;
@@ -133,7 +133,7 @@ TEST_F(DisparityFile, TakesOutWhatTheOptionsCallUnknown) {
       folder_.write("r", npy("<f4", bytes_of<float>({-16, 0, 16, 8, -8, 1e30f}, false)));
   expect(real, {-1, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16});
   expect(real, {-1, unknown, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .zero_is_unknown = true});
-  expect(real, {unknown, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .least_px = -0.5});
+  expect(real, {unknown, 0, 1, 0.5f, -0.5f, 6.25e28f}, {.scale = 16, .min_px = -0.5});
   const auto whole =
       folder_.write("w", npy("|i1", bytes_of<std::int8_t>({-1, 0, 1, 2, 3, 4}, false)));
   expect(whole, {-1, 0, 1, 2, 3, 4}, {.zero_is_unknown = false});
@@ -186,30 +186,30 @@ TEST_F(DisparityFile, RefusesBadNumpyArrays) {
   expect_complaint(other, "version 7");
   std::string torn = good;
   torn[10] = '(';
-  EXPECT_NE(complaint(torn), "");
+  EXPECT_NE(error_output(torn), "");
   expect_complaint(std::string("\x93NUMPY\x01\x00\x03\x00{ }", 13), "without descr");
 }
 
 TEST_F(DisparityFile, RefusesOtherImages) {
   cv::Mat colours = cv::Mat::zeros(4, 4, CV_8UC3);
   colours.at<cv::Vec3b>(3, 2)[1] = 1;
-  EXPECT_NE(complaint(save("colour.png", colours)).find("colour"), std::string::npos);
-  EXPECT_NE(complaint(save("clear.png", cv::Mat::zeros(4, 4, CV_8UC4))).find("transparency"),
+  EXPECT_NE(error_output(save("colour.png", colours)).find("colour"), std::string::npos);
+  EXPECT_NE(error_output(save("clear.png", cv::Mat::zeros(4, 4, CV_8UC4))).find("transparency"),
             std::string::npos);
   cv::imwrite((folder_.path() / "bit.png").string(), cv::Mat::zeros(4, 4, CV_8U),
               {cv::IMWRITE_PNG_BILEVEL, 1});
-  EXPECT_NE(complaint(folder_.path() / "bit.png").find("fewer than 8 bits"), std::string::npos);
-  EXPECT_NE(complaint(save("lossy.jpg", cv::Mat::zeros(4, 4, CV_8U))).find("neither PFM"),
+  EXPECT_NE(error_output(folder_.path() / "bit.png").find("fewer than 8 bits"), std::string::npos);
+  EXPECT_NE(error_output(save("lossy.jpg", cv::Mat::zeros(4, 4, CV_8U))).find("neither PFM"),
             std::string::npos);
   const auto cut = save("cut.png", cv::Mat(40, 40, CV_16U, cv::Scalar(7)));
   std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 20);
-  EXPECT_NE(complaint(cut).find("cut off"), std::string::npos);
+  EXPECT_NE(error_output(cut).find("cut off"), std::string::npos);
   expect_complaint("P5 3 2 255\nabcde", "cut off");
   expect_complaint("P5 0 0 255\n", "is not an image");
   expect_complaint("PK\x03\x04", "archive");
   expect_complaint("", "is empty");
   expect_complaint("disparity", "neither PFM");
-  EXPECT_NE(complaint(folder_.path() / "none.pfm").find("cannot be read"), std::string::npos);
+  EXPECT_NE(error_output(folder_.path() / "none.pfm").find("cannot be read"), std::string::npos);
 }
 
 TEST_F(DisparityFile, ReadsBackWhatItWrote) {

@@ -63,12 +63,12 @@ struct Score {
 
 Score score(const Scene& scene, const Matcher& matcher) {
   const auto found = matcher.match(scene.pair, scene.edges, scene.range);
-  const float least_slope = static_cast<float>(std::sin(5 * std::numbers::pi / 180));
+  const float min_slope = static_cast<float>(std::sin(5 * std::numbers::pi / 180));
   double shown = 0, all = 0, mismatched = 0;
   std::array<double, 2> matched{}, bad_1{};  // away from discontinuities, at them
   for (std::size_t i = 0; i < found.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
-    if (!truth.known || std::abs(scene.edges[i].normal.x()) < least_slope) continue;
+    if (!truth.known || std::abs(scene.edges[i].normal.x()) < min_slope) continue;
     const float error = std::abs(found[i].disparity_px - truth.disparity_px);
     shown += !truth.occluded;
     all += found[i].matched();

@@ -33,10 +33,10 @@ GreyLevels texture(int from, int columns = width) {
   GreyLevels grey{columns, height, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < columns; ++x) {
-      Draws draws({.seed = 71,
-                   .trial = static_cast<std::uint32_t>(x + from + 1000),
-                   .feature = static_cast<std::uint32_t>(y),
-                   .source = 200});
+      RandomStream draws({.seed = 71,
+                          .trial = static_cast<std::uint32_t>(x + from + 1000),
+                          .feature = static_cast<std::uint32_t>(y),
+                          .source = 200});
       grey.values.push_back(static_cast<float>(draws.uniform(20, 235)));
     }
   }
@@ -175,7 +175,7 @@ TEST(DenseMatchers, GiveTheMapAtEdges) {
 /// The same disparities, fewer of them, as more is asked of a match.
 TEST(DenseMatchers, BecomeSparserByUniqueness) {
   RectifiedPair pair = plane(9);
-  Draws draws({.seed = 72, .source = 200});
+  RandomStream draws({.seed = 72, .source = 200});
   for (float& grey : pair.right.values) {
     grey += static_cast<float>(60 * draws.normal());
     grey = std::clamp(grey, 0.0f, 255.0f);
@@ -202,22 +202,22 @@ TEST(DenseMatchers, BecomeSparserByUniqueness) {
 
 TEST(DenseMatchers, RefuseWhatTheyCannotMatch) {
   for (const auto& [label, map_of] : maps()) {
-    const auto complaint = [&, &of = map_of](const RectifiedPair& pair,
-                                             const DisparityRange& range) {
+    const auto error_output = [&, &of = map_of](const RectifiedPair& pair,
+                                                const DisparityRange& range) {
       const std::string message = test::error_message([&] { of(pair, range); });
       EXPECT_EQ(message.find('\n'), std::string::npos);
       return message;
     };
-    EXPECT_NE(
-        complaint({texture(0), texture(0, 200)}, {0, 16}).find("220x60 and the right one 200x60"),
-        std::string::npos);
-    EXPECT_NE(complaint({}, {0, 16}).find("no pixels"), std::string::npos);
-    EXPECT_NE(complaint(plane(9), {5, 4}).find("between 5 and 4"), std::string::npos);
-    EXPECT_NE(complaint(plane(9), {0, 220}).find("beyond the images' width of 220"),
+    EXPECT_NE(error_output({texture(0), texture(0, 200)}, {0, 16})
+                  .find("220x60 and the right one 200x60"),
               std::string::npos);
-    EXPECT_NE(complaint(plane(9), {-220, 0}).find("beyond"), std::string::npos);
-    EXPECT_EQ(complaint(plane(9), {-219, 219}), "");
-    EXPECT_NE(complaint({texture(0, 5000), texture(0, 5000)}, {0, 2500}).find("2000 px"),
+    EXPECT_NE(error_output({}, {0, 16}).find("no pixels"), std::string::npos);
+    EXPECT_NE(error_output(plane(9), {5, 4}).find("between 5 and 4"), std::string::npos);
+    EXPECT_NE(error_output(plane(9), {0, 220}).find("beyond the images' width of 220"),
+              std::string::npos);
+    EXPECT_NE(error_output(plane(9), {-220, 0}).find("beyond"), std::string::npos);
+    EXPECT_EQ(error_output(plane(9), {-219, 219}), "");
+    EXPECT_NE(error_output({texture(0, 5000), texture(0, 5000)}, {0, 2500}).find("2000 px"),
               std::string::npos);
   }
   const auto bad = [](auto&& change) {

@@ -34,7 +34,7 @@ using namespace stereo::internal;
 namespace {
 
 GreyLevels random_image(int width, int height, std::uint64_t seed) {
-  Draws draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+  RandomStream draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
   GreyLevels image{width, height, {}};
   for (int i = 0; i < width * height; ++i) {
     image.values.push_back(static_cast<float>(std::floor(256 * draws.uniform())));
@@ -69,7 +69,7 @@ class Support : public testing::Test {
   static constexpr int width = 90, height = 24, disparities = 32;
 
   Support() {
-    Draws draws({.seed = 202, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+    RandomStream draws({.seed = 202, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
     std::vector<int> x, y;
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {
@@ -174,8 +174,7 @@ TEST_F(Support, WinnersAreThoseOfTheRecursion) {
         const auto D = static_cast<std::size_t>(d);
         int support = 0;
         if (gap <= 2 * options.reach_px) {
-          const double share =
-              std::clamp(1 - (gap - 1) / options.reach_px, options.least_share, 1.0);
+          const double share = std::clamp(1 - (gap - 1) / options.reach_px, options.min_share, 1.0);
           const std::vector<int>& other = L[static_cast<std::size_t>(from)];
           const int least = *std::min_element(other.begin(), other.end());
           const int small = static_cast<int>(static_cast<float>(share) * options.small_step);
@@ -190,7 +189,7 @@ TEST_F(Support, WinnersAreThoseOfTheRecursion) {
       }
     }
   }
-  const std::vector<Winner> winners = semi_global_winners(
+  const std::vector<Winner> winners = semi_global_disparities(
       {points, left, mirror, first, Facing::opposite, disparities}, vernier::Support::all, options);
   int same = 0;
   for (std::size_t p = 0; p < n; ++p) {
@@ -272,13 +271,13 @@ class Evaluation : public testing::Test {
       edges.push_back(edge);
       TruthAtEdge at;
       at.known = true;
-      at.disparity_px = at.own_px = at.least_px = at.most_px = 10;
+      at.disparity_px = at.own_px = at.min_px = at.max_px = 10;
       truth.push_back(at);
       found.push_back({10, 0.5f, static_cast<float>(i)});
     }
     truth[3].occluded = truth[3].own_occluded = true;
     truth[4].discontinuity = true;
-    truth[4].least_px = 4;
+    truth[4].min_px = 4;
   }
   std::vector<EdgePoint> edges;
   std::vector<TruthAtEdge> truth;
@@ -304,7 +303,7 @@ TEST_F(Evaluation, CountsByTheProtocol) {
   EXPECT_DOUBLE_EQ(either.coverage_95, 0.5);
   EXPECT_NEAR(either.smooth.rms_inlier_px, 0.6, 1e-6);
   EvaluationOptions strict;
-  strict.outline = OutlineRule::foreground;
+  strict.outline = DiscontinuityRule::foreground;
   EXPECT_DOUBLE_EQ(evaluate(edges, found, truth, 100, strict).all.bad_1, 2.0 / 3);
   EXPECT_DOUBLE_EQ(evaluate(edges, found, truth, 100, strict).mismatch, 3.0 / 4);
   edges[0].normal = {0.05f, 1};  // along the row: not asked

@@ -63,7 +63,7 @@ class ExternalMatcher : public testing::Test {
     EXPECT_TRUE(fs::is_empty(temporary_));
     return map;
   }
-  std::string complaint(const std::string& command, const ExternalMatcherOptions& options = {}) {
+  std::string error_output(const std::string& command, const ExternalMatcherOptions& options = {}) {
     const std::string message = test::error_message([&] {
       external_map(pair_, {0, 3}, command, options);
     });
@@ -77,7 +77,7 @@ class ExternalMatcher : public testing::Test {
   void expect_complaint(const std::string& command,
                         const std::string& part,
                         const ExternalMatcherOptions& options = {}) {
-    const std::string message = complaint(command, options);
+    const std::string message = error_output(command, options);
     EXPECT_NE(message.find(part), std::string::npos) << message;
   }
   void expect_same(const DisparityMap& map, const std::vector<float>& wanted) const {
@@ -214,7 +214,7 @@ TEST_F(ExternalMatcher, TellsWhatWentWrongInTheProgram) {
                    "ended with status 1: to standard output");
   expect_complaint(script("long", "printf 'x%.0s' $(seq 5000) >&2; exit 1\n") + names,
                    "status 1: xxx");
-  EXPECT_LT(complaint(folder_.path().string() + "/long" + names).size(), 1000u);
+  EXPECT_LT(error_output(folder_.path().string() + "/long" + names).size(), 1000u);
   expect_complaint(script("killed", "kill -9 $$\n") + names, "ended by signal 9");
   expect_complaint(script("idle", "exit 0\n") + names, "ended well but wrote no map");
   expect_complaint(script("folder", "mkdir \"$3\"\n") + names, "ended well but wrote no map");

@@ -114,12 +114,12 @@ TEST_P(BlocksByDefinition, AreTheBestOfAllTried) {
   const double half_step = 0.5001 * std::log(3.0) * 2 / (options.stretches - 1);
   int searched = 0;
   for (const StretchBlock& block : found.blocks) {
-    if (block.fate == BlockFate::few_edges) continue;
+    if (block.fate == BlockStatus::few_edges) continue;
     ++searched;
     double best = -2, at_found = -2;
     for (const double stretch : stretches_of(options)) {
       for (const double shear : shears_of(options)) {
-        for (int d = range.least_px; d <= range.most_px; ++d) {
+        for (int d = range.min_px; d <= range.max_px; ++d) {
           if (block.x - d < 0 || block.x - d >= pair.left.width_px) continue;
           const double score = reference.score(block, d, stretch, shear);
           best = std::max(best, score);
@@ -181,7 +181,7 @@ TEST(StretchCorrelation, BlocksAreKeptBySupport) {
   const auto strong = [&](int column, int row) -> const StretchBlock* {
     if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return nullptr;
     const StretchBlock& b = grid.blocks[static_cast<std::size_t>(row * grid.columns + column)];
-    const bool good = b.edges >= options.least_edges && b.score >= float(options.least_score);
+    const bool good = b.edges >= options.min_edges && b.score >= float(options.min_score);
     return good ? &b : nullptr;
   };
   int kept = 0, lonely = 0;
@@ -189,8 +189,8 @@ TEST(StretchCorrelation, BlocksAreKeptBySupport) {
     for (int column = 0; column < grid.columns; ++column) {
       const StretchBlock& own = grid.blocks[static_cast<std::size_t>(row * grid.columns + column)];
       if (!strong(column, row)) {
-        EXPECT_NE(own.fate, BlockFate::kept);
-        EXPECT_EQ(own.fate == BlockFate::few_edges, own.edges < options.least_edges);
+        EXPECT_NE(own.fate, BlockStatus::kept);
+        EXPECT_EQ(own.fate == BlockStatus::few_edges, own.edges < options.min_edges);
         continue;
       }
       int support = 0;
@@ -201,8 +201,8 @@ TEST(StretchCorrelation, BlocksAreKeptBySupport) {
         support += std::abs(d) <= std::hypot(own.x - other->x - 0.5 * d, own.y - other->y) ? 1 : 0;
       }
       EXPECT_EQ(own.support, support);
-      EXPECT_EQ(own.fate, support >= 5 ? BlockFate::kept : BlockFate::lonely);
-      (own.fate == BlockFate::kept ? kept : lonely)++;
+      EXPECT_EQ(own.fate, support >= 5 ? BlockStatus::kept : BlockStatus::lonely);
+      (own.fate == BlockStatus::kept ? kept : lonely)++;
     }
   }
   EXPECT_GT(kept, 500);
@@ -210,17 +210,17 @@ TEST(StretchCorrelation, BlocksAreKeptBySupport) {
 }
 
 test::PlaneFigures match_plane(const test::LeafPlane& plane,
-                               int most_px,
+                               int max_px,
                                const StretchOptions& options) {
   const RectifiedPair pair = leaf_pair(plane, 304);
   const std::vector<EdgePoint> edges = canny_edges(pair.left);
-  return test::figures(plane, edges, stretch_matcher(options).match(pair, edges, {0, most_px}));
+  return test::figures(plane, edges, stretch_matcher(options).match(pair, edges, {0, max_px}));
 }
 
 TEST(StretchCorrelation, FollowsPlanes) {
   struct {
     double by_x, by_y, disparity_px;
-    int most_px, shears;
+    int max_px, shears;
     double density;
   } const planes[] = {
       {0, 0, 28, 60, 1, 0.9},     {0.15, 0, 28, 60, 1, 0.9},  {-0.15, 0, 28, 60, 1, 0.85},
@@ -231,7 +231,7 @@ TEST(StretchCorrelation, FollowsPlanes) {
     StretchOptions options;
     options.shears = p.shears;
     const test::PlaneFigures f = match_plane(
-        {.disparity_px = p.disparity_px, .by_x = p.by_x, .by_y = p.by_y}, p.most_px, options);
+        {.disparity_px = p.disparity_px, .by_x = p.by_x, .by_y = p.by_y}, p.max_px, options);
     EXPECT_GT(f.density, p.density) << p.by_x << " " << p.by_y;
     EXPECT_LT(f.mismatch, 0.01) << p.by_x << " " << p.by_y;
   }
@@ -241,7 +241,7 @@ TEST(StretchCorrelation, StretchIsThePlanes) {
   const RectifiedPair pair = leaf_pair({.disparity_px = 60, .by_x = 0.3}, 305);
   std::vector<float> stretches;
   for (const StretchBlock& b : stretch_blocks(pair, canny_edges(pair.left), {0, 120}).blocks) {
-    if (b.fate == BlockFate::kept) stretches.push_back(b.stretch);
+    if (b.fate == BlockStatus::kept) stretches.push_back(b.stretch);
   }
   ASSERT_GT(stretches.size(), 300U);
   std::sort(stretches.begin(), stretches.end());
@@ -253,7 +253,7 @@ TEST(StretchCorrelation, EveryFilterFindsAPlane) {
                                      StretchFilter::rank, StretchFilter::census}) {
     StretchOptions options;
     options.filter = filter;
-    if (filter == StretchFilter::census) options.least_score = 0.3;  // noise has signs too
+    if (filter == StretchFilter::census) options.min_score = 0.3;  // noise has signs too
     const test::PlaneFigures f = match_plane({.disparity_px = 28, .noise = 1}, 60, options);
     EXPECT_GT(f.density, 0.7) << static_cast<int>(filter);
     EXPECT_LT(f.mismatch, 0.02) << static_cast<int>(filter);
@@ -310,7 +310,7 @@ TEST(StretchCorrelation, SameBitsForAnyNumberOfThreads) {
 const StretchBlock* surest(const StretchBlocks& grid, const EdgePoint& edge) {
   const StretchBlock* best = nullptr;
   for (const StretchBlock& b : grid.blocks) {
-    if (b.fate != BlockFate::kept || std::abs(b.x - edge.x) > 8 || std::abs(b.y - edge.y) > 4) {
+    if (b.fate != BlockStatus::kept || std::abs(b.x - edge.x) > 8 || std::abs(b.y - edge.y) > 4) {
       continue;
     }
     if (!best || b.score > best->score) best = &b;
@@ -374,7 +374,7 @@ TEST(StretchCorrelation, BlankAndTinyImages) {
     const GreyLevels blank{width, height, std::vector<float>(pixels, 90.0f)};
     const RectifiedPair pair{blank, blank};
     StretchOptions options;
-    options.least_edges = 1;
+    options.min_edges = 1;
     const DisparityRange range{0, std::min(20, width - 1)};
     const StretchFrame frame = match_by_stretch(pair, {edge}, range, options);
     ASSERT_EQ(frame.at_edges.size(), 1U);
@@ -390,7 +390,7 @@ TEST(StretchCorrelation, RefusesOptionsThatLeaveNothing) {
   const std::vector<std::function<void(StretchOptions&)>> faults = {
       [](auto& o) { o.width_px = 16; },        [](auto& o) { o.height_px = 0; },
       [](auto& o) { o.step_x_px = 0; },        [](auto& o) { o.stretches = 4; },
-      [](auto& o) { o.most_gradient = 2; },    [](auto& o) { o.shears = 0; },
+      [](auto& o) { o.max_gradient = 2; },     [](auto& o) { o.shears = 0; },
       [](auto& o) { o.rank_reach_px = 12; },   [](auto& o) { o.halvings = -1; },
       [](auto& o) { o.edge_reach_px = NAN; },  [](auto& o) { o.scale_px = 0; },
       [](auto& o) { o.rank_least_grey = -1; },

@@ -28,8 +28,8 @@ using namespace stereo::internal;
 
 namespace {
 
-Draws draws_of(std::uint64_t seed) {
-  return Draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+RandomStream draws_of(std::uint64_t seed) {
+  return RandomStream({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
 }
 
 /// Points of one straight edge, one a row, with the disparities asked for.
@@ -124,7 +124,7 @@ TEST_F(OneEdge, RefusalsSayWhy) {
   make(
       30, [](int) { return 20.0; }, 15);  // 3.8° from the row
   EXPECT_EQ(parts().at(0).status, SegmentStatus::along_row);
-  EXPECT_NE(parts({.least_angle_rad = 0.05}).at(0).status, SegmentStatus::along_row);
+  EXPECT_NE(parts({.min_angle_rad = 0.05}).at(0).status, SegmentStatus::along_row);
   EXPECT_NE(std::string(describe(SegmentStatus::disagree)).find("no line"), std::string::npos);
 }
 
@@ -136,7 +136,7 @@ TEST_F(OneEdge, BadInputIsNamed) {
   segment.points.push_back(30);
   EXPECT_NE(test::error_message([&] { parts(); }).find("none of the edges"), std::string::npos);
   segment.points.pop_back();
-  EXPECT_NE(test::error_message([&] { parts({.least_points = 2}); }).find("out of its range"),
+  EXPECT_NE(test::error_message([&] { parts({.min_points = 2}); }).find("out of its range"),
             std::string::npos);
 }
 
@@ -159,7 +159,7 @@ TEST_F(OneEdge, CorrelatedNoiseHasTheStatedCovariance) {
     }
   }
   const Eigen::MatrixXd root = C.llt().matrixL();
-  Draws draws = draws_of(501);
+  RandomStream draws = draws_of(501);
   const int trials = 2000;
   double sum = 0, independent = 0;
   for (int k = 0; k < trials; ++k) {
@@ -191,7 +191,7 @@ Whitened rendered(double angle, double by_y, int trials) {
   const RectifiedPair clean = pair.images(140, 100);
   Whitened w;
   for (int k = 0; k < trials; ++k) {
-    Draws draws = draws_of(600 + static_cast<std::uint64_t>(k));
+    RandomStream draws = draws_of(600 + static_cast<std::uint64_t>(k));
     const RectifiedPair noisy{test::with_noise(clean.left, 2, draws),
                               test::with_noise(clean.right, 2, draws)};
     const std::vector<EdgePoint> edges = canny_edges(noisy.left);

@@ -79,7 +79,7 @@ SegmentFigures figures(const test::StereoScene& scene, const StereoSceneFile& fi
   const auto truth =
       truth_at(read_stereo_truth(file, pair.left.width_px, pair.left.height_px), edges);
   const auto found =
-      edge_matcher().match(pair, edges, {0, static_cast<int>(scene.most_disparity_px)});
+      edge_matcher().match(pair, edges, {0, static_cast<int>(scene.max_disparity_px)});
   const std::vector<EdgeSegment> segments = edge_segments(edges);
   const auto lines = segment_disparities(edges, segments, found);
   RigEstimate estimate;

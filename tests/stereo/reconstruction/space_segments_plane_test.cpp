@@ -98,7 +98,7 @@ PlaneFigures figures(test::LeafPlane plane, int pairs) {
 TEST(SpaceSegmentsOfPlanes, GiveThePlaneBack) {
   for (const auto& [by_x, by_y] : {std::pair{0.0, 0.0}, {0.15, 0.0}, {0.0, 0.2}, {-0.1, 0.1}}) {
     const PlaneFigures f =
-        figures({.disparity_px = 30, .by_x = by_x, .by_y = by_y, .least_radius_px = 12}, 8);
+        figures({.disparity_px = 30, .by_x = by_x, .by_y = by_y, .min_radius_px = 12}, 8);
     SCOPED_TRACE(testing::Message() << by_x << ' ' << by_y);
     EXPECT_GT(f.segments, 1200);
     EXPECT_LE(f.wrong, 2);

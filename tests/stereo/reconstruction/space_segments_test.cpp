@@ -37,7 +37,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 Eigen::MatrixXd random_root(int n, std::uint64_t seed) {
-  Draws draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+  RandomStream draws({.seed = seed, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
   Eigen::MatrixXd root(n, n);
   for (int i = 0; i < n; ++i) root.col(i) = draws.normals(n);
   return root;
@@ -195,7 +195,7 @@ TEST(SpaceSegments, PartsAddUp) {
 TEST(SpaceSegments, TheIndependentPartIsThatOfDraws) {
   const Rig rig = test::stereo_rig();
   const RectifiedGeometry g = rectified_geometry(rig);
-  Draws draws({.seed = 511, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
+  RandomStream draws({.seed = 511, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
   for (const SegmentDisparity& truth : some()) {
     const MeasuredSegment stated = space_segments(std::vector{truth}, g)[0];
     const Matrix6d root = truth.covariance_px2.llt().matrixL();
@@ -280,7 +280,7 @@ TEST(SpaceSegments, AlreadyRectifiedRigsAreKnown) {
   const Rig raw = test::stereo_rig();
   const RectifiedGeometry g = rectified_geometry(raw);
   Rig rig = rectified_rig(raw, g);
-  const auto same = geometry_as_it_stands(rig);
+  const auto same = geometry_of_rectified_rig(rig);
   ASSERT_TRUE(same.has_value());
   EXPECT_DOUBLE_EQ(same->f_px, g.f_px);
   EXPECT_DOUBLE_EQ(same->baseline_m, g.baseline_m);
@@ -289,12 +289,13 @@ TEST(SpaceSegments, AlreadyRectifiedRigsAreKnown) {
   // The right camera's centre elsewhere: its images' disparities are less by that, the places not.
   const auto placed = space_segments(some(), *same, estimate_of(rig));
   rig.cameras[1].parameters[2] += 7;
-  const auto moved = space_segments(some(), geometry_as_it_stands(rig).value(), estimate_of(rig));
+  const auto moved =
+      space_segments(some(), geometry_of_rectified_rig(rig).value(), estimate_of(rig));
   EXPECT_LT((ends_of(moved[0].segment) - ends_of(placed[0].segment)).norm(), 1e-12);
   EXPECT_LT((moved[0].by_rig - placed[0].by_rig).norm(), 1e-9 * placed[0].by_rig.norm());
-  EXPECT_FALSE(geometry_as_it_stands(raw).has_value());
+  EXPECT_FALSE(geometry_of_rectified_rig(raw).has_value());
   rig.T_camera_first[1].t.y() = 1e-3;
-  EXPECT_FALSE(geometry_as_it_stands(rig).has_value());
+  EXPECT_FALSE(geometry_of_rectified_rig(rig).has_value());
 }
 
 /// How far the linear depth interval is from the true one where the flag changes: depth is 1 / d.
@@ -310,7 +311,7 @@ TEST(SpaceSegments, TheFlagIsWhereTheLinearIntervalStillHolds) {
     s.covariance_px2(4, 4) = s.covariance_px2(5, 5) = std::pow(relative * disparity_px, 2);
     const MeasuredSegment placed = space_segments(std::vector{s}, g)[0];
     EXPECT_EQ(placed.linear, relative < 0.1);
-    Draws draws({.seed = 45});
+    RandomStream draws({.seed = 45});
     std::vector<double> depths;
     for (int k = 0; k < 20'000; ++k) {
       SegmentDisparity drawn = s;

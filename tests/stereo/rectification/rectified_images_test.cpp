@@ -210,8 +210,8 @@ TEST(RectifiedImages, BadInputIsNamed) {
   for (const RectifiedGeometryOptions& o :
        {RectifiedGeometryOptions{.size_px = {0, 5}}, RectifiedGeometryOptions{.size_px = {-1, -1}},
         RectifiedGeometryOptions{.f_px = -1}, RectifiedGeometryOptions{.f_px = NAN},
-        RectifiedGeometryOptions{.least_zoom = 0}, RectifiedGeometryOptions{.most_zoom = 0.1},
-        RectifiedGeometryOptions{.most_blank = -1}}) {
+        RectifiedGeometryOptions{.min_zoom = 0}, RectifiedGeometryOptions{.max_zoom = 0.1},
+        RectifiedGeometryOptions{.max_blank = -1}}) {
     EXPECT_THROW(rectified_geometry(rig, o), Error);
   }
 }

@@ -104,7 +104,7 @@ TEST(VerticalDisparity, SampledIsTheLinearOneAtSmallPsi) {
 TEST(VerticalDisparity, BadInputIsNamed) {
   const Rig rig = test::stereo_rig();
   const Eigen::MatrixXd C = test::calibrations_covariance(rig).matrix;
-  const auto complaint = [&](const Rig& r, int columns, double distance_m) {
+  const auto error_output = [&](const Rig& r, int columns, double distance_m) {
     try {
       vertical_disparity_map(r, C, columns, 9, distance_m);
     } catch (const Error& error) {
@@ -114,9 +114,9 @@ TEST(VerticalDisparity, BadInputIsNamed) {
   };
   Rig one = rig;
   one.cameras.pop_back();
-  EXPECT_PRED2(says, complaint(one, 9, 1), "the rig has 1 cameras");
-  EXPECT_PRED2(says, complaint(rig, 0, 1), "a grid of 0x9");
-  EXPECT_PRED2(says, complaint(rig, 9, 0), "a distance of 0 m");
+  EXPECT_PRED2(says, error_output(one, 9, 1), "the rig has 1 cameras");
+  EXPECT_PRED2(says, error_output(rig, 0, 1), "a grid of 0x9");
+  EXPECT_PRED2(says, error_output(rig, 9, 0), "a distance of 0 m");
 }
 
 }  // namespace

@@ -114,8 +114,7 @@ TEST(VerticalFieldOnMiddlebury, FindsThePairsOwnField) {
   for (const test::StereoScene& scene : test::middlebury_scenes(*folder)) {
     const RectifiedPair pair{test::grey_levels(read_grey_image(scene.left)),
                              test::grey_levels(read_grey_image(scene.right))};
-    const VerticalField field =
-        vertical_field(pair, {0, static_cast<int>(scene.most_disparity_px)});
+    const VerticalField field = vertical_field(pair, {0, static_cast<int>(scene.max_disparity_px)});
     const Eigen::Vector3d truth = field_by_truth(scene);
     char text[200];
     std::snprintf(text, sizeof text,
@@ -141,7 +140,7 @@ TEST(VerticalFieldOnMiddlebury, FindsWhatIsAdded) {
   for (const auto& added : cases) {
     Spread offset[2], own[2], tilt[2];
     for (const test::StereoScene& scene : test::middlebury_scenes(*folder)) {
-      const DisparityRange range{0, static_cast<int>(scene.most_disparity_px)};
+      const DisparityRange range{0, static_cast<int>(scene.max_disparity_px)};
       const cv::Mat right = read_grey_image(scene.right);
       RectifiedPair pair{test::grey_levels(read_grey_image(scene.left)), test::grey_levels(right)};
       const VerticalField before = vertical_field(pair, range);
@@ -158,7 +157,7 @@ TEST(VerticalFieldOnMiddlebury, FindsWhatIsAdded) {
       EXPECT_NEAR(found[1], roll_px, 0.2) << scene.name;
 
       // What is left after the repair is not worth another.
-      pair.right = repaired_right(pair.right, field);
+      pair.right = corrected_right(pair.right, field);
       EXPECT_LT(std::abs(vertical_field(pair, range).coefficients_px[0]), 0.06) << scene.name;
     }
     char name[60];

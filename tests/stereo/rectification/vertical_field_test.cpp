@@ -52,7 +52,7 @@ Rig pair_rig(double right_lower_px = 0, double roll_rad = 0) {
 
 RectifiedPair photographed(const Rig& rig, std::uint64_t seed = 1) {
   const test::TexturedPlane plane{.normal = {0.05, -0.1, 0.5}, .square_m = 0.08, .seed = seed};
-  Draws draws({.seed = seed, .source = 204});
+  RandomStream draws({.seed = seed, .source = 204});
   RectifiedPair pair;
   pair.left = test::grey_levels(test::with_noise(photograph(plane, rig, 0), 1.5, draws));
   pair.right = test::grey_levels(test::with_noise(photograph(plane, rig, 1), 1.5, draws));
@@ -88,7 +88,7 @@ TEST(VerticalField, IsThatOfTheCamerasThatMadeThePair) {
           << c.lower_px << " px, " << c.roll_rad << " rad at " << left_px.transpose();
     }
     RectifiedPair repaired = pair;
-    repaired.right = repaired_right(pair.right, field);
+    repaired.right = corrected_right(pair.right, field);
     EXPECT_LT(vertical_field(repaired, {0, 64}).largest_px(), 0.08);
   }
 }
@@ -111,7 +111,7 @@ TEST(VerticalField, RepairIsExactOnParabolas) {
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) right.values.push_back(static_cast<float>(grey(x, y)));
   }
-  const GreyLevels repaired = repaired_right(right, field);
+  const GreyLevels repaired = corrected_right(right, field);
   for (int y = 5; y < h - 5; ++y) {
     for (int x = 0; x < w; ++x) {
       EXPECT_NEAR(repaired(x, y), grey(x, y + field.dy_px(x, y)), 1e-3);
@@ -121,9 +121,9 @@ TEST(VerticalField, RepairIsExactOnParabolas) {
 
 TEST(VerticalField, RepairLeavesAlonePairsThatNeedNone) {
   const RectifiedPair pair = photographed(pair_rig());
-  EXPECT_EQ(repaired_right(pair.right, vertical_field(pair, {0, 64})).values, pair.right.values);
+  EXPECT_EQ(corrected_right(pair.right, vertical_field(pair, {0, 64})).values, pair.right.values);
   const VerticalField whole = field_of(2, 0, 0, width, height);
-  const GreyLevels moved = repaired_right(pair.right, whole);
+  const GreyLevels moved = corrected_right(pair.right, whole);
   for (int y = 0; y < height - 2; ++y) {
     for (int x = 0; x < width; ++x) ASSERT_EQ(moved(x, y), pair.right(x, y + 2));
   }
@@ -138,10 +138,10 @@ TEST(VerticalField, FitStatesItsErrorAndIsNotLedAstray) {
   double nees = 0;
   const int trials = 1000;
   for (int trial = 0; trial < trials; ++trial) {
-    Draws draws({.seed = 17, .trial = static_cast<std::uint32_t>(trial), .source = 205});
-    std::vector<RowOffset> offsets;
+    RandomStream draws({.seed = 17, .trial = static_cast<std::uint32_t>(trial), .source = 205});
+    std::vector<VerticalOffset> offsets;
     for (int i = 0; i < 75; ++i) {
-      RowOffset o{{draws.uniform(0, 449), draws.uniform(0, 374)}, 0, draws.uniform(0.01, 0.2)};
+      VerticalOffset o{{draws.uniform(0, 449), draws.uniform(0, 374)}, 0, draws.uniform(0.01, 0.2)};
       const double error = std::hypot(o.sigma_px, 0.05) * draws.normal();
       const double wrong = draws.uniform(-5, 5);
       o.dy_px = i % 3 == 0 ? wrong : truth.dy_px(o.at_px.x(), o.at_px.y()) + error;
@@ -187,7 +187,7 @@ TEST(VerticalField, TooLittleToTellIsSaid) {
     const VerticalField field = vertical_field({image, image}, {0, 20});
     EXPECT_FALSE(field.known || field.unrectified || field.significant);
     EXPECT_NE(describe(field).find("too few corners"), std::string::npos);
-    EXPECT_EQ(repaired_right(image, field).values, image.values);
+    EXPECT_EQ(corrected_right(image, field).values, image.values);
   }
 }
 
@@ -195,7 +195,7 @@ TEST(VerticalField, TooLittleToTellIsSaid) {
 /// the pair another one.
 TEST(VerticalField, WhiteWallsAreNotTakenForAnotherScene) {
   RectifiedPair pair = photographed(pair_rig());
-  Draws draws({.seed = 5, .source = 206});
+  RandomStream draws({.seed = 5, .source = 206});
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y * width + x);
@@ -216,16 +216,17 @@ TEST(VerticalField, BadInputIsNamed) {
   const GreyLevels image{64, 64, std::vector<float>(64 * 64, 1)};
   const GreyLevels other{64, 60, std::vector<float>(64 * 60, 1)};
   const GreyLevels broken{64, 64, std::vector<float>(5, 1)};
-  const auto complaint = [](const RectifiedPair& pair, DisparityRange range = {0, 10},
-                            VerticalFieldOptions options = {}) {
+  const auto error_output = [](const RectifiedPair& pair, DisparityRange range = {0, 10},
+                               VerticalFieldOptions options = {}) {
     return test::error_message([&] { vertical_field(pair, range, options); });
   };
-  EXPECT_NE(complaint({image, other}).find("64x64 px, the right one 64x60"), std::string::npos);
-  EXPECT_NE(complaint({image, broken}).find("5 values"), std::string::npos);
-  EXPECT_NE(complaint({image, image}, {5, 4}).find("from 5 to 4"), std::string::npos);
-  EXPECT_NE(complaint({image, image}, {0, 9}, {.band_px = 0}).find("0 rows"), std::string::npos);
-  EXPECT_NE(complaint({image, image}, {0, 9}, {.corners = 0}).find("0 corners"), std::string::npos);
-  EXPECT_THROW(repaired_right(image, field_of(1, 0, 0, 64, 60)), Error);
+  EXPECT_NE(error_output({image, other}).find("64x64 px, the right one 64x60"), std::string::npos);
+  EXPECT_NE(error_output({image, broken}).find("5 values"), std::string::npos);
+  EXPECT_NE(error_output({image, image}, {5, 4}).find("from 5 to 4"), std::string::npos);
+  EXPECT_NE(error_output({image, image}, {0, 9}, {.band_px = 0}).find("0 rows"), std::string::npos);
+  EXPECT_NE(error_output({image, image}, {0, 9}, {.corners = 0}).find("0 corners"),
+            std::string::npos);
+  EXPECT_THROW(corrected_right(image, field_of(1, 0, 0, 64, 60)), Error);
 }
 
 }  // namespace

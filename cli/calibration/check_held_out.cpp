@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/calibration/check_left_out.h"
+#include "cli/calibration/check_held_out.h"
 
 #include <string>
 
 #include "calib/board_observations.h"
-#include "calib/validation/left_out_boards.h"
-#include "cli/calibration/check_part.h"
+#include "calib/validation/held_out_boards.h"
+#include "cli/calibration/check_section.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {
@@ -22,7 +22,7 @@ std::string coverage_line(const std::string& what,
 }
 
 /// What could not be predicted, where there is any.
-std::string without_a_point(const LeftOutBoardsResult& result) {
+std::string without_a_point(const HeldOutBoardsResult& result) {
   if (result.corners_left_out == 0) return "";
   return fmt::format(
       " (left out: {} corners without a point in space, {} boards with too few others)",
@@ -42,13 +42,13 @@ Json coverage_json(const LengthCoverage& c) {
           {"sigma_mvb", c.sigma_mvb_m}};
 }
 
-CheckPart check_boards_left_out(const BoardObservations& observations,
-                                const LeftOutBoardsOptions& options,
-                                const Session& session) {
+CheckSection check_held_out_boards(const BoardObservations& observations,
+                                   const HeldOutBoardsOptions& options,
+                                   const Session& session) {
   Progress progress(session, "splits");
-  const LeftOutBoardsResult result = measure_left_out_boards(
+  const HeldOutBoardsResult result = evaluate_held_out_boards(
       observations, options, [&](int done, int total) { progress.update(done, total); });
-  CheckPart part;
+  CheckSection part;
   part.json = {{"splits", result.splits},
                {"failed", result.failed},
                {"training_frames", result.training_frames},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +23,13 @@ namespace {
 
 /// Stretches that two sorted lists of runs of one segment have in common.
 template <class Visit>
-void for_common_stretches(const std::vector<VisibleRun>& left,
-                          const std::vector<VisibleRun>& right,
+void for_common_stretches(const std::vector<VisibleInterval>& left,
+                          const std::vector<VisibleInterval>& right,
                           Visit visit) {
   std::size_t i = 0, j = 0;
   int segment = -1, count = 0;
   while (i < left.size() && j < right.size()) {
-    const VisibleRun &l = left[i], &r = right[j];
+    const VisibleInterval &l = left[i], &r = right[j];
     if (l.segment != r.segment) {
       (l.segment < r.segment ? i : j)++;
       continue;
@@ -39,22 +39,22 @@ void for_common_stretches(const std::vector<VisibleRun>& left,
       count = 0;
     }
     const double t0 = std::max(l.t0, r.t0), t1 = std::min(l.t1, r.t1);
-    if (t0 < t1) visit(VisibleRun{segment, count++, t0, t1});
+    if (t0 < t1) visit(VisibleInterval{segment, count++, t0, t1});
     (l.t1 < r.t1 ? i : j)++;
   }
 }
 
 }  // namespace
 
-Pose T_left_world(const PlanePose& pose, const CameraMount& mount) {
+Pose T_left_world(const Pose2D& pose, const CameraMount& mount) {
   const Pose T_world_robot{rotation_from_vector({0, 0, pose.heading_rad}), {pose.x_m, pose.y_m, 0}};
   return (T_world_robot * T_robot_camera(mount)).inverse();
 }
 
-Look look(const Visibility& visibility,
-          const Rig& rig,
-          const PlanePose& pose,
-          const LookOptions& options) {
+NoiseFreeView look(const Visibility& visibility,
+                   const Rig& rig,
+                   const Pose2D& pose,
+                   const NoiseFreeViewOptions& options) {
   if (rig.cameras.size() != 2) {
     throw Error("simulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
                 "give a rig of two");
@@ -65,11 +65,11 @@ Look look(const Visibility& visibility,
   // Length is judged on what both eyes share, not on what one sees.
   VisibilityOptions any_length = options.visibility;
   any_length.min_length_px = 0;
-  const auto left = visibility.visible_runs(rig.cameras[0], T_left, any_length);
-  const auto right = visibility.visible_runs(rig.cameras[1], T_right, any_length);
+  const auto left = visibility.visible_intervals(rig.cameras[0], T_left, any_length);
+  const auto right = visibility.visible_intervals(rig.cameras[1], T_right, any_length);
 
-  Look seen{pose, {}, {}};
-  for_common_stretches(left, right, [&](const VisibleRun& run) {
+  NoiseFreeView seen{pose, {}, {}};
+  for_common_stretches(left, right, [&](const VisibleInterval& run) {
     const WorldSegment& segment = world.segments[run.segment];
     const Eigen::Vector3d d = segment.b_m - segment.a_m;
     const Eigen::Vector3d a = T_left * (segment.a_m + run.t0 * d);

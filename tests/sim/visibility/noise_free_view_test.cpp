@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 
 #include <gtest/gtest.h>
 
@@ -32,14 +32,14 @@ double distance_to_segment(const Eigen::Vector3d& x, const WorldSegment& s) {
   return (s.a_m + t * d - x).norm();
 }
 
-TEST(Look, AllSourcesOffAndTheTrueRigToldPutSegmentsBackOnTheWorld) {
+TEST(NoiseFreeView, AllSourcesOffAndTheTrueRigToldPutSegmentsBackOnTheWorld) {
   const World& world = test::small_office();
   const Rig& rig = test::nominal_rig().rig;
   const Sensor sensor(rig, no_sources());
   int checked = 0;
-  for (const PlanePose& pose : map_places(world.route, 1.5)) {
-    const Look seen = look(test::small_office_visibility(), rig, pose);
-    const StereoSighting sighting = sensor.sense(seen, 1, 0, 0);
+  for (const Pose2D& pose : map_poses(world.route, 1.5)) {
+    const NoiseFreeView seen = look(test::small_office_visibility(), rig, pose);
+    const StereoObservation sighting = sensor.sense(seen, 1, 0, 0);
     ASSERT_EQ(sighting.segments.size(), seen.edges.size());
     const Pose T_world_left = T_left_world(pose, {}).inverse();
     for (std::size_t i = 0; i < sighting.segments.size(); ++i) {
@@ -56,11 +56,11 @@ TEST(Look, AllSourcesOffAndTheTrueRigToldPutSegmentsBackOnTheWorld) {
   EXPECT_GT(checked, 300);
 }
 
-TEST(Look, EdgesAreWhatBothEyesSee) {
+TEST(NoiseFreeView, EdgesAreWhatBothEyesSee) {
   const Rig& rig = test::nominal_rig().rig;
-  const PlanePose pose = map_places(test::small_office().route, 2)[3];
+  const Pose2D pose = map_poses(test::small_office().route, 2)[3];
   const Pose T_left = T_left_world(pose, {});
-  for (const SeenEdge& edge : look(test::small_office_visibility(), rig, pose).edges) {
+  for (const VisibleEdge& edge : look(test::small_office_visibility(), rig, pose).edges) {
     const Eigen::Vector3d middle = T_left.inverse() * (0.5 * (edge.a_m + edge.b_m));
     for (int eye = 0; eye < 2; ++eye) {
       const Pose T_eye = rig.T_camera_first[eye] * T_left;
@@ -71,7 +71,7 @@ TEST(Look, EdgesAreWhatBothEyesSee) {
   }
 }
 
-TEST(Look, TheCameraStandsWhereTheMountSays) {
+TEST(NoiseFreeView, TheCameraStandsWhereTheMountSays) {
   const Pose T_world_left = T_left_world({3, 4, 1.5707963267948966}, {1.2, 0}).inverse();
   EXPECT_LT((T_world_left.t - Eigen::Vector3d(3, 4, 1.2)).norm(), 1e-12);
   EXPECT_LT((T_world_left * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(3, 5, 1.2)).norm(), 1e-12);

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "calib/board_observations.h"
-#include "calib/validation/left_out_boards.h"
-#include "cli/calibration/check_part.h"
+#include "calib/validation/held_out_boards.h"
+#include "cli/calibration/check_section.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {
@@ -13,8 +13,8 @@ namespace vernier::cli {
 Json coverage_json(const LengthCoverage& coverage);
 
 /// Lengths on boards that took no part in the calibration against their intervals, over splits.
-CheckPart check_boards_left_out(const BoardObservations& observations,
-                                const LeftOutBoardsOptions& options,
-                                const Session& session);
+CheckSection check_held_out_boards(const BoardObservations& observations,
+                                   const HeldOutBoardsOptions& options,
+                                   const Session& session);
 
 }  // namespace vernier::cli

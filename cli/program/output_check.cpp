@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/program/spare_inputs.h"
+#include "cli/program/output_check.h"
 
 #include "calib/error.h"
 
 namespace vernier::cli {
 
-void spare_inputs(const std::vector<std::filesystem::path>& inputs,
-                  const std::filesystem::path& output) {
+void check_output_is_not_input(const std::vector<std::filesystem::path>& inputs,
+                               const std::filesystem::path& output) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code not_there;
     if (!std::filesystem::equivalent(input, output, not_there)) continue;

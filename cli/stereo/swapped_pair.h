@@ -18,10 +18,10 @@ double matched_share(const std::vector<EdgeDisparity>& found);
 
 /// Throws Error(`place`) where less than half of the edges are matched and the matcher finds twice
 /// as many, and 30 % of them, in the pair with left and right exchanged.
-void check_not_exchanged(const Matcher& matcher,
-                         const std::vector<EdgeDisparity>& found,
-                         const DisparityRange& range,
-                         const std::function<RectifiedPair()>& exchanged,
-                         const std::string& place);
+void check_not_swapped(const Matcher& matcher,
+                       const std::vector<EdgeDisparity>& found,
+                       const DisparityRange& range,
+                       const std::function<RectifiedPair()>& exchanged,
+                       const std::string& place);
 
 }  // namespace vernier::cli

@@ -8,17 +8,17 @@
 #include "calib/calibrate.h"
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
-#include "calib/validation/left_out_boards.h"
+#include "calib/validation/held_out_boards.h"
 #include "calib/validation/model_comparison.h"
 #include "cli/calibration/check_file.h"
-#include "cli/calibration/check_left_out.h"
+#include "cli/calibration/check_held_out.h"
 #include "cli/program/session.h"
 #include "cli/report/report_calibration.h"
 
 namespace vernier::cli {
 namespace {
 
-constexpr int most_frames = 60;  // evenly spaced ones stand for more
+constexpr int max_frames = 60;  // evenly spaced ones stand for more
 constexpr int splits = 30;
 
 Json models_json(const ModelComparison& comparison) {
@@ -39,7 +39,7 @@ Json models_json(const ModelComparison& comparison) {
 }
 
 void add_models(const RigEstimate& estimate, const CalibrationOptions& options, Json& json) {
-  const ModelComparison comparison = compare_models(estimate, options, most_frames);
+  const ModelComparison comparison = compare_models(estimate, options, max_frames);
   if (!comparison.not_compared.empty()) {
     json["notes"].push_back("Models were not compared: " + comparison.not_compared + ".");
     return;
@@ -67,10 +67,10 @@ void add_left_out(const RigEstimate& estimate,
                   Json& json) {
   const CalibrationEvidence& evidence = *estimate.evidence;
   const BoardObservations observations =
-      at_frames(evidence.observations, evenly_spaced(evidence.frames, most_frames));
+      at_frames(evidence.observations, evenly_spaced(evidence.frames, max_frames));
   session.say(fmt::format("{}: calibrating {} times with boards left out", file, splits));
-  const LeftOutBoardsResult result =
-      measure_left_out_boards(observations, {.splits = splits, .calibration = options});
+  const HeldOutBoardsResult result =
+      evaluate_held_out_boards(observations, {.splits = splits, .calibration = options});
   const auto frames = static_cast<int>(frames_of(observations).size());
   json["left_out"] = {{"splits", result.splits},
                       {"failed", result.failed},
@@ -95,7 +95,9 @@ void add_left_out(const RigEstimate& estimate,
 
 }  // namespace
 
-Json report_proof(const RigEstimate& estimate, const std::string& file, const Session& session) {
+Json report_validation(const RigEstimate& estimate,
+                       const std::string& file,
+                       const Session& session) {
   Json json{{"notes", Json::array()}, {"warnings", Json::array()}};
   const auto note = [&](const std::string& words) { json["notes"].push_back(words); };
   if (!estimate.covariance) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/validation/left_out_boards.h"
+#include "calib/validation/held_out_boards.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ namespace {
 // rms z of 0.85 to 1.15 hold for each of the seeds 301 to 310.
 TEST(LeftOutBoards, IntervalsAreTrueWhereTheNoiseIsWhite) {
   const auto board = simulate_board(test::stereo_rig(), {}, 301, 0, {.frames = 40});
-  const LeftOutBoardsResult result = measure_left_out_boards(
+  const HeldOutBoardsResult result = evaluate_held_out_boards(
       board.observations, {.splits = 12, .calibration = {.model = Radial1{}}});
   EXPECT_EQ(result.splits, 12);
   EXPECT_EQ(result.boards, 12 * 19);
@@ -42,8 +42,8 @@ TEST(LeftOutBoards, WrongModelIsSeen) {
   for (Camera& camera : truth.cameras) camera.parameters[6] = 4e-3;  // p1
   const auto board = simulate_board(truth, {}, 302, 0, {.frames = 30, .pixel_sigma_px = 0.05});
   const auto with = [&](const CameraModel& model) {
-    return measure_left_out_boards(board.observations,
-                                   {.splits = 6, .calibration = {.model = model}})
+    return evaluate_held_out_boards(board.observations,
+                                    {.splits = 6, .calibration = {.model = model}})
         .scale.z_rms_mvb;
   };
   EXPECT_GT(with(Radial1{}), 2 * with(OpenCv4{}));
@@ -53,11 +53,11 @@ TEST(LeftOutBoards, WrongModelIsSeen) {
 TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
   const auto board = simulate_board(test::stereo_rig(), {}, 305, 0, {.frames = 14});
   const auto measured = [&](const BoardObservations& observations) {
-    return measure_left_out_boards(
+    return evaluate_held_out_boards(
         observations,
         {.splits = 8, .calibration = {.held = {{"left.ax", 1.002}}, .check_input = false}});
   };
-  const LeftOutBoardsResult clean = measured(board.observations);
+  const HeldOutBoardsResult clean = measured(board.observations);
   EXPECT_EQ(clean.boards, 8 * 6);
   EXPECT_EQ(clean.corners_left_out + clean.boards_left_out, 0);
   BoardObservations clean_views = board.observations, spoilt = board.observations;
@@ -69,7 +69,7 @@ TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
   const BoardView& whole = test::view_of(clean_views, 8, 1);
   for (const int id : other.ids) other.pixels_px.push_back(whole.pixels_px[id]);
   for (std::size_t i = 3; i < 6; ++i) other.pixels_px[i].x() = 639;
-  const LeftOutBoardsResult result = measured(spoilt);
+  const HeldOutBoardsResult result = measured(spoilt);
   EXPECT_EQ(result.splits, 8);
   EXPECT_GT(result.boards_left_out, 0);
   EXPECT_LT(result.boards_left_out, 8);
@@ -84,9 +84,9 @@ TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
 
 TEST(LeftOutBoards, NeedAPairAndViews) {
   auto observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 5}).observations;
-  EXPECT_THROW(measure_left_out_boards(observations), Error);
+  EXPECT_THROW(evaluate_held_out_boards(observations), Error);
   observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 8}).observations;
-  EXPECT_THROW(measure_left_out_boards(observations, {.training_frames = 8}), Error);
+  EXPECT_THROW(evaluate_held_out_boards(observations, {.training_frames = 8}), Error);
 }
 
 }  // namespace

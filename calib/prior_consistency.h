@@ -9,13 +9,13 @@
 namespace vernier {
 
 /// Whether new data and what was known before them can be of one rig.
-struct PriorAgreement {
+struct PriorConsistency {
   double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
   int dof = 0;          ///< directions that the data improved
   int clusters = 0;     ///< that the scatter was estimated from; 0: it is known
   double p_value = 1;   ///< of a χ² this large or larger, by the law below
   double in_sigma = 0;  ///< along the direction that disagrees most …
-  std::string words;    ///< … which is this
+  std::string description;  ///< … which is this
 };
 
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
@@ -35,12 +35,12 @@ struct PriorAgreement {
 /// may have been made with the prior `looseness` times as wide, so that a wrong one does not hold
 /// the rig away from the data: then H = C_mvb⁻¹ − C_0⁻¹ / looseness², and likewise in the last
 /// equation. Throws Error where C_0 is singular.
-PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
-                               const std::vector<std::string>& names,
-                               const Eigen::MatrixXd& prior,
-                               const Eigen::MatrixXd& bound,
-                               const Eigen::MatrixXd& honest,
-                               int clusters = 0,
-                               double looseness = 1);
+PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
+                                   const std::vector<std::string>& names,
+                                   const Eigen::MatrixXd& prior,
+                                   const Eigen::MatrixXd& bound,
+                                   const Eigen::MatrixXd& honest,
+                                   int clusters = 0,
+                                   double looseness = 1);
 
 }  // namespace vernier

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/validation/monte_carlo_check.h"
 #include "cli/calibration/check_mrcal.h"
-#include "cli/calibration/check_part.h"
+#include "cli/calibration/check_section.h"
 
 namespace vernier::cli {
 
-CheckPart check_by_noisy_copies(const CheckedProblem& p, const NoisyCopies& copies) {
+CheckSection check_by_monte_carlo(const CheckedProblem& p, const MonteCarloResult& copies) {
   const MonteCarloCheck check =
       monte_carlo_check(p.observations, p.state, p.problem, p.bound,
                         {.trials = copies.trials, .seed = copies.seed, .threads = copies.threads});
-  CheckPart part;
+  CheckSection part;
   part.json = {{"trials", check.trials},
                {"failed", check.failed},
                {"nees_mean", check.nees_mean},
@@ -36,13 +36,13 @@ CheckPart check_by_noisy_copies(const CheckedProblem& p, const NoisyCopies& copi
       check.nees_mean, check.nees_expected, check.nees_interval_95[0], check.nees_interval_95[1],
       check.std_ratio_min, check.std_ratio_max, check.eigenvalues[0], check.eigenvalues[1],
       check.eigenvalue_band_99[0], check.eigenvalue_band_99[1], check.ks_p, check.ks_p_components);
-  if (!check.copies_solved()) {
+  if (!check.enough_trials_solved()) {
     part.failures.push_back(fmt::format(
         "{} of {} noisy copies could not be solved: the views hardly determine the rig, and what "
         "the others scatter says too little; use a model with fewer parameters, or more views",
         check.failed, check.trials + check.failed));
   }
-  if (!check.scatter_as_stated()) {
+  if (!check.scatter_matches_covariance()) {
     part.failures.push_back(fmt::format(
         "noisy copies scatter otherwise than the covariance says: NEES {:.2f} for {:.0f}, sigmas "
         "{:.2f} to {:.2f} times the predicted",

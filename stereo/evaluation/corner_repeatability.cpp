@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "stereo/evaluation/corner_repeat.h"
+#include "stereo/evaluation/corner_repeatability.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<TruthAtEdge> truth_at_corners(const std::vector<Eigen::Vector2d>& co
 double error_of(const Eigen::Vector2d& left, const Eigen::Vector2d& right, const TruthAtEdge& at) {
   EdgeDisparity found;
   found.disparity_px = static_cast<float>(left.x() - right.x());
-  return std::hypot(error_px(found, at, OutlineRule::either), right.y() - left.y());
+  return std::hypot(error_px(found, at, DiscontinuityRule::either), right.y() - left.y());
 }
 
 class RightCorners {
@@ -64,18 +64,19 @@ class RightCorners {
 
 }  // namespace
 
-std::vector<CornerRepeat> corner_repeats(const std::vector<Eigen::Vector2d>& left_px,
-                                         const std::vector<Eigen::Vector2d>& right_px,
-                                         const StereoTruth& truth,
-                                         const CornerRepeatOptions& options) {
+std::vector<CornerRepeatability> corner_repeatabilities(
+    const std::vector<Eigen::Vector2d>& left_px,
+    const std::vector<Eigen::Vector2d>& right_px,
+    const StereoTruth& truth,
+    const CornerRepeatOptions& options) {
   const std::vector<TruthAtEdge> at = truth_at_corners(left_px, truth);
   const RightCorners right(right_px, options.within_px);
-  std::vector<CornerRepeat> repeats;
+  std::vector<CornerRepeatability> repeats;
   for (std::size_t i = 0; i < left_px.size(); ++i) {
     if (!at[i].known || at[i].occluded) continue;
     const double x = left_px[i].x() - at[i].disparity_px;
     if (x < options.border_px || x > truth.disparity.width_px - 1 - options.border_px) continue;
-    CornerRepeat repeat{left_px[i], right.has(left_px[i], at[i]), 0};
+    CornerRepeatability repeat{left_px[i], right.has(left_px[i], at[i]), 0};
     for (const int dx : {-1, 0, 1}) {
       for (const int dy : {-1, 0, 1}) {
         if (dx == 0 && dy == 0) continue;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/prior_agreement.h"
+#include "calib/prior_consistency.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -14,14 +14,14 @@ namespace vernier {
 
 using namespace internal;
 
-PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
-                               const std::vector<std::string>& names,
-                               const Eigen::MatrixXd& prior,
-                               const Eigen::MatrixXd& bound,
-                               const Eigen::MatrixXd& honest,
-                               int clusters,
-                               double looseness) {
-  constexpr double least_share = 0.05;
+PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
+                                   const std::vector<std::string>& names,
+                                   const Eigen::MatrixXd& prior,
+                                   const Eigen::MatrixXd& bound,
+                                   const Eigen::MatrixXd& honest,
+                                   int clusters,
+                                   double looseness) {
+  constexpr double min_share = 0.05;
   const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
   const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
     const Eigen::MatrixXd R = sd.cwiseInverse().asDiagonal() * C * sd.cwiseInverse().asDiagonal();
@@ -44,16 +44,17 @@ PriorAgreement prior_agreement(const Eigen::VectorXd& offset,
   const Eigen::MatrixXd D = noise + moved * moved.transpose();
   const Eigen::VectorXd delta = inverse_root * sd.cwiseInverse().asDiagonal() * offset;
   const SymmetricEigen eigen(0.5 * (D + D.transpose()));
-  PriorAgreement agreement;
+  PriorConsistency agreement;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double variance = eigen.eigenvalues()[i];
-    if (variance < least_share) continue;
+    if (variance < min_share) continue;
     const double z = eigen.eigenvectors().col(i).dot(delta) / std::sqrt(variance);
     agreement.chi2 += z * z;
     ++agreement.dof;
     if (std::abs(z) <= agreement.in_sigma) continue;
     agreement.in_sigma = std::abs(z);
-    agreement.words = describe_direction((root * eigen.eigenvectors().col(i)).normalized(), names);
+    agreement.description =
+        describe_direction((root * eigen.eigenvectors().col(i)).normalized(), names);
   }
   agreement.clusters = clusters;
   if (agreement.dof > 0) {

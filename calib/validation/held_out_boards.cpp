@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/validation/left_out_boards.h"
+#include "calib/validation/held_out_boards.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr int fewest_frames = 6;
+constexpr int min_frames_to_split = 6;
 
 /// One frame as both cameras of the pair saw it: pixels by corner.
 using SeenPair = std::map<int, PixelPair>;
@@ -109,7 +109,7 @@ struct Tally {
 };
 
 /// A length, or a mean of some, with its derivatives: by the rig, and by the pixels of corners.
-struct Measured {
+struct MeasuredValue {
   double value = 0;
   Eigen::RowVectorXd by_rig;
   std::map<int, Eigen::RowVector4d> by_pixels;
@@ -121,10 +121,12 @@ struct Measured {
   }
 };
 
-Measured length(const PointTriangulation& a, const PointTriangulation& b, std::pair<int, int> ids) {
+MeasuredValue length(const PointTriangulation& a,
+                     const PointTriangulation& b,
+                     std::pair<int, int> ids) {
   const Eigen::Vector3d d = b.x_m - a.x_m;
   const Eigen::RowVector3d unit = d.transpose() / d.norm();
-  Measured m{d.norm(), unit * (b.by_rig - a.by_rig), {}};
+  MeasuredValue m{d.norm(), unit * (b.by_rig - a.by_rig), {}};
   m.by_pixels[ids.first] = -unit * a.by_pixels;
   m.by_pixels[ids.second] = unit * b.by_pixels;
   return m;
@@ -148,10 +150,10 @@ void judge_board(const RigEstimate& estimate,
   const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
   const double sigma = estimate.calibration->pixel_sigma_px;
   const auto pairs = edges_of(target_m, points);
-  Measured mean{0, Eigen::RowVectorXd::Zero(honest.rows()), {}};
+  MeasuredValue mean{0, Eigen::RowVectorXd::Zero(honest.rows()), {}};
   for (const auto& ends : pairs) {
     const double truth = (target_m[ends.first] - target_m[ends.second]).norm();
-    const Measured m = length(points.at(ends.first), points.at(ends.second), ends);
+    const MeasuredValue m = length(points.at(ends.first), points.at(ends.second), ends);
     edges.add(m.value - truth, m.variance(honest, sigma), m.variance(mvb, sigma));
     const double weight = 1 / (truth * static_cast<double>(pairs.size()));
     mean.value += weight * m.value;
@@ -168,9 +170,9 @@ std::vector<int> training_frames(std::vector<int> frames,
                                  int count,
                                  std::uint64_t seed,
                                  int split) {
-  Draws draws({.seed = seed,
-               .trial = static_cast<std::uint32_t>(split),
-               .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
+  RandomStream draws({.seed = seed,
+                      .trial = static_cast<std::uint32_t>(split),
+                      .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) {  // Fisher and Yates
     std::swap(frames[i], frames[i + draws.below(static_cast<std::uint32_t>(frames.size() - i))]);
   }
@@ -181,12 +183,12 @@ std::vector<int> training_frames(std::vector<int> frames,
 
 }  // namespace
 
-LeftOutBoardsResult measure_left_out_boards(
+HeldOutBoardsResult evaluate_held_out_boards(
     const BoardObservations& observations,
-    const LeftOutBoardsOptions& options,
+    const HeldOutBoardsOptions& options,
     const std::function<void(int done, int total)>& progress) {
   const std::vector<int> frames = frames_of(observations);
-  if (observations.size_px.size() < 2 || frames.size() < fewest_frames) {
+  if (observations.size_px.size() < 2 || frames.size() < min_frames_to_split) {
     throw Error("boards left out", "needs a pair of cameras and at least six frames",
                 "give more views");
   }
@@ -199,7 +201,7 @@ LeftOutBoardsResult measure_left_out_boards(
   }
   const std::vector<SeenPair> seen = seen_pairs(observations, frames);
   Tally edges, scale;
-  LeftOutBoardsResult result;
+  HeldOutBoardsResult result;
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
     const std::vector<int> kept = training_frames(frames, training, options.seed, split);

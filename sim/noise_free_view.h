@@ -13,7 +13,7 @@
 namespace vernier::sim {
 
 /// An edge that both eyes see, without any error: ends in the true left camera's frame.
-struct SeenEdge {
+struct VisibleEdge {
   Eigen::Vector3d a_m, b_m;
   int segment = 0;            ///< of the world
   std::uint32_t feature = 0;  ///< segment and visible run; identity for draws
@@ -22,32 +22,32 @@ struct SeenEdge {
 };
 
 /// A corner that both eyes see.
-struct SeenCorner {
+struct VisibleCorner {
   Eigen::Vector3d at_m;       ///< true left camera's frame
   std::uint32_t feature = 0;  ///< the world's corner
 };
 
 /// What there is to see from one pose: the noise-free view that all sources act on.
-struct Look {
-  localise::PlanePose pose;
-  std::vector<SeenEdge> edges;
-  std::vector<SeenCorner> corners;
+struct NoiseFreeView {
+  localise::Pose2D pose;
+  std::vector<VisibleEdge> edges;
+  std::vector<VisibleCorner> corners;
 };
 
-struct LookOptions {
+struct NoiseFreeViewOptions {
   localise::CameraMount mount;
   VisibilityOptions visibility;
   bool with_corners = false;
 };
 
 /// Pose of the left camera for a robot standing at `pose`.
-Pose T_left_world(const localise::PlanePose& pose, const localise::CameraMount& mount);
+Pose T_left_world(const localise::Pose2D& pose, const localise::CameraMount& mount);
 
 /// Edges in the stretches that both cameras of the true rig see, at least min_length_px long in
 /// the left image. Throws Error unless the rig is a pair.
-Look look(const Visibility& visibility,
-          const Rig& rig,
-          const localise::PlanePose& pose,
-          const LookOptions& options = {});
+NoiseFreeView look(const Visibility& visibility,
+                   const Rig& rig,
+                   const localise::Pose2D& pose,
+                   const NoiseFreeViewOptions& options = {});
 
 }  // namespace vernier::sim

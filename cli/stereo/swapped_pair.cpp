@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/stereo/exchanged_pair.h"
+#include "cli/stereo/swapped_pair.h"
 
 #include <fmt/format.h>
 
@@ -20,11 +20,11 @@ double matched_share(const std::vector<EdgeDisparity>& found) {
   return static_cast<double>(matched) / std::max<double>(1, static_cast<double>(found.size()));
 }
 
-void check_not_exchanged(const Matcher& matcher,
-                         const std::vector<EdgeDisparity>& found,
-                         const DisparityRange& range,
-                         const std::function<RectifiedPair()>& exchanged,
-                         const std::string& place) {
+void check_not_swapped(const Matcher& matcher,
+                       const std::vector<EdgeDisparity>& found,
+                       const DisparityRange& range,
+                       const std::function<RectifiedPair()>& exchanged,
+                       const std::string& place) {
   constexpr double few = 0.5, enough = 0.3, times_more = 2;
   const double given = matched_share(found);
   if (given >= few || !exchanged) return;

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/simulation/sighting_json.h"
+#include "cli/simulation/observation_json.h"
 
 #include <numbers>
 
 #include "calib/rig.h"
 #include "cli/program/session.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sensed_view.h"
 #include "stereo/segment.h"
@@ -20,14 +20,14 @@ Json segment_json(const ImageSegment& s) {
 
 }  // namespace
 
-Json sighting_json(const Rig& rig, const Look& seen, const StereoSighting& sighting) {
+Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting) {
   Json json;
   json["pose"] = {seen.pose.x_m, seen.pose.y_m, seen.pose.heading_rad * 180 / std::numbers::pi};
   json["camera_size_px"] = {rig.cameras[0].size_px[0], rig.cameras[0].size_px[1]};
   const char* eyes[] = {"left", "right"};
   for (int eye = 0; eye < 2; ++eye) {
     Json& truth = json["true"][eyes[eye]] = Json::array();
-    for (const SeenEdge& edge : seen.edges) {
+    for (const VisibleEdge& edge : seen.edges) {
       SensedEdge exact;
       exact.truth = edge;
       truth.push_back(segment_json(image_of(rig, exact, eye)));

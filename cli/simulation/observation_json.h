@@ -4,7 +4,7 @@
 
 #include "calib/rig.h"
 #include "cli/program/session.h"
-#include "sim/look.h"
+#include "sim/noise_free_view.h"
 #include "sim/sense.h"
 
 namespace vernier::cli {
@@ -14,6 +14,6 @@ namespace vernier::cli {
 ///     {"pose": [x, y, heading_deg], "true": {"left": […], "right": […]},
 ///      "sensed": {"left": […], "right": […], "feature": […]}, "corners": {"left": […], "right":
 ///      […], "mismatched": […]}}
-Json sighting_json(const Rig& rig, const Look& seen, const StereoSighting& sighting);
+Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting);
 
 }  // namespace vernier::cli

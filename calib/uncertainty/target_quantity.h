@@ -14,14 +14,14 @@ namespace vernier::internal {
 /// derivatives, with the standard deviation
 ///
 ///     sd = sqrt(mean over the rows of g C gᵀ)
-struct WantedError {
+struct TargetQuantity {
   std::string name;          ///< in words: "depth at 5 m"
   std::string unit;          ///< m, px, rad or none
   Eigen::MatrixXd gradient;  ///< rows x parameters, in the tangent of calib/rig.h
 };
 
 /// The standard deviation under a covariance C = factor factorᵀ.
-double sd_of(const WantedError& wanted, const Eigen::MatrixXd& factor);
+double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor);
 
 /// `what` is
 ///   depth          of a point on the left axis at `at_m`, from its pixels in both images (a pair)
@@ -33,6 +33,6 @@ double sd_of(const WantedError& wanted, const Eigen::MatrixXd& factor);
 ///   or the name of a parameter, such as left.f_px.
 /// Throws Error for anything else, listing these, and where the rig has not the cameras that the
 /// error needs.
-WantedError wanted_error(const Rig& rig, const std::string& what, double at_m);
+TargetQuantity target_quantity(const Rig& rig, const std::string& what, double at_m);
 
 }  // namespace vernier::internal

@@ -12,8 +12,8 @@ namespace vernier::cli {
 
 /// Throws Error where writing `output` would replace one of the files that were read, by whatever
 /// name or link. Inputs that are not there are passed over.
-void spare_inputs(const std::vector<std::filesystem::path>& inputs,
-                  const std::filesystem::path& output);
+void check_output_is_not_input(const std::vector<std::filesystem::path>& inputs,
+                               const std::filesystem::path& output);
 
 /// Throws Error where the file of `option` is, by whatever name, the file `other` too.
 void check_different(const std::string& option,

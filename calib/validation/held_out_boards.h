@@ -10,7 +10,7 @@
 
 namespace vernier::internal {
 
-struct LeftOutBoardsOptions {
+struct HeldOutBoardsOptions {
   int training_frames = 0;  ///< per split; 0: a little over half
   int splits = 100;
   std::uint64_t seed = 1;  ///< of the splits
@@ -29,7 +29,7 @@ struct LengthCoverage {
   double sigma_mvb_m = 0;
 };
 
-struct LeftOutBoardsResult {
+struct HeldOutBoardsResult {
   LengthCoverage edges;      ///< board rows, columns and diagonals end to end, one by one
   LengthCoverage scale;      ///< the board's overall size, all lengths of a board together
   int training_frames = 0;   ///< of each split
@@ -51,9 +51,9 @@ struct LeftOutBoardsResult {
 /// over its true value on one board, in which pixel noise averages out and the rig's error stays.
 /// Needs a pair and at least six frames seen by both cameras (else Error). Splits share frames, so
 /// the coverages of two splits are not independent: no interval is given for them.
-LeftOutBoardsResult measure_left_out_boards(
+HeldOutBoardsResult evaluate_held_out_boards(
     const BoardObservations& observations,
-    const LeftOutBoardsOptions& options = {},
+    const HeldOutBoardsOptions& options = {},
     const std::function<void(int done, int total)>& progress = {});
 
 }  // namespace vernier::internal

@@ -10,7 +10,7 @@
 namespace vernier::cli {
 
 /// One part of `vernier check`.
-struct CheckPart {
+struct CheckSection {
   Json json;                          ///< null where it could not be done
   std::string text;                   ///< its table, or the line that says why there is none
   std::string reason;                 ///< why there is none, else empty
@@ -18,7 +18,7 @@ struct CheckPart {
 };
 
 /// A difference and how large it may be. One that is not a number does not hold.
-struct Gate {
+struct ToleranceCheck {
   std::string what, key, where;
   double value = 0, limit = 0;
 
@@ -29,7 +29,7 @@ struct Gate {
 /// for each that does not hold, as "WHAT differ from OTHER by …".
 void add_gates(const std::string& title,
                const std::string& other,
-               const std::vector<Gate>& gates,
-               CheckPart& part);
+               const std::vector<ToleranceCheck>& gates,
+               CheckSection& part);
 
 }  // namespace vernier::cli

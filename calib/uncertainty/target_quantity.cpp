@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/uncertainty/wanted_error.h"
+#include "calib/uncertainty/target_quantity.h"
 
 #include <fmt/format.h>
 
@@ -143,7 +143,7 @@ std::string unit_of(const std::string& parameter) {
   return "";
 }
 
-WantedError parameter_error(const Rig& rig, const std::string& name) {
+TargetQuantity parameter_error(const Rig& rig, const std::string& name) {
   const std::vector<std::string> names = parameter_names(rig);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
@@ -157,12 +157,12 @@ WantedError parameter_error(const Rig& rig, const std::string& name) {
 
 }  // namespace
 
-double sd_of(const WantedError& wanted, const Eigen::MatrixXd& factor) {
+double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor) {
   return std::sqrt((wanted.gradient * factor).squaredNorm() /
                    static_cast<double>(wanted.gradient.rows()));
 }
 
-WantedError wanted_error(const Rig& rig, const std::string& what, double at_m) {
+TargetQuantity target_quantity(const Rig& rig, const std::string& what, double at_m) {
   if (!(at_m > 0) || std::isinf(at_m)) {
     throw Error(what, "its distance is not a number above 0", "give metres");
   }

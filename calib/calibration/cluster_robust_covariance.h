@@ -14,8 +14,8 @@ namespace vernier::internal {
 /// on each other: the clustered sandwich with at least three clusters a parameter, its small-sample
 /// form (calib/calibration/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the
 /// inverse of the equations' information. Throws Error below three clusters.
-Covariance honest_covariance(const ReducedNormalEquations& equations,
-                             const Eigen::MatrixXd& bound,
-                             const std::vector<std::string>& names);
+Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
+                                     const Eigen::MatrixXd& bound,
+                                     const std::vector<std::string>& names);
 
 }  // namespace vernier::internal

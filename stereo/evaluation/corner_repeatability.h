@@ -15,7 +15,7 @@ struct CornerRepeatOptions {
 };
 
 /// Whether the right image has a corner for a left one that it should show.
-struct CornerRepeat {
+struct CornerRepeatability {
   Eigen::Vector2d left_px;
   bool found = false;
   double chance = 0;  ///< share of eight displacements by 12 px where some other corner is as near
@@ -23,10 +23,11 @@ struct CornerRepeat {
 
 /// Left corners that the truth knows and the right image shows, against the right image's corners.
 /// At a step of the truth any disparity of the 3 x 3 pixels counts.
-std::vector<CornerRepeat> corner_repeats(const std::vector<Eigen::Vector2d>& left_px,
-                                         const std::vector<Eigen::Vector2d>& right_px,
-                                         const StereoTruth& truth,
-                                         const CornerRepeatOptions& options = {});
+std::vector<CornerRepeatability> corner_repeatabilities(
+    const std::vector<Eigen::Vector2d>& left_px,
+    const std::vector<Eigen::Vector2d>& right_px,
+    const StereoTruth& truth,
+    const CornerRepeatOptions& options = {});
 
 /// How far a match is from where the truth puts the left corner.
 struct CornerError {

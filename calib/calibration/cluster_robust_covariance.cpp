@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calibration/honest_covariance.h"
+#include "calib/calibration/cluster_robust_covariance.h"
 
 #include <string>
 #include <vector>
@@ -12,9 +12,9 @@
 
 namespace vernier::internal {
 
-Covariance honest_covariance(const ReducedNormalEquations& equations,
-                             const Eigen::MatrixXd& bound,
-                             const std::vector<std::string>& names) {
+Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
+                                     const Eigen::MatrixXd& bound,
+                                     const std::vector<std::string>& names) {
   constexpr double frames_per_parameter = 3;
   const auto frames = static_cast<double>(equations.scores.cols());
   if (frames >= frames_per_parameter * static_cast<double>(names.size())) {

@@ -54,7 +54,7 @@ def read_exceptions(path):
 
 
 def read_costs(path):
-    """{object: (CPU seconds, source)} of what was last compiled in earnest, and the hits' objects."""
+    """{object: (CPU seconds, source)} as last compiled in earnest; the objects only ever cached."""
     costs = {}
     cached = set()
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# The whole chain on real images: calibrate, sample, look, run trials, write the page. Ends with what
-# each part cost, which out/demo/times.txt holds for scripts/check_demo_cost.sh.
+# The whole chain on real images: calibrate, sample, look, run trials, write the page. Ends with
+# what each part cost, which out/demo/times.txt holds for scripts/check_demo_cost.sh.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 out=out/demo

@@ -134,7 +134,7 @@ def check(build, top):
              f"{sum(measured):.0f} CPU s together; "
              f"{len(cached & units)} known from the compiler cache alone")
     if batches:
-        words += f"; {batches} batches of a unity build left out"
+        words += f"; batches of a unity build left out: {batches}"
     if ranking:
         words += f"; the dearest {ranking[0][1][0]:.1f} s, {ranking[0][0]}"
     print(words)

@@ -53,6 +53,7 @@ print_test_times() {
 }
 
 close() {
+  local code=$? failed_part=$part_open
   end_parts
   echo
   print_part_times
@@ -61,6 +62,7 @@ close() {
     echo
     grep --max-count=1 'tests passed' "$log" || true
   fi
+  if ((code != 0)); then echo "test.sh: failed in the part '$failed_part'" >&2; fi
 }
 trap close EXIT
 
@@ -95,6 +97,6 @@ if [[ $quick == no ]]; then
 fi
 
 if ((cost != 0)); then
-  echo "test.sh: the check of what units cost to compile failed, see above" >&2
+  begin_part "check of what units cost to compile, see above"
   exit "$cost"
 fi

@@ -80,7 +80,7 @@ Totals totals(const std::vector<ImageMatching>& all) {
 
 /// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
 /// matches; warns where it gives nearly as many.
-void check_not_swapped(const std::vector<ImageMatching>& all,
+void check_matches_not_swapped(const std::vector<ImageMatching>& all,
                        const RigEstimate& prior,
                        const MatchArguments& options,
                        std::size_t tried,
@@ -136,7 +136,7 @@ void judge(const std::vector<ImageMatching>& all,
     session.warn(blank.string() + ": " + fault + "; its pair is left out");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
-  check_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
+  check_matches_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
   if (share >= suspicious) return;
   if (share >= few) return;
   const std::string fault =

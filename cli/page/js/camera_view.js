@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { paragraph, section } from "./elements.js";
+import { count, counted, fixed } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, figure, image_axes, segments_trace } from "./plot.js";
 
 /** One camera image: the edges as they are, and as the localiser was given them. */
-function view_section(view) {
+export function view_section(view) {
   const made = section("view", "What the camera is given");
   if (view.words) made.append(paragraph(view.words));
   const sensed = view.sensed ?? [];

@@ -1,8 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { depth_part } from "./depth.js";
+import { element, table } from "./elements.js";
+import { significant } from "./format.js";
+import { is_number, upper } from "./numbers.js";
+import { COLOUR, figure } from "./plot.js";
 
 /** What the covariance means where points are seen: maps in pixels, and depth. */
-function projection_content(rig) {
+export function projection_content(rig) {
   const { projection } = rig;
   if (!projection) return [depth_part(rig)];
   const range = colour_range(projection.cameras);

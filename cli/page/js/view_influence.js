@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, table } from "./elements.js";
+import { DASH, count, fixed, percent, significant } from "./format.js";
+import { is_number, sum_of } from "./numbers.js";
+import { COLOUR, axis, figure } from "./plot.js";
+import { points } from "./study.js";
 
 const view_name = ({ images, frame }) => images?.length ? images[0].replace(/\.\w+$/, "")
   : `frame ${frame}`;
 
 /** What every frame did to the estimate. */
-function views_content(rig) {
+export function views_content(rig) {
   const views = rig.view_influence;
   const together = Math.sqrt(sum_of(views, (v) => v.influence ** 2)
     / sum_of(views, (v) => v.influence_noise ** 2));
@@ -25,8 +30,6 @@ function views_content(rig) {
     influence_figure(views, standing_out(views, together)), rms_figure(rig), views_table(views),
   ];
 }
-
-const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 
 const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
   showgrid: false, tickfont: { size: 11 }, dtick: Math.ceil(views.length / 50) });

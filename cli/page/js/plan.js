@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { chooser, element, nodes_of, paragraph, section } from "./elements.js";
+import { count, metres, percent } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, axis, draw_plot, figure, have_plots, segments_trace } from "./plot.js";
+import { headline_cell } from "./study.js";
 
 const PLAN_CUT_M = 2.3;       // edges that reach above a door's head clutter the plan
 const SHOWN_ERROR_M = 0.1;    // shorter errors would vanish under the dots
@@ -15,7 +20,7 @@ function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
   return { trial, x, y, answer_x, answer_y, error_m, outcome };
 }
 
-function plan_section(report) {
+export function plan_section(report) {
   const made = section("plan", "Where it works and where it fails", world_words(report.world));
   const cells = (report.study?.cells ?? []).filter((cell) => cell.trial_list?.length);
   if (!have_plots()) {

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, paragraph, section } from "./elements.js";
+import { count, metres, percent, plot_text, range_percent, setting } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, SERIES, axis, figure, log_axis } from "./plot.js";
+import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 
 const SOURCE_MEANING = {
   "sources.calibration": PSI_MEANING,
@@ -12,7 +17,7 @@ const SOURCE_MEANING = {
 };
 
 /** Success and median error against what was swept, or cell by cell where nothing was. */
-function sweep_section(study) {
+export function sweep_section(study) {
   const swept = study.sweep;
   const label = swept ? swept.label || swept.key : "the cell";
   const made = section("sweep", swept ? `What ${label} does` : "Cell by cell");
@@ -35,7 +40,7 @@ function sweep_series(study) {
   return [...series].map(([name, cells]) => ({ name, cells }));
 }
 
-function varying_settings(cells) {
+export function varying_settings(cells) {
   const keys = [...new Set(cells.flatMap((cell) => Object.keys(cell.settings || {})))];
   return keys.filter((key) =>
     new Set(cells.map((cell) => JSON.stringify(cell_key(cell, key) ?? null))).size > 1);

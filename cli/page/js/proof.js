@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, table } from "./elements.js";
+import { DASH, count, counted, fixed, percent, significant } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, axis, figure } from "./plot.js";
 
 /** Whether the lens model and the covariance hold on views that took no part. */
-function proof_content(rig) {
+export function proof_content(rig) {
   const { proof } = rig;
   return [
     ...(proof.notes ?? []).map((words) => element("p", { class: "notice" }, words)),

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { element, table } from "./elements.js";
 import { percent, setting, significant } from "./format.js";
-import { is_number } from "./numbers.js";
+import { is_number, ratio } from "./numbers.js";
 import { COLOUR, figure, log_axis } from "./plot.js";
 
 /** Depth uncertainty against range: plot, and the numbers in a table. */
@@ -15,7 +15,7 @@ export function depth_part(rig) {
       { head: "Linear, m", cell: (row) => significant(row.sigma_linear_m, 2) },
       { head: "Sampled, m", cell: (row) => significant(row.sigma_sampled_m, 2) },
       { head: "Linear", small: "share of range",
-        cell: (row) => percent(row.sigma_linear_m / row.range_m) },
+        cell: (row) => percent(ratio(row.sigma_linear_m, row.range_m)) },
       { head: "Non-physical", small: "draws without depth",
         cell: (row) => percent(row.non_physical_share) },
     ], rows));

@@ -30,7 +30,8 @@ export function making_section(report) {
     { head: "What", text: true, cell: (row) => row.name },
     { head: "Used", text: true, cell: (row) => row.value },
   ], rows, { wide: false }));
-  const commands = [evaluation?.settings?.command, program?.command].filter(Boolean);
+  const commands = [...study?.commands ?? [], evaluation?.settings?.command, program?.command]
+    .filter(Boolean);
   if (commands.length) made.append(element("pre", {}, element("code", {}, commands.join("\n"))));
   if (study?.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells));
 }

@@ -4,7 +4,7 @@ import { element, paragraph, section, small, table } from "./elements.js";
 import { percent, significant } from "./format.js";
 import { pictures_section } from "./matcher_pictures.js";
 import { calibration_error_section } from "./matchers_under_error.js";
-import { is_number } from "./numbers.js";
+import { in_percent, is_number, ratio, times } from "./numbers.js";
 import { SERIES, axis, figure, have_plots } from "./plot.js";
 
 /** Matchers against ground truth: the evaluation's sections. */
@@ -71,7 +71,7 @@ function density_section(evaluation) {
     () => ({
       data: Object.entries(evaluation.curves).map(([name, points], i) => ({
         type: "scatter", mode: "lines+markers", name,
-        x: points.map((p) => 100 * p[0]), y: points.map((p) => 100 * p[1]),
+        x: points.map((p) => in_percent(p[0])), y: points.map((p) => in_percent(p[1])),
         line: { color: SERIES[i % SERIES.length] }, marker: { size: 5 },
         hovertemplate: "%{y:.2f} % at %{x:.1f} %",
       })),
@@ -92,20 +92,25 @@ function density_section(evaluation) {
   ], against, { wide: false }));
 }
 
+const root = (x) => is_number(x) ? Math.sqrt(x) : null;
+
 /** Of one bin of angles, over all pairs: shares weighted by edges. */
 function angle_means(evaluation, name) {
   const bins = evaluation.scenes[0].matchers[name].by_angle.map((bin) =>
-    ({ middle: 0.5 * (bin.from_deg + bin.to_deg), edges: 0, matched: 0, bad: 0, squares: 0 }));
+    ({ middle: 0.5 * (bin.from_deg + bin.to_deg), matched: 0, bad: 0, right: 0, squares: 0 }));
   for (const scene of evaluation.scenes) {
     scene.matchers[name].by_angle.forEach((bin, i) => {
-      const matched = bin.density * bin.edges;
-      bins[i].edges += bin.edges;
+      const matched = times(bin.edges, bin.density);
+      if (!(matched > 0) || !is_number(bin.bad_1)) return;  // nothing to tell of
+      const right = matched * (1 - bin.bad_1);
       bins[i].matched += matched;
-      bins[i].bad += bin.bad_1 * matched;
-      bins[i].squares += bin.rms_inlier_px ** 2 * matched * (1 - bin.bad_1);
+      bins[i].bad += matched - right;
+      if (!is_number(bin.rms_inlier_px)) return;
+      bins[i].right += right;
+      bins[i].squares += bin.rms_inlier_px ** 2 * right;
     });
   }
-  return bins.filter((bin) => bin.matched > 0);
+  return bins;
 }
 
 function angle_section(evaluation, names) {
@@ -122,10 +127,10 @@ function angle_section(evaluation, names) {
   made.append(
     figure("Errors above 1 px", "Of matched edges.",
       "Share of errors above one pixel by the angle of the edge to the row.", 320,
-      () => ({ data: lines((bin) => 100 * bin.bad / bin.matched),
+      () => ({ data: lines((bin) => in_percent(ratio(bin.bad, bin.matched))),
         layout: { xaxis: degrees, yaxis: axis("wrong, %", { rangemode: "tozero" }) } })),
     figure("Precision", "Root mean square of errors up to 1 px.",
       "Root mean square error by the angle of the edge to the row.", 320,
-      () => ({ data: lines((bin) => Math.sqrt(bin.squares / Math.max(1, bin.matched - bin.bad))),
+      () => ({ data: lines((bin) => root(ratio(bin.squares, bin.right))),
         layout: { xaxis: degrees, yaxis: axis("RMS, px", { rangemode: "tozero" }) } })));
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { paragraph, section, small, table } from "./elements.js";
 import { percent, range_percent, significant } from "./format.js";
+import { bars_in_percent, in_percent } from "./numbers.js";
 import { SERIES, axis, figure, log_axis } from "./plot.js";
 import { PSI_MEANING } from "./study.js";
 
@@ -45,15 +46,12 @@ export function calibration_error_section(evaluation, names) {
 function mismatch_figure(cells, names) {
   const series = names.flatMap((name, i) => [false, true].map((repair) => {
     const own = cells.filter((cell) => cell.repair === repair);
-    const of = (cell) => cell.matchers[name];
-    const ends = own.map((cell) => of(cell).mismatch_interval_95 || [of(cell).mismatch,
-      of(cell).mismatch]);
+    const shares = own.map((cell) => cell.matchers[name].mismatch);
+    const ranges = own.map((cell) => cell.matchers[name].mismatch_interval_95);
     return { type: "scatter", mode: "lines+markers",
       name: repair ? `${name}, repaired` : name,
-      x: own.map((cell) => cell.psi_c), y: own.map((cell) => 100 * of(cell).mismatch),
-      error_y: { type: "data", symmetric: false, thickness: 1, width: 3,
-        array: own.map((cell, k) => 100 * (ends[k][1] - of(cell).mismatch)),
-        arrayminus: own.map((cell, k) => 100 * (of(cell).mismatch - ends[k][0])) },
+      x: own.map((cell) => cell.psi_c), y: shares.map(in_percent),
+      error_y: bars_in_percent(shares, ranges, { thickness: 1, width: 3 }),
       line: { color: SERIES[i % SERIES.length], dash: repair ? "dot" : "solid" },
       hovertemplate: "%{y:.2f} %" };
   }));

@@ -22,9 +22,8 @@ function masthead(report) {
 function notice_without_plots() {
   if (have_plots()) return;
   document.getElementById("report").append(element("p", { class: "notice" },
-    "Plots are missing from this page because plotly was not installed when the program was built"
-    + " (", element("code", {}, "npm ci"), " in cli/page, then build again). All tables"
-    + " are here."));
+    "This page has no plots, because vernier was built without them (",
+    element("code", {}, "-DVERNIER_PAGE_PLOTS=OFF"), "). All tables are here."));
 }
 
 function colophon(report) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { element, table } from "./elements.js";
 import { DASH, percent, significant, value_beside_sigma } from "./format.js";
-import { is_number, sum_of } from "./numbers.js";
+import { is_number, ratio, sum_of } from "./numbers.js";
 
 const PARAMETER_MEANING = [
   [/f_px$/, "focal length, px"],
@@ -26,15 +26,23 @@ const KIND_MEANING = {
   combined: "They combine a prior with measurements.",
 };
 
+const TRUE_BOUND = "They are the minimum variance bound, and here it holds: the views scatter as white"
+  + " noise does, as simulated ones do.";
+
 const CONVENTION = "x points right, y down, z forward.";
+
+/** Whether the covariance is the bound itself, so that there is nothing to compare it with. */
+export const is_bound = (rig) => rig.kind === "mvb";
 
 export function parameter_table(rig) {
   if (!rig.names) return null;
+  const beside = is_bound(rig) ? null : rig.sigma_mvb;
   const rows = rig.names.map((name, i) => ({ name, value: rig.values?.[i], sigma: rig.sigma?.[i],
-    bound: rig.sigma_mvb?.[i] }));
+    bound: beside?.[i] }));
+  const meaning = rig.true_bound ? TRUE_BOUND : KIND_MEANING[rig.kind] ?? "";
   const caption = "Parameters with their standard deviations σ, each with all others uncertain"
-    + ` too. ${KIND_MEANING[rig.kind] ?? ""} ${CONVENTION}`
-    + (rig.sigma_mvb ? " Beside them the minimum variance bound: what corner noise alone would"
+    + ` too. ${meaning} ${CONVENTION}`
+    + (beside ? " Beside them the minimum variance bound: what corner noise alone would"
       + " allow; the ratio says how much too sure the bound is." : "");
   return element("div", {}, element("h3", {}, "Parameters"), table(caption, [
     { head: "Parameter", text: true, cell: (row) => element("code", {}, row.name) },
@@ -42,7 +50,7 @@ export function parameter_table(rig) {
     { head: "Value", cell: (row) => value_beside_sigma(row.value, row.sigma) },
     { head: "σ", cell: (row) => row.sigma === 0 ? "held" : significant(row.sigma, 2) },
     { head: "σ of the bound", cell: (row) => row.bound > 0 ? significant(row.bound, 2) : DASH },
-    { head: "Ratio", cell: (row) => row.bound > 0 ? significant(row.sigma / row.bound, 2) : DASH },
+    { head: "Ratio", cell: (row) => row.bound > 0 ? significant(ratio(row.sigma, row.bound), 2) : DASH },
   ], rows, { wide: false }));
 }
 

@@ -4,8 +4,8 @@ import { corners_content } from "./corners.js";
 import { correlation_part } from "./correlations.js";
 import { element, paragraph, section, section_named, table } from "./elements.js";
 import { DASH, count, counted, percent, significant } from "./format.js";
-import { is_number } from "./numbers.js";
-import { directions_list, parameter_table } from "./parameters.js";
+import { is_number, ratio } from "./numbers.js";
+import { directions_list, is_bound, parameter_table } from "./parameters.js";
 import { projection_content } from "./projection.js";
 import { proof_content } from "./proof.js";
 import { tile } from "./study.js";
@@ -16,7 +16,8 @@ const KIND_REASON = {
     + ` ${frames} frames for ${free} parameters are fewer than three a parameter`,
   clustered: (frames, free) => "the sandwich clustered by frame, because"
     + ` ${frames} frames for ${free} parameters are three a parameter or more`,
-  mvb: () => "the minimum variance bound itself: the corners' noise was taken to be white",
+  mvb: (frames, free, rig) => "the minimum variance bound itself: the corners' noise was taken to be"
+    + ` white${rig.true_bound ? ", and the views scatter as such noise does" : ""}`,
   prior: () => "as the rig file states it: assumed, not measured",
   combined: () => "of several calibrations or batches combined",
 };
@@ -78,7 +79,7 @@ function summary_table(rig) {
   const { calibration } = rig;
   if (!calibration) return null;
   const all = calibration.corners_used + calibration.corners_left_out;
-  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters);
+  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters, rig);
   const inflation = typical_inflation(rig);
   const warp = calibration.warp_m;
   const rows = [
@@ -86,7 +87,7 @@ function summary_table(rig) {
       ? `, ${counted(calibration.images, "image")} with corners` : ""}`],
     ["Corners", is_number(calibration.corners_used) ? `${count(calibration.corners_used)} used,`
       + ` ${count(calibration.corners_left_out)} left out as outliers`
-      + ` (${percent(calibration.corners_left_out / all)})` : DASH],
+      + ` (${percent(ratio(calibration.corners_left_out, all))})` : DASH],
     ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
       + (calibration.held?.length ? `held: ${calibration.held.join(", ")}` : "none held")],
     ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates less parameters and six a`
@@ -107,8 +108,8 @@ function summary_table(rig) {
 
 /** Geometric mean of σ over the bound's σ; nothing where the two are the same. */
 function typical_inflation(rig) {
-  if (rig.kind === "mvb") return null;
-  const ratios = (rig.sigma ?? []).map((s, i) => s / (rig.sigma_mvb?.[i] ?? 0))
+  if (is_bound(rig)) return null;
+  const ratios = (rig.sigma ?? []).map((s, i) => ratio(s, rig.sigma_mvb?.[i]))
     .filter((r) => is_number(r) && r > 0);
   if (!ratios.length) return null;
   return Math.exp(ratios.reduce((sum, r) => sum + Math.log(r), 0) / ratios.length);
@@ -129,7 +130,7 @@ function calibration_tiles(calibration) {
       "a coordinate of a corner"),
     tile("Corner noise", is_number(pixel_sigma_px) ? `${significant(pixel_sigma_px, 2)} px` : null,
       "standard deviation used as weight"),
-    tile("χ² a degree of freedom", dof > 0 ? significant(chi2 / dof, 3) : null,
+    tile("χ² a degree of freedom", dof > 0 ? significant(ratio(chi2, dof), 3) : null,
       `χ² = ${significant(chi2, 4)}, ${count(dof)} degrees; 1 is expected if the noise is as`
       + " stated"),
     tile("Views", count(views), "frames used"));
@@ -138,6 +139,7 @@ function calibration_tiles(calibration) {
 function calibrations_section(rigs) {
   const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
   const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
+  const beside = (rig) => is_bound(rig) ? null : covered(rig, "coverage_mvb");
   section("calibrations", "Calibrations side by side", table(
     "A smaller residual alone does not make a model right: a richer one always fits its own views"
     + " better, so views left out are the judge. And no covariance covers what a model cannot"
@@ -151,9 +153,9 @@ function calibrations_section(rigs) {
       { head: "Views left out", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
       { head: "σ over bound", small: "on average",
         cell: (rig) => significant(typical_inflation(rig), 2) },
-      { head: "Boards left out", small: "inside 95 %, honest",
+      { head: "Boards left out", small: "inside 95 %",
         cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
       { head: "Boards left out", small: "inside 95 %, bound",
-        cell: (rig) => percent(covered(rig, "coverage_mvb"), 0) },
+        cell: (rig) => percent(beside(rig), 0) },
     ], rigs, { wide: false }));
 }

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { element, table } from "./elements.js";
 import { DASH, count, fixed, percent, significant } from "./format.js";
-import { is_number, sum_of } from "./numbers.js";
+import { is_number, ratio, sum_of } from "./numbers.js";
 import { COLOUR, axis, figure } from "./plot.js";
-import { points } from "./study.js";
 
 const view_name = ({ images, frame }) => images?.length ? images[0].replace(/\.\w+$/, "")
   : `frame ${frame}`;
@@ -127,7 +126,7 @@ function views_table(views) {
     { head: "RMS", small: "px", cell: (v) => significant(v.rms_px, 3) },
     { head: "Influence", cell: (v) => significant(v.influence, 3) },
     { head: "Noise gives", cell: (v) => significant(v.influence_noise, 3) },
-    { head: "Ratio", cell: (v) => significant(v.influence / v.influence_noise, 2) },
+    { head: "Ratio", cell: (v) => significant(ratio(v.influence, v.influence_noise), 2) },
     { head: "Leverage", cell: (v) => significant(v.leverage, 3) },
     { head: "Best known", small: "direction", cell: (v) => percent(v.largest_share, 0) },
     { head: "If left out", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },

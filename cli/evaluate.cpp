@@ -203,41 +203,13 @@ DrawOptions draw_options(const Options& options) {
   return draws;
 }
 
-/// The call as it would be typed, but for where it writes.
-std::string command_of(const Options& o) {
-  std::string command = "vernier evaluate";
-  const auto add = [&](const char* option, const std::string& value) {
-    if (!value.empty()) command += fmt::format(" {} '{}'", option, value);
-  };
-  const StereoSceneFile& one = o.scenes.one;
-  add("--scenes", o.scenes.scenes);
-  add("--left", one.left.string());
-  add("--right", one.right.string());
-  add("--truth", one.truth.string());
-  add("--right-truth", one.right_truth.string());
-  if (o.scenes.scenes.empty()) {
-    command += fmt::format(" --truth-scale {:g} --min-disparity {} --max-disparity {}",
-                           one.truth_scale, one.range.least_px, one.range.most_px);
-  }
-  add("--rig", one.rig.string());
-  add("--matcher", o.matchers.names);
-  for (const std::string& program : o.matchers.commands) add("--command", program);
-  add("--outline", o.outline);
-  command += o.repair ? " --repair" : "";
-  command += o.equal_density ? " --equal-density" : "";
-  add("--psi-c", o.psi_c);
-  if (!o.psi_c.empty()) {
-    command += fmt::format(" --draws {} --seed {}", o.draws.draws, o.draws.seed);
-  }
-  add("--rows-moved-px", o.rows_px);
-  return command;
-}
-
 /// What the figures depend on beside the pairs, which stand with their scores.
-Json settings_json(const Options& options, const std::vector<Matcher>& matchers) {
+Json settings_json(const Options& options,
+                   const std::vector<Matcher>& matchers,
+                   const Session& session) {
   Json names = Json::array();
   for (const Matcher& matcher : matchers) names.push_back(matcher.name);
-  return {{"command", command_of(options)},
+  return {{"command", session.command},
           {"list", options.scenes.scenes.empty() ? Json() : Json(options.scenes.scenes)},
           {"matchers", names},
           {"commands", options.matchers.commands},
@@ -291,7 +263,7 @@ void run(const Options& options, Session& session) {
     progress.update(++done, static_cast<int>(files.size()));
   }
   Json json = concluded(options, matchers, report);
-  json["settings"] = settings_json(options, matchers);
+  json["settings"] = settings_json(options, matchers, session);
   if (options.equal_density) {
     json["equal_density"] = equal_density.json();
     json["curves"] = equal_density.curves();

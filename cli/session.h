@@ -16,6 +16,10 @@ namespace vernier::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// The words of a call in one line, quoted where a shell would read them otherwise; the program by
+/// its name alone.
+std::string command_line(int argc, const char* const* argv);
+
 /// A number, or null where it is not finite, which JSON cannot say.
 Json json_number(double value);
 
@@ -27,6 +31,7 @@ class Session {
  public:
   bool quiet = false;
   bool json = false;
+  std::string command;  ///< the call as a shell takes it; pages and results say it
 
   /// A line to standard error, unless quiet.
   void say(const std::string& line) const;

@@ -62,6 +62,7 @@ void run(const Options& options, Session& session) {
   job.folder = options.folder;
   job.threads = options.threads;
   job.shard = shard_of(options.shard);
+  job.command = session.command;
   const Study study = load_study(file, session);
   keep_inputs(file, job.folder);
   {
@@ -125,6 +126,7 @@ void merge(const Options& options, Session& session) {
   StudyStore merged(target / "results.sqlite");
   for (const auto& [key, block] : blocks) merged.put(block);
   for (const auto& [key, value] : notes) merged.put_note(key, value);
+  merged.put_note(command_key(session.command), session.command);
 
   const Study study = open_folder(target, session);
   const StudyResults results = study_results(study, target);

@@ -54,7 +54,7 @@ function mismatch_figure(cells, names) {
       error_y: bars_in_percent(shares, ranges, { thickness: 1, width: 3 }),
       line: { color: SERIES[i % SERIES.length], dash: repair ? "dot" : "solid" },
       hovertemplate: "%{y:.2f} %" };
-  }));
+  })).filter((trace) => trace.x.length);
   return figure("Mismatch against calibration error", "Bars: 95 % over the pairs.",
     "Share of mismatches against psi_c, with and without repair.", 400, () => ({ data: series,
       layout: { xaxis: log_axis("ψ_c", cells.map((cell) => cell.psi_c)),

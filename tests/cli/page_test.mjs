@@ -182,7 +182,7 @@ async function check_page(browser, { file, plotly }, width, screenshots) {
     const url = request.url();
     if (url !== address && !/^(data|blob):/.test(url)) faults.push(`request of ${url}`);
   });
-  await page.goto(address, { waitUntil: "load" });
+  await page.goto(address, { waitUntil: "load", timeout: 120_000 });
   await page.waitForTimeout(300);
   const seen = await page.evaluate(inspect);
   faults.push(...seen.missing.map((id) => `section ${id} has no heading`));

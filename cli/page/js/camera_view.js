@@ -3,7 +3,7 @@
 import { paragraph, section } from "./elements.js";
 import { count, counted, fixed } from "./format.js";
 import { is_number } from "./numbers.js";
-import { COLOUR, figure, image_axes, segments_trace } from "./plot.js";
+import { COLOUR, figure, image_axes, room_px, segments_trace } from "./plot.js";
 
 /** One camera image: the edges as they are, and as the localiser was given them. */
 export function view_section(view) {
@@ -28,8 +28,9 @@ export function view_section(view) {
 }
 
 function view_height({ camera_size_px: [width, height] }) {
-  const room = Math.min(1104, document.getElementById("report").clientWidth || 1104);
-  return Math.round(Math.max(300, Math.min(680, 100 + (room - 80) * height / width)));
+  const legend = room_px() < 500 ? 80 : 0;  // an entry a line there
+  const needed = 100 + legend + (room_px() - 80) * height / width;
+  return Math.round(Math.max(300, Math.min(680, needed)));
 }
 
 function view_plot(view) {

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { half_room_px } from "./plot.js";
 
-export const image_height = ([width, height]) => Math.round(118 + 450 * height / width);
+export const image_height = ([width, height]) => Math.round(
+  118 + Math.min(450, half_room_px() - 76) * height / width);
 
 /** Centres of a structure's columns or rows, in pixels. */
 export const cell_centres = (cells, size) =>

@@ -55,7 +55,7 @@ export function table(caption, columns, rows, { chosen = () => false, wide = tru
       { scope: i === 0 ? "row" : null, class: column.text ? "text" : "number" },
       keep_together(column.cell(row))))));
   return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    element("table", { class: wide ? "wide" : null }, element("caption", {}, caption),
+    element("table", { class: wide ? "wide" : null }, element("caption", {}, element("span", {}, caption)),
       element("thead", {}, head), element("tbody", {}, body)));
 }
 

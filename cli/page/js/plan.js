@@ -3,7 +3,7 @@
 import { chooser, element, nodes_of, paragraph, section } from "./elements.js";
 import { count, metres, percent } from "./format.js";
 import { is_number } from "./numbers.js";
-import { COLOUR, axis, draw_plot, figure, have_plots, segments_trace } from "./plot.js";
+import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
 import { headline_cell } from "./study.js";
 
 const PLAN_CUT_M = 2.3;       // edges that reach above a door's head clutter the plan
@@ -92,8 +92,10 @@ function plan_extent(report) {
 
 function plan_height(report) {
   const { x, y } = plan_extent(report);
-  const width = Math.min(1104, document.getElementById("report").clientWidth || 1104) - 80;
-  return Math.round(Math.max(320, Math.min(860, 110 + width * (y[1] - y[0]) / (x[1] - x[0]))));
+  const width = room_px() - 80;
+  const legend = width < 500 ? 130 : 0;  // an entry a line there
+  const height = 110 + width * (y[1] - y[0]) / (x[1] - x[0]);
+  return Math.round(Math.max(320, Math.min(860, height + legend)));
 }
 
 function plan_plot(report, cell) {

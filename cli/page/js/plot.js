@@ -82,6 +82,16 @@ export function segments_trace(segments, more) {
   return { type: "scatter", mode: "lines", x, y, hoverinfo: "skip", ...more };
 }
 
+/** The width that a figure may take, px. */
+export const room_px = () =>
+  Math.min(1104, document.getElementById("report").clientWidth || 1104);
+
+/** The same of a figure that stands beside another where the page is wide (report.css). */
+export function half_room_px() {
+  const narrow = window.matchMedia?.("(max-width: 860px)").matches;
+  return narrow ? room_px() : (room_px() - 36) / 2;
+}
+
 /** Axes of an image: pixels, y down, square; a margin of 3 % around the frame. */
 export function image_axes([width, height]) {
   const edge = 0.03 * width;

@@ -55,7 +55,8 @@ export function histogram_figure(one) {
   const { structure: s } = one;
   return figure(`Residuals against the normal, ${one.camera} camera`, "Residuals of both"
     + " coordinates, counted in standard deviations of the corner noise. The line is what a"
-    + ` normal error would give. Beyond 3 σ: ${percent(s.beyond_3_sigma, 2)}, of a normal error`
+    + " normal error would give; the outermost bars hold all beyond ± 5 σ."
+    + ` Beyond 3 σ: ${percent(s.beyond_3_sigma, 2)}, of a normal error`
     + " 0.27 %. A tall middle with long tails means that some views or corners are noisier than"
     + " others.", `Histogram of residuals of the ${one.camera} camera.`,
     image_height(one.size_px), () => histogram_plot(one));
@@ -73,8 +74,7 @@ function histogram_plot({ structure: { histogram, first_edge, bin }, corners }) 
         line: { color: COLOUR.ink, width: 1.6 }, hoverinfo: "skip" },
     ],
     layout: { bargap: 0.06,
-      xaxis: axis("residual, σ (beyond ± 5 in the outermost bars)",
-        { showgrid: false, dtick: 1 }),
+      xaxis: axis("residual, σ", { showgrid: false, dtick: 1 }),
       yaxis: axis("coordinates", { rangemode: "tozero" }) },
   };
 }

@@ -143,12 +143,10 @@ void run(const Options& options, Session& session) {
   if (!plots) {
     session.warn("the page has tables only, no plots: vernier was built without them (see doctor)");
   }
-  session.result({{"output", options.output},
-                  {"bytes", page.size()},
-                  {"rigs", inputs.rigs},
-                  {"plots", plots}},
-                 fmt::format("{} ({:.1f} MB, opens without network{})\n", options.output,
-                             static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
+  session.result(
+      {{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}, {"plots", plots}},
+      fmt::format("{} ({:.1f} MB, opens without network{})\n", options.output,
+                  static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct StudyRun {
   std::filesystem::path folder;  ///< results are kept, and resumed from, here
   int threads = 0;               ///< 0: as many as there are
   Shard shard;
-  std::string command;  ///< that this run is; kept beside its results
+  std::string command;                                ///< that this run is; kept beside its results
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
 };
 

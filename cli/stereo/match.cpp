@@ -81,10 +81,10 @@ Totals totals(const std::vector<ImageMatching>& all) {
 /// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
 /// matches; warns where it gives nearly as many.
 void check_matches_not_swapped(const std::vector<ImageMatching>& all,
-                       const RigEstimate& prior,
-                       const MatchArguments& options,
-                       std::size_t tried,
-                       Session& session) {
+                               const RigEstimate& prior,
+                               const MatchArguments& options,
+                               std::size_t tried,
+                               Session& session) {
   if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
   std::size_t given = 0, exchanged = 0;
   for (std::size_t i = 0; i < std::min(tried, all.size()); ++i) {
@@ -145,7 +145,7 @@ void judge(const std::vector<ImageMatching>& all,
       "see that the prior is of these cameras, its covariance not too narrow, the images "
       "simultaneous, and the scene beyond --nearest-m";
   if (sum.matches == 0) throw Error("match", fault, remedy);
-  session.doubt(fault + "; " + remedy);
+  session.add_trust_warning(fault + "; " + remedy);
 }
 
 std::vector<std::filesystem::path> inputs(const std::filesystem::path& prior,

@@ -12,7 +12,9 @@ set(vernier_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vernier)
 foreach(module IN LISTS vernier_modules)
   get_target_property(interface ${module} INTERFACE_LINK_LIBRARIES)
   list(REMOVE_ITEM interface $<LINK_ONLY:nlohmann_json::nlohmann_json>
-                             $<LINK_ONLY:Random123::Random123>)
+                             $<LINK_ONLY:Random123::Random123>
+                             $<LINK_ONLY:tomlplusplus::tomlplusplus>
+                             $<LINK_ONLY:Boost::headers>)
   set_property(TARGET ${module} PROPERTY INTERFACE_LINK_LIBRARIES ${interface})
   list(APPEND vernier_needs ${interface})
 endforeach()

@@ -21,6 +21,7 @@
 #include "calib/solver/resolve.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 #include "calib/statistics/scaled_root.h"
 
@@ -113,10 +114,8 @@ std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
     least[k] = eigenvalues[0];
     largest[k] = eigenvalues[q - 1];
   }
-  const int tail = wishart_draws / 200;
-  std::nth_element(least.begin(), least.begin() + tail, least.end());
-  std::nth_element(largest.begin(), largest.end() - 1 - tail, largest.end());
-  return {least[tail], *(largest.end() - 1 - tail)};
+  return {quantile(std::move(least), 0.005, QuantileKind::upper),
+          quantile(std::move(largest), 0.995, QuantileKind::lower)};
 }
 
 std::array<double, 2> mean_interval(double q, double n, double probability) {

@@ -53,12 +53,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake
               ${PROJECT_BINARY_DIR}/vernier-config-version.cmake cmake/FindHighway.cmake
         DESTINATION ${vernier_package_dir})
 
-# The program finds these beside itself, in ../share/vernier. Without the plots, which npm brings,
-# the report's page holds tables only.
+# The program finds these beside itself, in ../share/vernier; cli/page adds the report's page.
 set(vernier_share_dir ${CMAKE_INSTALL_DATADIR}/vernier)
 install(DIRECTORY datasets/worlds datasets/rigs DESTINATION ${vernier_share_dir})
 install(FILES python/mrcal_uncertainty.py DESTINATION ${vernier_share_dir}/python)
-install(DIRECTORY cli/page/js DESTINATION ${vernier_share_dir}/page)
-install(FILES cli/page/report.html cli/page/report.css DESTINATION ${vernier_share_dir}/page)
-install(FILES cli/page/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js
-        DESTINATION ${vernier_share_dir}/page OPTIONAL)

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/error.h"
 #include "cli/program/session.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
@@ -28,6 +29,8 @@ namespace vernier::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* plotly_file = "plotly.js";
 
 Json trial_json(const TrialResult& t) {
   Json row{t.trial, t.truth.x_m, t.truth.y_m, t.truth.heading_rad};
@@ -62,18 +65,6 @@ std::string fill(const std::string& page,
   return filled;
 }
 
-/// Scripts of the page in the order of their names.
-std::string scripts_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".js") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  std::string text;
-  for (const fs::path& file : files) text += read_whole(file) + "\n";
-  return text;
-}
-
 }  // namespace
 
 Json report_study(const Study& study, const StudyResults& results) {
@@ -86,6 +77,7 @@ Json report_study(const Study& study, const StudyResults& results) {
       {"method", first.experiment.method},
       {"world_ceiling",
        std::isfinite(results.cells[0].ceiling) ? Json(results.cells[0].ceiling) : Json(nullptr)},
+      {"commands", results.commands},
       {"sweep", nullptr},
       {"cells", Json::array()},
       {"comparisons", Json::array()}};
@@ -175,6 +167,8 @@ Json report_view(const Study& study) {
                             seen.edges.size(), sighting.segments.size())}};
 }
 
+bool has_plots(const fs::path& folder) { return fs::is_regular_file(folder / plotly_file); }
+
 std::string assemble_page(const fs::path& folder, const Json& data) {
   std::string json;
   // a file name may hold any bytes, and no "<" may end or open anything in the page
@@ -186,19 +180,19 @@ std::string assemble_page(const fs::path& folder, const Json& data) {
     }
   }
   std::string plotly;
-  for (const fs::path& file :
-       {folder / "plotly-cartesian.min.js",
-        folder / "node_modules" / "plotly.js-cartesian-dist-min" / "plotly-cartesian.min.js"}) {
-    if (plotly.empty() && fs::is_regular_file(file)) {
-      plotly = "<script>" + read_whole(file) + "</script>";
-    }
+  if (!fs::is_regular_file(folder / "report.js")) {
+    throw Error("report", "this build has no script for the page, because esbuild was missing",
+                "run scripts/install_packages.sh, then configure and build again");
+  }
+  if (has_plots(folder)) {
+    plotly = "<script id=\"plotly\">" + read_whole(folder / plotly_file) + "</script>";
   }
   return fill(read_whole(folder / "report.html"),
               {{"<!--VERNIER:CSS-->", read_whole(folder / "report.css")},
                {"<!--VERNIER:PLOTLY-->", plotly},
                {"<!--VERNIER:DATA-->",
                 "<script type=\"application/json\" id=\"data\">" + json + "</script>"},
-               {"<!--VERNIER:JS-->", scripts_in(folder / "js")}});
+               {"<!--VERNIER:JS-->", read_whole(folder / "report.js")}});
 }
 
 }  // namespace vernier::cli

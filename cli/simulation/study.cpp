@@ -65,6 +65,7 @@ void run(const StudyArguments& options, Session& session) {
   job.folder = options.folder;
   job.threads = options.threads;
   job.shard = shard_of(options.shard);
+  job.command = session.command;
   const Study study = load_study(file, session);
   keep_inputs(file, job.folder);
   {
@@ -128,12 +129,14 @@ void merge(const StudyArguments& options, Session& session) {
   StudyStore merged(target / "results.sqlite");
   for (const auto& [key, block] : blocks) merged.put(block);
   for (const auto& [key, value] : notes) merged.set_metadata(key, value);
+  merged.set_metadata(command_key(session.command), session.command);
 
   const Study study = open_folder(target, session);
   const StudyResults results = study_results(study, target);
   if (results.blocks_done < results.blocks_total) {
-    session.doubt(fmt::format("{} of {} blocks are missing from the merged study",
-                              results.blocks_total - results.blocks_done, results.blocks_total));
+    session.add_trust_warning(fmt::format("{} of {} blocks are missing from the merged study",
+                                          results.blocks_total - results.blocks_done,
+                                          results.blocks_total));
   }
   session.result(study_json(study, results), study_table(study, results));
 }

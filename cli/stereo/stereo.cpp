@@ -136,23 +136,24 @@ void judge(const StereoArguments& options,
            const DepthFigures& depth,
            Session& session) {
   if (input.field.unrectified) {
-    session.doubt("the rows of both images do not agree: " + describe(input.field) +
-                  (options.input.rectified
-                       ? "; rectify the pair first (give --rig and leave out --rectified)"
-                       : "; see that the rig is of these cameras as they stand and the images "
-                         "simultaneous"));
+    session.add_trust_warning(
+        "the rows of both images do not agree: " + describe(input.field) +
+        (options.input.rectified
+             ? "; rectify the pair first (give --rig and leave out --rectified)"
+             : "; see that the rig is of these cameras as they stand and the images "
+               "simultaneous"));
   }
   if (edges.share() < hardly_any) {
-    session.doubt(fmt::format(
+    session.add_trust_warning(fmt::format(
         "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
         "time, the rows agree and disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
-    session.doubt("no segment has a place in space; segments.json says why of each");
+    session.add_trust_warning("no segment has a place in space; segments.json says why of each");
   } else if (depth.linear < (1 - max_doubtful) * depth.placed) {
-    session.doubt(fmt::format(
+    session.add_trust_warning(fmt::format(
         "the depth of {} of {} segments is not known to a tenth: {}; {}",
         depth.placed - depth.linear, depth.placed, sigma_words(depth),
         depth.calibration_share > 0.5

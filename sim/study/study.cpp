@@ -135,6 +135,8 @@ double median(std::vector<double> values, double quantile = 0.5) {
 
 }  // namespace
 
+std::string command_key(const std::string& command) { return "command " + command; }
+
 void run_study(const Study& study, const StudyRun& run) {
   if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
     throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
@@ -144,6 +146,7 @@ void run_study(const Study& study, const StudyRun& run) {
   const Visibility visibility(study.world);
   const std::vector<Job> jobs = missing_jobs(study, run);
   StudyStore store(run.folder / store_name(run.shard));
+  if (!run.command.empty() && !jobs.empty()) store.set_metadata(command_key(run.command), run.command);
 
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
   std::set<std::string> ceilings;
@@ -194,6 +197,7 @@ void run_study(const Study& study, const StudyRun& run) {
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
   std::map<std::pair<std::string, int>, StoredBlock> blocks;
   std::map<std::string, std::string> ceilings;
+  std::set<std::string> commands;
   for (const auto& file : store_files(folder)) {
     const StudyStore store(file);
     for (StoredBlock& block : store.blocks()) {
@@ -204,8 +208,12 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
       const std::string key = ceiling_key(study, cell.experiment);
       if (const std::string value = store.note(key); !value.empty()) ceilings[key] = value;
     }
+    for (const auto& [key, value] : store.notes()) {
+      if (key == command_key(value)) commands.insert(value);
+    }
   }
   StudyResults results;
+  results.commands.assign(commands.begin(), commands.end());
   for (const StudyCell& cell : study.file.cells) {
     CellResult result;
     result.cell = cell;

@@ -32,6 +32,7 @@ struct StudyRun {
   std::filesystem::path folder;  ///< results are kept, and resumed from, here
   int threads = 0;               ///< 0: as many as there are
   Shard shard;
+  std::string command;                                ///< that this run is; kept beside its results
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
 };
 
@@ -54,7 +55,11 @@ struct CellResult {
 struct StudyResults {
   std::vector<CellResult> cells;
   int blocks_done = 0, blocks_total = 0;
+  std::vector<std::string> commands;  ///< that made them; ascending, none of old results
 };
+
+/// The key under which a store's notes hold a command.
+std::string command_key(const std::string& command);
 
 /// Reads all stores of the folder. Throws Error where two shards disagree on a block.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);

@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, table } from "./elements.js";
+import { DASH, count, fixed, percent, significant } from "./format.js";
+import { is_number, ratio, sum_of } from "./numbers.js";
+import { COLOUR, axis, figure } from "./plot.js";
 
 const view_name = ({ images, frame }) => images?.length ? images[0].replace(/\.\w+$/, "")
   : `frame ${frame}`;
 
 /** What every frame did to the estimate. */
-function views_content(rig) {
+export function views_content(rig) {
   const views = rig.view_influence;
   const together = Math.sqrt(sum_of(views, (v) => v.influence ** 2)
     / sum_of(views, (v) => v.influence_noise ** 2));
@@ -25,8 +29,6 @@ function views_content(rig) {
     influence_figure(views, standing_out(views, together)), rms_figure(rig), views_table(views),
   ];
 }
-
-const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 
 const views_axis = (views) => axis("", { type: "category", tickangle: views.length > 8 ? -60 : 0,
   showgrid: false, tickfont: { size: 11 }, dtick: Math.ceil(views.length / 50) });
@@ -124,7 +126,7 @@ function views_table(views) {
     { head: "RMS", small: "px", cell: (v) => significant(v.rms_px, 3) },
     { head: "Influence", cell: (v) => significant(v.influence, 3) },
     { head: "Noise gives", cell: (v) => significant(v.influence_noise, 3) },
-    { head: "Ratio", cell: (v) => significant(v.influence / v.influence_noise, 2) },
+    { head: "Ratio", cell: (v) => significant(ratio(v.influence, v.influence_noise), 2) },
     { head: "Leverage", cell: (v) => significant(v.leverage, 3) },
     { head: "Best known", small: "direction", cell: (v) => percent(v.largest_share, 0) },
     { head: "If left out", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },

@@ -1,8 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { depth_part } from "./depth.js";
+import { element, table } from "./elements.js";
+import { significant } from "./format.js";
+import { is_number, upper } from "./numbers.js";
+import { COLOUR, figure, room_px } from "./plot.js";
 
 /** What the covariance means where points are seen: maps in pixels, and depth. */
-function projection_content(rig) {
+export function projection_content(rig) {
   const { projection } = rig;
   if (!projection) return [depth_part(rig)];
   const range = colour_range(projection.cameras);
@@ -25,8 +30,9 @@ const distance_words = (d) => is_number(d) ? `${significant(d, 2)} m` : "infinit
 
 function projection_table({ cameras }) {
   const rows = cameras.flatMap((one) => one.figures.map((row) => ({ ...row, camera: one.camera })));
-  return table("Standard deviation of a projected point, px, in its worst direction. The bound is"
-    + " what corner noise alone would allow.", [
+  const bound = rows.some((row) => is_number(row.centre_bound_px))
+    ? " The bound is what corner noise alone would allow." : "";
+  return table(`Standard deviation of a projected point, px, in its worst direction.${bound}`, [
     { head: "Camera", text: true, cell: (row) => row.camera },
     { head: "Distance", text: true, cell: (row) => distance_words(row.distance_m)
       + (row.boards ? " (as the boards)" : "") },
@@ -46,9 +52,8 @@ function colour_range(cameras) {
 }
 
 function projection_figure(one, range) {
-  const shown = document.getElementById("report").clientWidth || 1104;
-  const across = shown < 700 ? 1 : one.maps.length;
-  const width = (Math.min(1104, shown) - 70) / across;
+  const across = room_px() < 700 ? 1 : one.maps.length;
+  const width = (room_px() - 70) / across;
   const rows = one.maps.length / across;
   const height = Math.round(70 + rows * (20 + 0.86 * width * one.size_px[1] / one.size_px[0]));
   return figure(`Projection uncertainty, ${one.camera} camera`, "Standard deviation in pixels of"

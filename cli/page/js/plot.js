@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element } from "./elements.js";
+import { minus, plot_text } from "./format.js";
+import { is_number } from "./numbers.js";
 
 // Okabe and Ito's palette: told apart with every common kind of colour blindness.
-const COLOUR = {
+export const COLOUR = {
   blue: "#0072b2", red: "#d55e00", green: "#009e73", amber: "#e69f00", sky: "#56b4e9",
   pink: "#cc79a7", grey: "#8c99a6", light: "#c9d0d8", ink: "#1d2733",
 };
-const SERIES = [COLOUR.blue, COLOUR.red, COLOUR.green, COLOUR.pink, COLOUR.amber, COLOUR.sky];
+export const SERIES = [COLOUR.blue, COLOUR.red, COLOUR.green, COLOUR.pink, COLOUR.amber, COLOUR.sky];
 
-const have_plots = () => typeof window.Plotly !== "undefined";
+export const have_plots = () => typeof window.Plotly !== "undefined";
 
 // Plots are drawn once their place in the page, and so their width, is known.
 const waiting_plots = [];
@@ -17,7 +20,7 @@ const waiting_plots = [];
  * A figure: heading, what is to be read from it, the plot. `draw` gives {data, layout}; `spoken`
  * stands for the picture where it cannot be seen. Nothing where Plotly is missing.
  */
-function figure(heading, reading, spoken, height, draw) {
+export function figure(heading, reading, spoken, height, draw) {
   if (!have_plots()) return null;
   const place = element("div", { class: "plot", role: "img", "aria-label": spoken });
   place.style.height = `${height}px`;
@@ -26,11 +29,11 @@ function figure(heading, reading, spoken, height, draw) {
     element("figcaption", {}, reading), place);
 }
 
-function draw_waiting_plots() {
+export function draw_waiting_plots() {
   waiting_plots.splice(0).forEach((draw) => draw());
 }
 
-function draw_plot(place, height, { data, layout }) {
+export function draw_plot(place, height, { data, layout }) {
   const config = { responsive: true, displaylogo: false,
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
   return Plotly.react(place, data, { ...base_layout(), ...layout, height }, config);
@@ -49,14 +52,14 @@ function base_layout() {
   };
 }
 
-function axis(title, more = {}) {
+export function axis(title, more = {}) {
   return { title: { text: plot_text(title), standoff: 8 }, gridcolor: "#e9edf1", zeroline: false,
     linecolor: COLOUR.grey, showline: true, ticks: "outside", tickcolor: COLOUR.grey,
     automargin: true, ...more };
 }
 
 /** Ticks of a logarithmic axis over `values`: 1, 2 and 5 times the powers of ten, all written. */
-function log_axis(title, values, more = {}) {
+export function log_axis(title, values, more = {}) {
   const positive = values.filter((x) => is_number(x) && x > 0);
   const low = Math.floor(Math.log10(Math.min(...positive)));
   const high = Math.ceil(Math.log10(Math.max(...positive)));
@@ -70,7 +73,7 @@ function log_axis(title, values, more = {}) {
 }
 
 /** Line segments as one trace: [x1, y1, x2, y2] each, parted by gaps. */
-function segments_trace(segments, more) {
+export function segments_trace(segments, more) {
   const x = [], y = [];
   for (const [x1, y1, x2, y2] of segments) {
     x.push(x1, x2, null);
@@ -79,8 +82,18 @@ function segments_trace(segments, more) {
   return { type: "scatter", mode: "lines", x, y, hoverinfo: "skip", ...more };
 }
 
+/** The width that a figure may take, px. */
+export const room_px = () =>
+  Math.min(1104, document.getElementById("report").clientWidth || 1104);
+
+/** The same of a figure that stands beside another where the page is wide (report.css). */
+export function half_room_px() {
+  const narrow = window.matchMedia?.("(max-width: 860px)").matches;
+  return narrow ? room_px() : (room_px() - 36) / 2;
+}
+
 /** Axes of an image: pixels, y down, square; a margin of 3 % around the frame. */
-function image_axes([width, height]) {
+export function image_axes([width, height]) {
   const edge = 0.03 * width;
   return {
     xaxis: axis("u, px (to the right)", { range: [-edge, width + edge], showgrid: false,
@@ -98,7 +111,7 @@ let opened_for_paper = [];
 
 const all_plots = () => [...document.querySelectorAll(".plot.js-plotly-plot")];
 
-function fit_plots_to_paper() {
+export function fit_plots_to_paper() {
   opened_for_paper = [...document.querySelectorAll("details:not([open])")];
   opened_for_paper.forEach((closed) => { closed.open = true; });
   for (const place of all_plots()) {
@@ -113,7 +126,7 @@ function fit_plots_to_paper() {
   }
 }
 
-function fit_plots_to_window() {
+export function fit_plots_to_window() {
   opened_for_paper.forEach((details) => { details.open = false; });
   for (const place of all_plots()) {
     const height = Number(place.dataset.height);

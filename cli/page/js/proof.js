@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, table } from "./elements.js";
+import { DASH, count, counted, fixed, percent, significant } from "./format.js";
+import { in_percent, is_number, times } from "./numbers.js";
+import { is_bound } from "./parameters.js";
+import { COLOUR, axis, figure } from "./plot.js";
 
 /** Whether the lens model and the covariance hold on views that took no part. */
-function proof_content(rig) {
+export function proof_content(rig) {
   const { proof } = rig;
   return [
     ...(proof.notes ?? []).map((words) => element("p", { class: "notice" }, words)),
     proof.models && models_table(proof.models),
-    ...(proof.left_out ? left_out_content(proof.left_out) : []),
+    ...(proof.left_out ? left_out_content(proof.left_out, covariances(rig)) : []),
   ];
 }
 
@@ -29,7 +34,15 @@ function models_table({ frames, rows }) {
   ], rows, { chosen: (row) => row.in_use, wide: false }));
 }
 
-function left_out_content(left_out) {
+const COVARIANCES = [
+  { by: "honest", name: "honest covariance", suffix: "honest", color: COLOUR.blue },
+  { by: "bound", name: "minimum variance bound", suffix: "mvb", color: COLOUR.red },
+];
+
+/** Those that a rig has: one where its covariance is the bound. */
+const covariances = (rig) => is_bound(rig) ? COVARIANCES.slice(1) : COVARIANCES;
+
+function left_out_content(left_out, by) {
   const [edges] = left_out.rows;
   const failed = left_out.failed ? ` ${counted(left_out.failed, "split")} could not be calibrated.`
     : "";
@@ -39,26 +52,24 @@ function left_out_content(left_out) {
       + ` ${count(left_out.training_frames)} of ${count(left_out.frames)} frames, and the boards of`
       + " the other frames were measured with it: rows, columns and diagonals by triangulation,"
       + " against what they are on the board. A true covariance puts 95 % of the errors inside"
-      + " their 95 % interval and makes error over stated σ one, root mean square. By the honest"
-      + ` covariance ${percent(edges.coverage_honest)} of ${count(edges.lengths)} lengths lie`
-      + ` inside, by the minimum variance bound ${percent(edges.coverage_mvb)}.${failed}`),
-    element("div", { class: "pair table-first" }, left_out_table(left_out),
-      coverage_bars(left_out.rows)),
+      + " their 95 % interval and makes error over stated σ one, root mean square. Of"
+      + ` ${count(edges.lengths)} lengths there lie inside: ` + by.map(({ name, suffix }) =>
+        `${percent(edges[`coverage_${suffix}`])} by the ${name}`).join(", ") + `.${failed}`),
+    element("div", { class: "pair table-first" }, left_out_table(left_out, by),
+      coverage_bars(left_out.rows, by)),
     element("p", { class: "reading" }, "Splits share frames, so these shares have no simple"
-      + " interval of their own. A single length carries its corners' noise as well, alike under"
-      + " both covariances; in the size of a board, the mean of its lengths, the noise averages out"
+      + " interval of their own. A single length carries its corners' noise as well"
+      + `${by.length > 1 ? ", alike under both covariances" : ""}; in the size of a board, the mean of its lengths, the noise averages out`
       + " and the rig's error stays. Lengths test the rig only where the boards stood."),
   ];
 }
 
-function left_out_table({ rows, boards }) {
-  const length = (row, value) => row.unit === "m" ? `${significant(1e3 * value, 2)} mm`
+function left_out_table({ rows, boards }, by) {
+  const length = (row, value) => row.unit === "m" ? `${significant(times(1e3, value), 2)} mm`
     : percent(value, 3);
-  const lines = rows.flatMap((row) => [
-    { row, by: "honest", covered: row.coverage_honest, z: row.z_rms_honest,
-      sigma: row.sigma_honest },
-    { row, by: "bound", covered: row.coverage_mvb, z: row.z_rms_mvb, sigma: row.sigma_mvb },
-  ]);
+  const lines = rows.flatMap((row) => by.map(({ by: name, suffix }) => ({ row, by: name,
+    covered: row[`coverage_${suffix}`], z: row[`z_rms_${suffix}`],
+    sigma: row[`sigma_${suffix}`] })));
   return table(`Lengths on ${count(boards)} boards left out`, [
     { head: "What", text: true, cell: (l) => l.row.what },
     { head: "Covariance", text: true, cell: (l) => l.by },
@@ -69,17 +80,16 @@ function left_out_table({ rows, boards }) {
   ], lines, { wide: false });
 }
 
-function coverage_bars(rows) {
-  const bars = (name, key, color) => ({ type: "bar", name, x: rows.map((row) => row.what),
-    y: rows.map((row) => 100 * row[key]), marker: { color },
-    text: rows.map((row) => percent(row[key], 0)), textposition: "inside",
+function coverage_bars(rows, by) {
+  const bars = ({ name, suffix, color }) => ({ type: "bar", name, x: rows.map((row) => row.what),
+    y: rows.map((row) => in_percent(row[`coverage_${suffix}`])), marker: { color },
+    text: rows.map((row) => percent(row[`coverage_${suffix}`], 0)), textposition: "inside",
     insidetextfont: { color: "#fff" }, hovertemplate: `${name}: %{y:.1f} %<extra></extra>` });
   return figure("", "Share of lengths inside their 95 % interval. The line is at 95 %: bars below"
     + " it are intervals too narrow, above it too wide.",
-    "Coverage of 95 % intervals by the honest covariance and by the bound, as in the table.", 300,
+    "Coverage of 95 % intervals, as in the table.", 300,
     () => ({
-      data: [bars("honest covariance", "coverage_honest", COLOUR.blue),
-        bars("minimum variance bound", "coverage_mvb", COLOUR.red)],
+      data: by.map(bars),
       layout: { bargap: 0.35, xaxis: axis("", { showgrid: false, ticks: "" }),
         yaxis: axis("inside, %", { range: [0, 100], dtick: 20 }),
         shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 95, y1: 95,

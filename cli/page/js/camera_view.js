@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { paragraph, section } from "./elements.js";
+import { count, counted, fixed } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, figure, image_axes, room_px, segments_trace } from "./plot.js";
 
 /** One camera image: the edges as they are, and as the localiser was given them. */
-function view_section(view) {
+export function view_section(view) {
   const made = section("view", "What the camera is given");
   if (view.words) made.append(paragraph(view.words));
   const sensed = view.sensed ?? [];
@@ -24,8 +28,9 @@ function view_section(view) {
 }
 
 function view_height({ camera_size_px: [width, height] }) {
-  const room = Math.min(1104, document.getElementById("report").clientWidth || 1104);
-  return Math.round(Math.max(300, Math.min(680, 100 + (room - 80) * height / width)));
+  const legend = room_px() < 500 ? 80 : 0;  // an entry a line there
+  const needed = 100 + legend + (room_px() - 80) * height / width;
+  return Math.round(Math.max(300, Math.min(680, needed)));
 }
 
 function view_plot(view) {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { DASH, NBSP } from "./format.js";
 
 /** An element; strings among `children` become text, with ψ_c's index lowered. */
-function element(tag, attributes = {}, ...children) {
+export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value !== null && value !== undefined && value !== false) made.setAttribute(name, value);
@@ -11,7 +12,7 @@ function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-function nodes_of(child) {
+export function nodes_of(child) {
   if (child === null || child === undefined || child === false) return [];
   if (child instanceof Node) return [child];
   return String(child).split(/([ψσ]_[a-z]+)/).map((piece, i) => {
@@ -24,10 +25,10 @@ function nodes_of(child) {
   });
 }
 
-const paragraph = (...children) => element("p", {}, ...children);
+export const paragraph = (...children) => element("p", {}, ...children);
 
 /** Adds a headed section to the page, and to its contents by `nav` (null: not listed there). */
-function section_named(id, heading, nav, ...children) {
+export function section_named(id, heading, nav, ...children) {
   const made = element("section", { id, "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` }, heading), ...children);
   document.getElementById("report").append(made);
@@ -38,13 +39,13 @@ function section_named(id, heading, nav, ...children) {
   return made;
 }
 
-const section = (id, heading, ...children) => section_named(id, heading, heading, ...children);
+export const section = (id, heading, ...children) => section_named(id, heading, heading, ...children);
 
 /**
  * A table. A column: {head, small (second line of the head), text (left aligned), cell: row =>
  * content}. Columns whose cells are all dashes are left out.
  */
-function table(caption, columns, rows, { chosen = () => false, wide = true } = {}) {
+export function table(caption, columns, rows, { chosen = () => false, wide = true } = {}) {
   const filled = columns.filter((column) => rows.some((row) => column.cell(row) !== DASH));
   const head = element("tr", {}, filled.map((column) =>
     element("th", { scope: "col", class: column.text ? "text" : null }, column.head,
@@ -54,7 +55,7 @@ function table(caption, columns, rows, { chosen = () => false, wide = true } = {
       { scope: i === 0 ? "row" : null, class: column.text ? "text" : "number" },
       keep_together(column.cell(row))))));
   return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    element("table", { class: wide ? "wide" : null }, element("caption", {}, caption),
+    element("table", { class: wide ? "wide" : null }, element("caption", {}, element("span", {}, caption)),
       element("thead", {}, head), element("tbody", {}, body)));
 }
 
@@ -65,10 +66,10 @@ function keep_together(content) {
     : content.replaceAll(" = ", `${NBSP}=${NBSP}`);
 }
 
-const small = (text) => element("span", { class: "small" }, text);
+export const small = (text) => element("span", { class: "small" }, text);
 
 /** Buttons for up to six labels, a list for more; calls `choose(index)` when another is chosen. */
-function chooser(legend, labels, first, choose) {
+export function chooser(legend, labels, first, choose) {
   if (labels.length > 6) {
     const list = element("select", { "aria-label": legend },
       labels.map((label, i) => element("option", { value: i, selected: i === first }, label)));

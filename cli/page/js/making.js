@@ -1,25 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-
-function masthead(report) {
-  const title = report.title || "Vernier report";
-  document.title = title;
-  document.getElementById("masthead").append(
-    element("p", { class: "kind" }, "Vernier report"),
-    element("h1", {}, title),
-    element("nav", { "aria-label": "Contents" }, element("ul", { id: "contents" })));
-}
-
-function notice_without_plots() {
-  if (have_plots()) return;
-  document.getElementById("report").append(element("p", { class: "notice" },
-    "Plots are missing from this page because plotly was not installed when the program was built"
-    + " (", element("code", {}, "npm ci"), " in cli/page, then build again). All tables"
-    + " are here."));
-}
+import { element, paragraph, section, table } from "./elements.js";
+import { DASH, count, setting } from "./format.js";
+import { is_number } from "./numbers.js";
+import { cell_key } from "./study.js";
+import { varying_settings } from "./sweep.js";
 
 /** How the page was made: program, study file and the settings of every cell. */
-function making_section(report) {
+export function making_section(report) {
   const { program, study, evaluation } = report;
   if (!program && !study && !evaluation) return;
   const rows = [
@@ -42,7 +30,8 @@ function making_section(report) {
     { head: "What", text: true, cell: (row) => row.name },
     { head: "Used", text: true, cell: (row) => row.value },
   ], rows, { wide: false }));
-  const commands = [evaluation?.settings?.command, program?.command].filter(Boolean);
+  const commands = [...study?.commands ?? [], evaluation?.settings?.command, program?.command]
+    .filter(Boolean);
   if (commands.length) made.append(element("pre", {}, element("code", {}, commands.join("\n"))));
   if (study?.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells));
 }
@@ -64,33 +53,3 @@ function settings_details(cells) {
   ], common, { wide: false }));
   return details;
 }
-
-function colophon(report) {
-  const version = report.program?.version ? ` ${report.program.version}` : "";
-  document.getElementById("colophon").append(`Written by vernier${version}. This file is complete:`
-    + " it loads nothing from the network.");
-}
-
-function show(report) {
-  masthead(report);
-  notice_without_plots();
-  const study = report.study?.cells?.length ? report.study : null;
-  if (study) {
-    headline(report);
-    if (study.cells.length > 1) sweep_section(study);
-    cells_section(report);
-    if (study.comparisons?.length) comparisons_section(study);
-  }
-  if (report.evaluation) evaluation_sections(report.evaluation);
-  if (report.world || study?.cells.some((cell) => cell.trial_list?.length)) plan_section(report);
-  if (report.view) view_section(report.view);
-  rigs_sections(report);
-  making_section(report);
-  colophon(report);
-  draw_waiting_plots();
-  if (!have_plots()) return;
-  window.addEventListener("beforeprint", fit_plots_to_paper);
-  window.addEventListener("afterprint", fit_plots_to_window);
-}
-
-show(JSON.parse(document.getElementById("data").textContent));

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, paragraph, section } from "./elements.js";
+import { count, metres, percent, plot_text, range_percent, setting } from "./format.js";
+import { bars_in_percent, in_percent, is_number } from "./numbers.js";
+import { COLOUR, SERIES, axis, figure, log_axis } from "./plot.js";
+import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 
 const SOURCE_MEANING = {
   "sources.calibration": PSI_MEANING,
@@ -12,7 +17,7 @@ const SOURCE_MEANING = {
 };
 
 /** Success and median error against what was swept, or cell by cell where nothing was. */
-function sweep_section(study) {
+export function sweep_section(study) {
   const swept = study.sweep;
   const label = swept ? swept.label || swept.key : "the cell";
   const made = section("sweep", swept ? `What ${label} does` : "Cell by cell");
@@ -35,7 +40,7 @@ function sweep_series(study) {
   return [...series].map(([name, cells]) => ({ name, cells }));
 }
 
-function varying_settings(cells) {
+export function varying_settings(cells) {
   const keys = [...new Set(cells.flatMap((cell) => Object.keys(cell.settings || {})))];
   return keys.filter((key) =>
     new Set(cells.map((cell) => JSON.stringify(cell_key(cell, key) ?? null))).size > 1);
@@ -87,7 +92,7 @@ function success_plot(study) {
   const all = sweep_series(study);
   const data = all.map(({ name, cells }, i) => ({
     type: "scatter", mode: study.sweep ? "lines+markers" : "markers", name: plot_text(name),
-    x: cells.map(across.at), y: cells.map((cell) => 100 * cell.success),
+    x: cells.map(across.at), y: cells.map((cell) => in_percent(cell.success)),
     error_y: interval_bars(cells), line: { color: SERIES[i % SERIES.length], width: 1.5 },
     marker: { size: 8, symbol: i }, showlegend: all.length > 1,
     customdata: cells.map((cell) => [plot_text(cell.label),
@@ -102,11 +107,8 @@ function success_plot(study) {
 }
 
 function interval_bars(cells) {
-  const ranges = cells.map((cell) =>
-    cell.success_interval_95 || cell.success_interval_binomial_95 || [cell.success, cell.success]);
-  return { type: "data", symmetric: false, thickness: 1.5, width: 6,
-    array: cells.map((cell, i) => 100 * (ranges[i][1] - cell.success)),
-    arrayminus: cells.map((cell, i) => 100 * (cell.success - ranges[i][0])) };
+  const ranges = cells.map((cell) => cell.success_interval_95 || cell.success_interval_binomial_95);
+  return bars_in_percent(cells.map((cell) => cell.success), ranges, { thickness: 1.5, width: 6 });
 }
 
 function ceiling_marks(study) {

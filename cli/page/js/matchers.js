@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, paragraph, section, small, table } from "./elements.js";
+import { percent, significant } from "./format.js";
+import { pictures_section } from "./matcher_pictures.js";
+import { calibration_error_section } from "./matchers_under_error.js";
+import { in_percent, is_number, ratio, times } from "./numbers.js";
+import { SERIES, axis, figure, have_plots } from "./plot.js";
 
 /** Matchers against ground truth: the evaluation's sections. */
-function evaluation_sections(evaluation) {
+export function evaluation_sections(evaluation) {
   const names = Object.keys(evaluation.matchers);
   scores_section(evaluation, names);
   if (evaluation.curves && Object.keys(evaluation.curves).length) density_section(evaluation);
@@ -65,7 +71,7 @@ function density_section(evaluation) {
     () => ({
       data: Object.entries(evaluation.curves).map(([name, points], i) => ({
         type: "scatter", mode: "lines+markers", name,
-        x: points.map((p) => 100 * p[0]), y: points.map((p) => 100 * p[1]),
+        x: points.map((p) => in_percent(p[0])), y: points.map((p) => in_percent(p[1])),
         line: { color: SERIES[i % SERIES.length] }, marker: { size: 5 },
         hovertemplate: "%{y:.2f} % at %{x:.1f} %",
       })),
@@ -86,20 +92,25 @@ function density_section(evaluation) {
   ], against, { wide: false }));
 }
 
+const root = (x) => is_number(x) ? Math.sqrt(x) : null;
+
 /** Of one bin of angles, over all pairs: shares weighted by edges. */
 function angle_means(evaluation, name) {
   const bins = evaluation.scenes[0].matchers[name].by_angle.map((bin) =>
-    ({ middle: 0.5 * (bin.from_deg + bin.to_deg), edges: 0, matched: 0, bad: 0, squares: 0 }));
+    ({ middle: 0.5 * (bin.from_deg + bin.to_deg), matched: 0, bad: 0, right: 0, squares: 0 }));
   for (const scene of evaluation.scenes) {
     scene.matchers[name].by_angle.forEach((bin, i) => {
-      const matched = bin.density * bin.edges;
-      bins[i].edges += bin.edges;
+      const matched = times(bin.edges, bin.density);
+      if (!(matched > 0) || !is_number(bin.bad_1)) return;  // nothing to tell of
+      const right = matched * (1 - bin.bad_1);
       bins[i].matched += matched;
-      bins[i].bad += bin.bad_1 * matched;
-      bins[i].squares += bin.rms_inlier_px ** 2 * matched * (1 - bin.bad_1);
+      bins[i].bad += matched - right;
+      if (!is_number(bin.rms_inlier_px)) return;
+      bins[i].right += right;
+      bins[i].squares += bin.rms_inlier_px ** 2 * right;
     });
   }
-  return bins.filter((bin) => bin.matched > 0);
+  return bins;
 }
 
 function angle_section(evaluation, names) {
@@ -116,98 +127,10 @@ function angle_section(evaluation, names) {
   made.append(
     figure("Errors above 1 px", "Of matched edges.",
       "Share of errors above one pixel by the angle of the edge to the row.", 320,
-      () => ({ data: lines((bin) => 100 * bin.bad / bin.matched),
+      () => ({ data: lines((bin) => in_percent(ratio(bin.bad, bin.matched))),
         layout: { xaxis: degrees, yaxis: axis("wrong, %", { rangemode: "tozero" }) } })),
     figure("Precision", "Root mean square of errors up to 1 px.",
       "Root mean square error by the angle of the edge to the row.", 320,
-      () => ({ data: lines((bin) => Math.sqrt(bin.squares / Math.max(1, bin.matched - bin.bad))),
+      () => ({ data: lines((bin) => root(ratio(bin.squares, bin.right))),
         layout: { xaxis: degrees, yaxis: axis("RMS, px", { rangemode: "tozero" }) } })));
-}
-
-const error_name = (cell) => cell.rows_moved_px ? `rows ${significant(cell.rows_moved_px, 2)} px`
-  : `ψ_c = ${significant(cell.psi_c, 2)}`;
-
-function calibration_error_section(evaluation, names) {
-  const { cells, draws, rigs } = evaluation.calibration_error;
-  const rig = [...new Set(rigs)].join(", ");
-  const made = section("calibration-error", "Under calibration error", paragraph(
-    `Every pair as ${draws === 1 ? "a rig" : `${draws} rigs`} drawn from the calibration's`
-    + ` covariance (${rig}) would rectify it. ${PSI_MEANING} Matches are scored against the`
-    + " disparities that the pair then has: a mismatch was matched to something else. What the"
-    + " geometry itself does to disparities stands apart, as bias; the error in found disparities"
-    + " holds both. Repair takes away what the rows differ by, found from corners of the pair."
-    + " What the rows of the pair as given differ by is taken away before any error is put in, so"
-    + " that ψ_c = 0 is the pair without it. An edge where rows are off may be found anywhere"
-    + " between its point's disparity and the place where it crosses the row: all of that counts as"
-    + " right."));
-  const drawn = cells.filter((cell) => cell.psi_c > 0);
-  if (drawn.length > 2) made.append(mismatch_figure(drawn, names) || "");
-  const rows = cells.flatMap((cell) => names.map((name) =>
-    ({ cell, name, ...cell.matchers[name] })));
-  made.append(table("Figures under each error, means over pairs and draws", [
-    { head: "Error", text: true, cell: (row) => error_name(row.cell) },
-    { head: "Repair", small: "pairs repaired", text: true, cell: (row) =>
-      row.cell.repair ? `${row.cell.repaired} of ${row.cell.pairs}` : "no" },
-    { head: "Matcher", text: true, cell: (row) => row.name },
-    { head: "Density", cell: (row) => percent(row.density) },
-    { head: "Bad 1", cell: (row) => percent(row.bad_1, 2) },
-    { head: "Mismatch", small: "95 % interval", cell: (row) => [percent(row.mismatch, 2),
-      row.mismatch_interval_95 && small(range_percent(row.mismatch_interval_95))] },
-    { head: "Rows px", small: "vertical, RMS", cell: (row) => significant(row.cell.rows_rms_px) },
-    { head: "Bias px", small: "geometric, RMS", cell: (row) =>
-      significant(row.cell.geometric_bias_rms_px) },
-    { head: "Error px", small: "of found, RMS", cell: (row) =>
-      significant(row.disparity_error_rms_px) },
-  ], rows));
-}
-
-function mismatch_figure(cells, names) {
-  const series = names.flatMap((name, i) => [false, true].map((repair) => {
-    const own = cells.filter((cell) => cell.repair === repair);
-    const of = (cell) => cell.matchers[name];
-    const ends = own.map((cell) => of(cell).mismatch_interval_95 || [of(cell).mismatch,
-      of(cell).mismatch]);
-    return { type: "scatter", mode: "lines+markers",
-      name: repair ? `${name}, repaired` : name,
-      x: own.map((cell) => cell.psi_c), y: own.map((cell) => 100 * of(cell).mismatch),
-      error_y: { type: "data", symmetric: false, thickness: 1, width: 3,
-        array: own.map((cell, k) => 100 * (ends[k][1] - of(cell).mismatch)),
-        arrayminus: own.map((cell, k) => 100 * (of(cell).mismatch - ends[k][0])) },
-      line: { color: SERIES[i % SERIES.length], dash: repair ? "dot" : "solid" },
-      hovertemplate: "%{y:.2f} %" };
-  }));
-  return figure("Mismatch against calibration error", "Bars: 95 % over the pairs.",
-    "Share of mismatches against psi_c, with and without repair.", 400, () => ({ data: series,
-      layout: { xaxis: log_axis("ψ_c", cells.map((cell) => cell.psi_c)),
-        yaxis: axis("mismatch, %", { rangemode: "tozero" }) } }));
-}
-
-const ERROR_COLOURS = [["#14a03c", "to 0.5 px"], ["#e6c800", "to 1 px"], ["#ff7800", "to 3 px"],
-  ["#dc1414", "more"], ["#1e5ae6", "no match"], ["#000000", "not judged"]];
-
-function pictures_section(evaluation) {
-  const scenes = evaluation.scenes.filter((scene) => scene.pictures);
-  const made = section("pictures", "Pictures", paragraph(
-    `Edges found by ${scenes[0].pictures.matcher}, over the faded left image.`));
-  const place = element("div", {});
-  const show_scene = (i) => place.replaceChildren(...scene_pictures(scenes[i]));
-  if (scenes.length > 1) {
-    made.append(chooser("Pair", scenes.map((scene) => scene.name), 0, show_scene));
-  }
-  made.append(place);
-  show_scene(0);
-}
-
-function scene_pictures(scene) {
-  const { disparity, error, least_px, most_px } = scene.pictures;
-  const key = ERROR_COLOURS.map(([colour, words]) => element("span", { class: "key" },
-    element("span", { class: "swatch", style: `background:${colour}` }), words));
-  return [
-    element("figure", {}, element("h3", {}, "Disparity"),
-      element("figcaption", {}, `Blue ${least_px} px to red ${most_px} px; grey: no match.`),
-      element("img", { src: disparity, class: "picture",
-        alt: `Edges of ${scene.name} coloured by disparity` })),
-    element("figure", {}, element("h3", {}, "Error"), element("figcaption", {}, key),
-      element("img", { src: error, class: "picture",
-        alt: `Edges of ${scene.name} coloured by error` }))];
 }

@@ -1,16 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// The files of this folder are joined in the order of their names into one script.
-"use strict";
+import { is_number } from "./numbers.js";
 
-const DASH = "–";
-const NBSP = "\u00a0";  // keeps a number and its unit on one line
-
-const is_number = (x) => typeof x === "number" && Number.isFinite(x);
+export const DASH = "–";
+export const NBSP = "\u00a0";  // keeps a number and its unit on one line
 
 /** A number with `digits` significant digits, without exponent where that stays readable. */
-function significant(x, digits = 3) {
+export function significant(x, digits = 3) {
   if (!is_number(x)) return DASH;
   if (x === 0) return "0";
   const size = Math.floor(Math.log10(Math.abs(Number(x.toPrecision(digits)))));
@@ -25,60 +21,60 @@ function power_of_ten(x, digits, size) {
   return `${factor}${NBSP}×${NBSP}10${raised}`;
 }
 
-const minus = (text) => text.replace("-", "−");
+export const minus = (text) => text.replace("-", "−");
 
 /** A value to the decimals that its standard deviation, at two digits, justifies. */
-function value_beside_sigma(value, sigma) {
+export function value_beside_sigma(value, sigma) {
   if (!is_number(value)) return DASH;
   if (!is_number(sigma) || sigma <= 0) return significant(value, 6);
   const decimals = 1 - Math.floor(Math.log10(Number(sigma.toPrecision(2))));
   return minus(value.toFixed(Math.max(0, Math.min(12, decimals))));
 }
 
-function fixed(x, decimals) {
+export function fixed(x, decimals) {
   return is_number(x) ? minus(x.toFixed(decimals)) : DASH;
 }
 
-function count(n) {
+export function count(n) {
   return is_number(n) ? n.toLocaleString("en-GB", { maximumFractionDigits: 0 }) : DASH;
 }
 
 /** A share in [0, 1] in per cent. */
-function percent(share, decimals = 1) {
+export function percent(share, decimals = 1) {
   return is_number(share) ? `${(100 * share).toFixed(decimals)}${NBSP}%` : DASH;
 }
 
-function range_percent(range) {
+export function range_percent(range) {
   if (!Array.isArray(range) || !range.every(is_number)) return DASH;
   return `${(100 * range[0]).toFixed(1)} to ${(100 * range[1]).toFixed(1)}${NBSP}%`;
 }
 
-function metres(x) {
+export function metres(x) {
   if (!is_number(x)) return DASH;
   return x < 1 ? `${significant(100 * x, 2)}${NBSP}cm` : `${significant(x, 3)}${NBSP}m`;
 }
 
-function milliseconds(x) {
+export function milliseconds(x) {
   return is_number(x) ? `${significant(x, x >= 100 ? 4 : 3)}${NBSP}ms` : DASH;
 }
 
-function p_value(p) {
+export function p_value(p) {
   if (!is_number(p)) return DASH;
   return p < 0.001 ? "< 0.001" : p.toFixed(3);
 }
 
 /** "1 trial", "900 trials". */
-const counted = (n, noun) => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
+export const counted = (n, noun) => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
 
 /** Text for Plotly, which reads tags: escaped, ψ_c with its index lowered. */
-function plot_text(text) {
+export function plot_text(text) {
   const entities = { "&": "&amp;", "<": "&lt;", ">": "&gt;" };
   const escaped = String(text ?? "").replace(/[&<>]/g, (c) => entities[c]);
   return escaped.replace(/([ψσ])_([a-z]+)/g, "$1<sub>$2</sub>");
 }
 
 /** A settings value as a person would write it. */
-function setting(value) {
+export function setting(value) {
   if (value === null || value === undefined) return DASH;
   if (is_number(value)) return minus(String(value));
   if (typeof value === "object") return JSON.stringify(value);

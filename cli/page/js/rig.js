@@ -1,42 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-
-const PARAMETER_MEANING = [
-  [/f_px$/, "focal length, px"],
-  [/\.ax$/, "aspect, fx over fy"],
-  [/\.ox_px$/, "image centre, to the right, px"],
-  [/\.oy_px$/, "image centre, down, px"],
-  [/\.k(\d)$/, "radial distortion"],
-  [/\.p(\d)$/, "tangential distortion"],
-  [/\.w([xyz])_rad$/, "rotation about $1, rad"],
-  [/\.t([xyz])_m$/, "offset along $1, m"],
-];
-
-const KIND_MEANING = {
-  mvb: "They are the minimum variance bound: what the corners' noise alone would allow, which on"
-    + " real images is too small.",
-  clustered: "They come from how much whole views disagree (a sandwich covariance clustered by"
-    + " view), so model and target errors that change from view to view are in them.",
-  jackknife: "They come from leaving out one view at a time (a jackknife, shrunk towards the shape"
-    + " of the bound), so model and target errors that change from view to view are in them.",
-  prior: "They are assumed, not measured.",
-  combined: "They combine a prior with measurements.",
-};
-
-const CONVENTION = "x points right, y down, z forward.";
+import { corners_content } from "./corners.js";
+import { correlation_part } from "./correlations.js";
+import { element, paragraph, section, section_named, table } from "./elements.js";
+import { DASH, count, counted, percent, significant } from "./format.js";
+import { is_number, ratio } from "./numbers.js";
+import { directions_list, is_bound, parameter_table } from "./parameters.js";
+import { projection_content } from "./projection.js";
+import { proof_content } from "./proof.js";
+import { tile } from "./study.js";
+import { views_content } from "./view_influence.js";
 
 const KIND_REASON = {
   jackknife: (frames, free) => "the small-sample form of the sandwich (kind jackknife), because"
     + ` ${frames} frames for ${free} parameters are fewer than three a parameter`,
   clustered: (frames, free) => "the sandwich clustered by frame, because"
     + ` ${frames} frames for ${free} parameters are three a parameter or more`,
-  mvb: () => "the minimum variance bound itself: the corners' noise was taken to be white",
+  mvb: (frames, free, rig) => "the minimum variance bound itself: the corners' noise was taken to be"
+    + ` white${rig.true_bound ? ", and the views scatter as such noise does" : ""}`,
   prior: () => "as the rig file states it: assumed, not measured",
   combined: () => "of several calibrations or batches combined",
 };
 
 /** The sections of every rig; with several, a table of all before them. */
-function rigs_sections(report) {
+export function rigs_sections(report) {
   const rigs = report.rigs ?? [];
   if (rigs.length > 1) calibrations_section(rigs);
   rigs.forEach((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig", rigs.length > 1));
@@ -92,7 +79,7 @@ function summary_table(rig) {
   const { calibration } = rig;
   if (!calibration) return null;
   const all = calibration.corners_used + calibration.corners_left_out;
-  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters);
+  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters, rig);
   const inflation = typical_inflation(rig);
   const warp = calibration.warp_m;
   const rows = [
@@ -100,7 +87,7 @@ function summary_table(rig) {
       ? `, ${counted(calibration.images, "image")} with corners` : ""}`],
     ["Corners", is_number(calibration.corners_used) ? `${count(calibration.corners_used)} used,`
       + ` ${count(calibration.corners_left_out)} left out as outliers`
-      + ` (${percent(calibration.corners_left_out / all)})` : DASH],
+      + ` (${percent(ratio(calibration.corners_left_out, all))})` : DASH],
     ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
       + (calibration.held?.length ? `held: ${calibration.held.join(", ")}` : "none held")],
     ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates less parameters and six a`
@@ -121,8 +108,8 @@ function summary_table(rig) {
 
 /** Geometric mean of σ over the bound's σ; nothing where the two are the same. */
 function typical_inflation(rig) {
-  if (rig.kind === "mvb") return null;
-  const ratios = (rig.sigma ?? []).map((s, i) => s / (rig.sigma_mvb?.[i] ?? 0))
+  if (is_bound(rig)) return null;
+  const ratios = (rig.sigma ?? []).map((s, i) => ratio(s, rig.sigma_mvb?.[i]))
     .filter((r) => is_number(r) && r > 0);
   if (!ratios.length) return null;
   return Math.exp(ratios.reduce((sum, r) => sum + Math.log(r), 0) / ratios.length);
@@ -143,38 +130,16 @@ function calibration_tiles(calibration) {
       "a coordinate of a corner"),
     tile("Corner noise", is_number(pixel_sigma_px) ? `${significant(pixel_sigma_px, 2)} px` : null,
       "standard deviation used as weight"),
-    tile("χ² a degree of freedom", dof > 0 ? significant(chi2 / dof, 3) : null,
+    tile("χ² a degree of freedom", dof > 0 ? significant(ratio(chi2, dof), 3) : null,
       `χ² = ${significant(chi2, 4)}, ${count(dof)} degrees; 1 is expected if the noise is as`
       + " stated"),
     tile("Views", count(views), "frames used"));
 }
 
-function parameter_table(rig) {
-  if (!rig.names) return null;
-  const rows = rig.names.map((name, i) => ({ name, value: rig.values?.[i], sigma: rig.sigma?.[i],
-    bound: rig.sigma_mvb?.[i] }));
-  const caption = "Parameters with their standard deviations σ, each with all others uncertain"
-    + ` too. ${KIND_MEANING[rig.kind] ?? ""} ${CONVENTION}`
-    + (rig.sigma_mvb ? " Beside them the minimum variance bound: what corner noise alone would"
-      + " allow; the ratio says how much too sure the bound is." : "");
-  return element("div", {}, element("h3", {}, "Parameters"), table(caption, [
-    { head: "Parameter", text: true, cell: (row) => element("code", {}, row.name) },
-    { head: "Meaning", text: true, cell: (row) => parameter_meaning(row.name) },
-    { head: "Value", cell: (row) => value_beside_sigma(row.value, row.sigma) },
-    { head: "σ", cell: (row) => row.sigma === 0 ? "held" : significant(row.sigma, 2) },
-    { head: "σ of the bound", cell: (row) => row.bound > 0 ? significant(row.bound, 2) : DASH },
-    { head: "Ratio", cell: (row) => row.bound > 0 ? significant(row.sigma / row.bound, 2) : DASH },
-  ], rows, { wide: false }));
-}
-
-function parameter_meaning(name) {
-  const found = PARAMETER_MEANING.find(([pattern]) => pattern.test(name));
-  return found ? name.match(found[0])[0].replace(found[0], found[1]) : DASH;
-}
-
 function calibrations_section(rigs) {
   const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
   const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
+  const beside = (rig) => is_bound(rig) ? null : covered(rig, "coverage_mvb");
   section("calibrations", "Calibrations side by side", table(
     "A smaller residual alone does not make a model right: a richer one always fits its own views"
     + " better, so views left out are the judge. And no covariance covers what a model cannot"
@@ -188,34 +153,9 @@ function calibrations_section(rigs) {
       { head: "Views left out", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
       { head: "σ over bound", small: "on average",
         cell: (rig) => significant(typical_inflation(rig), 2) },
-      { head: "Boards left out", small: "inside 95 %, honest",
+      { head: "Boards left out", small: "inside 95 %",
         cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
       { head: "Boards left out", small: "inside 95 %, bound",
-        cell: (rig) => percent(covered(rig, "coverage_mvb"), 0) },
+        cell: (rig) => percent(beside(rig), 0) },
     ], rigs, { wide: false }));
-}
-
-const DIRECTIONS_SHOWN = 8;
-
-function directions_list(rig) {
-  const all = (rig.directions ?? []).filter((d) => d.share > 1e-9);
-  if (!all.length) return null;
-  const bars = (list) => element("ul", { class: "bars" }, list.map(({ share, words }) =>
-    element("li", {}, element("span", { class: "share" }, percent(share)),
-      element("span", { class: "bar", "aria-hidden": "true" },
-        element("i", { style: `width:${100 * Math.min(1, share)}%` })),
-      element("span", {}, words))));
-  const condition = is_number(rig.scaled_condition) ? " The covariance has condition number"
-    + ` ${significant(rig.raw_condition, 2)}, and ${significant(rig.scaled_condition, 2)} once each`
-    + " parameter is counted in its own standard deviation." : "";
-  const rest = all.slice(DIRECTIONS_SHOWN);
-  return element("div", {}, element("h3", {}, "Directions in which the calibration is loose"),
-    element("p", { class: "reading" }, "Errors of parameters come together. Counted in standard"
-      + " deviations, the uncertainty splits into independent directions (the singular vectors of"
-      + " the scaled covariance); the bar is each one's share of the whole. A few large shares"
-      + " mean that a few joint errors make up most of what is unknown."
-      + condition),
-    bars(all.slice(0, DIRECTIONS_SHOWN)),
-    rest.length > 0 && element("details", {}, element("summary", {}, `The other ${rest.length},`
-      + ` together ${percent(sum_of(rest, (one) => one.share))}`), bars(rest)));
 }

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { chooser, element, nodes_of, paragraph, section } from "./elements.js";
+import { count, metres, percent } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
+import { headline_cell } from "./study.js";
 
 const PLAN_CUT_M = 2.3;       // edges that reach above a door's head clutter the plan
 const SHOWN_ERROR_M = 0.1;    // shorter errors would vanish under the dots
@@ -15,7 +20,7 @@ function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
   return { trial, x, y, answer_x, answer_y, error_m, outcome };
 }
 
-function plan_section(report) {
+export function plan_section(report) {
   const made = section("plan", "Where it works and where it fails", world_words(report.world));
   const cells = (report.study?.cells ?? []).filter((cell) => cell.trial_list?.length);
   if (!have_plots()) {
@@ -37,7 +42,7 @@ function plan_section(report) {
     plan_height(report), () => plan_plot(report, cells[first]));
   const choose = (i) => {
     note.replaceChildren(...nodes_of(plan_words(cells[i])));
-    draw_plot(drawn.querySelector(".plot"), plan_height(report), plan_plot(report, cells[i]));
+    draw_plot(drawn.querySelector("div.plot"), plan_height(report), plan_plot(report, cells[i]));
   };
   if (cells.length > 1) {
     made.append(chooser("Cell shown:", cells.map((cell) => cell.label), first, choose));
@@ -87,8 +92,10 @@ function plan_extent(report) {
 
 function plan_height(report) {
   const { x, y } = plan_extent(report);
-  const width = Math.min(1104, document.getElementById("report").clientWidth || 1104) - 80;
-  return Math.round(Math.max(320, Math.min(860, 110 + width * (y[1] - y[0]) / (x[1] - x[0]))));
+  const width = room_px() - 80;
+  const legend = width < 500 ? 130 : 0;  // an entry a line there
+  const height = 110 + width * (y[1] - y[0]) / (x[1] - x[0]);
+  return Math.round(Math.max(320, Math.min(860, height + legend)));
 }
 
 function plan_plot(report, cell) {

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+import { element, paragraph, section, small, table } from "./elements.js";
+import {
+  DASH, count, counted, fixed, metres, milliseconds, p_value, percent, range_percent,
+  significant,
+} from "./format.js";
+import { is_number } from "./numbers.js";
 
 const PROTOCOLS = {
   near_path: "queries up to 0.1 m off the recorded route, heading within ± 5° of it",
@@ -12,22 +18,22 @@ const METHODS = {
   pgh_baseline: "pairwise geometric histograms, baseline",
 };
 
-const PSI_MEANING = "ψ_c is the factor on the standard deviations of the rig's calibration: 1"
+export const PSI_MEANING = "ψ_c is the factor on the standard deviations of the rig's calibration: 1"
   + " takes the calibration to be as uncertain as its covariance says, 0.1 ten times better,"
   + " 10 ten times worse.";
 
-const cell_key = (cell, key) => (cell.settings || {})[key];
+export const cell_key = (cell, key) => (cell.settings || {})[key];
 
 /** The cell with ψ_c as calibrated, else the first. */
-function headline_cell(study) {
+export function headline_cell(study) {
   const nominal = study.cells.find((cell) => cell_key(cell, "sources.calibration") === 1);
   return nominal || study.cells[0];
 }
 
-const ceiling_of = (study, cell) => cell.world_ceiling ?? study.world_ceiling;
+export const ceiling_of = (study, cell) => cell.world_ceiling ?? study.world_ceiling;
 const protocol_of = (study, cell) => cell.protocol || study.protocol;
 
-function headline(report) {
+export function headline(report) {
   const study = report.study;
   const cell = headline_cell(study);
   const box = element("section", { id: "headline", "aria-labelledby": "headline-heading" },
@@ -79,13 +85,13 @@ function headline_tiles(report, cell) {
   ];
 }
 
-function tile(name, value, rest) {
+export function tile(name, value, rest) {
   if (value === undefined || value === null || value === DASH) return null;
   return element("div", {}, element("dt", {}, name), element("dd", {}, value),
     rest && element("dd", { class: "rest" }, rest));
 }
 
-function cells_section(report) {
+export function cells_section(report) {
   const study = report.study;
   const headline_of_study = headline_cell(study);
   const several = study.cells.length > 1;
@@ -129,7 +135,7 @@ function cell_columns(study) {
   ];
 }
 
-function comparisons_section(study) {
+export function comparisons_section(study) {
   const made = section("comparisons", "Paired comparisons", paragraph(
     "Cells ran on the same queries with the same random numbers, so the sharper question is where"
     + " they disagree: queries that only one of the two answered within 1 m. p is the chance"

@@ -9,8 +9,8 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace localise::internal;
+using namespace vernier::localise;
+using namespace vernier::localise::internal;
 
 namespace {
 

@@ -15,9 +15,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace localise;
-using namespace stereo;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::stereo;
 
 namespace {
 

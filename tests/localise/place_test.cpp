@@ -11,8 +11,8 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace stereo;
+using namespace vernier::localise;
+using namespace vernier::stereo;
 
 namespace {
 

@@ -26,7 +26,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

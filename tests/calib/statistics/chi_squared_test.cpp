@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -37,11 +37,11 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim;
-using namespace sim::internal;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 

@@ -15,9 +15,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 

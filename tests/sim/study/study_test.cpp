@@ -12,9 +12,9 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 
@@ -82,10 +82,14 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
   // half the trials first, then all of them in the same folder
   run(study(60), "resumed", 2);
   int blocks_run = 0;
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }});
+  run_study(s, {.folder = folder_ / "resumed", .threads = 2, .progress = [&](int done, int) {
+                  blocks_run = done;
+                }});
   EXPECT_EQ(blocks_run, 4);  // the first block of each cell was whole already
   EXPECT_EQ(words(study_results(s, folder_ / "resumed")), whole);
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int, int total) { EXPECT_EQ(total, 0); }});
+  run_study(s, {.folder = folder_ / "resumed", .threads = 2, .progress = [&](int, int total) {
+                  EXPECT_EQ(total, 0);
+                }});
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {

@@ -19,10 +19,11 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::sim::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 

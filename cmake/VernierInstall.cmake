@@ -21,7 +21,7 @@ endforeach()
 set(VERNIER_FIND_DEPENDENCIES "find_dependency(Eigen3 3.4)\n")
 foreach(package IN ITEMS "Ceres::|Ceres 2.1" "fmt::|fmt" "TBB::|TBB" "SQLite::|SQLite3"
                          "tomlplusplus::|tomlplusplus" "spdlog::|spdlog" "Highway::|Highway"
-                         "yaml-cpp|yaml-cpp")
+                         "yaml-cpp|yaml-cpp" "JPEG::|JPEG" "PNG::|PNG")
   string(REPLACE "|" ";" package "${package}")
   list(GET package 0 namespace)
   list(GET package 1 arguments)

@@ -34,7 +34,7 @@ packages=(
   g++ cmake ninja-build ccache
   libceres-dev libopencv-dev libopencv-contrib-dev libeigen3-dev libtbb-dev librandom123-dev
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
-  libhwy-dev libyaml-cpp-dev
+  libhwy-dev libyaml-cpp-dev libjpeg-dev libpng-dev
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
 if [[ $scope == test ]]; then packages+=(clang-format git python3 chromium python3-mrcal colmap); fi

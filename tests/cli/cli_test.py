@@ -707,6 +707,15 @@ class ModelCheck(Case):
         rig = json.loads((self.folder / 'rig.json').read_text())
         self.assertTrue(any(w.startswith(words) for w in rig['calibration']['warnings']))
 
+    def test_a_distortion_that_folds_the_image_is_named(self):
+        done = self.works('calibrate', '--left', IMAGES / 'left0[1-5].jpg', '--right',
+                          IMAGES / 'right0[1-5].jpg', '--board', '9x6', '--square-m', '0.025',
+                          '--model', 'opencv5', '--no-model-check', '-o', self.folder / 'rig.json')
+        words = 'the distortion of camera "left" cannot be inverted in 1.'
+        self.assertIn(words, done.stderr)
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertTrue(any(w.startswith(words) for w in rig['calibration']['warnings']))
+
 
 class Check(Case):
     """The shipped rig holds its corners; mrcal may be absent, in whole or in part."""

@@ -75,7 +75,7 @@ class Copies {
     Eigen::Index at = 0;
     for (std::size_t v = 0; v < predicted_.size(); ++v) {
       const BoardView& view = observations_.views[v];
-      RandomStream draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
+      RandomStream draws(of_view(place(trial, 0), view.frame, view.camera));
       for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
         const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
         const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);

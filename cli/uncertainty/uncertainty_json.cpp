@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
@@ -21,7 +22,7 @@ namespace {
 Json distance(double distance_m) { return std::isinf(distance_m) ? Json("inf") : Json(distance_m); }
 
 /// Five significant digits, so that a page stays small.
-double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)); }
+double rounded(double value) { return to_real(fmt::format("{:.5g}", value)).value_or(value); }
 
 template <typename Matrix>
 Json matrix(const Matrix& m) {

@@ -10,6 +10,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
@@ -178,7 +179,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
   return result;
 }
 
-std::array<double, 2> interval_95(const std::vector<double>& sorted) {
+Interval interval_95(const std::vector<double>& sorted) {
   const auto quantile = [&](double p) {
     const double at = p * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(at);

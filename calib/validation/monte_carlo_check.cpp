@@ -15,6 +15,7 @@
 #include "calib/board_state.h"
 #include "calib/calibration/outliers.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/solver/reprojection_problem.h"
@@ -98,7 +99,7 @@ class Copies {
 
 /// Quantiles, each with probability 0.5 % beyond, of the extreme eigenvalues of W / n with W a
 /// Wishart matrix of n degrees of freedom, by Bartlett's decomposition.
-std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
+Interval wishart_band(int q, int n, std::uint64_t seed) {
   std::vector<double> least(wishart_draws), largest(wishart_draws);
   for (int k = 0; k < wishart_draws; ++k) {
     RandomStream draws({.seed = seed,
@@ -119,7 +120,7 @@ std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
   return {least[tail], *(largest.end() - 1 - tail)};
 }
 
-std::array<double, 2> mean_interval(double q, double n, double probability) {
+Interval mean_interval(double q, double n, double probability) {
   const double tail = 0.5 * (1 - probability);
   return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
 }
@@ -167,8 +168,8 @@ void judge(const Eigen::MatrixXd& errors,
 bool MonteCarloCheck::enough_trials_solved() const { return 100 * failed <= trials + failed; }
 
 bool MonteCarloCheck::scatter_matches_covariance() const {
-  return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
-         eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
+  return nees_mean >= nees_interval_99.low && nees_mean <= nees_interval_99.high &&
+         eigenvalues[0] >= eigenvalue_band_99.low && eigenvalues[1] <= eigenvalue_band_99.high &&
          ks_p > min_p && ks_p_components > min_p;
 }
 

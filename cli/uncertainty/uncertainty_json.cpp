@@ -114,13 +114,13 @@ Json projection_json(const ProjectionReport& report, GridDetail detail) {
 }
 
 Json sampled_json(const SampledPoint& sampled) {
-  return {
-      {"sd_m", deviations(sampled.covariance)},
-      {"covariance_m2", matrix(sampled.covariance)},
-      {"mean_shift_m", vector(sampled.mean_shift_m)},
-      {"depth_interval_95_m",
-       {json_number(sampled.depth_interval_95_m[0]), json_number(sampled.depth_interval_95_m[1])}},
-      {"non_physical_share", sampled.non_physical_share}};
+  return {{"sd_m", deviations(sampled.covariance)},
+          {"covariance_m2", matrix(sampled.covariance)},
+          {"mean_shift_m", vector(sampled.mean_shift_m)},
+          {"depth_interval_95_m",
+           {json_number(sampled.depth_interval_95_m.low),
+            json_number(sampled.depth_interval_95_m.high)}},
+          {"non_physical_share", sampled.non_physical_share}};
 }
 
 Json triangulation_json(const TriangulationReport& report) {
@@ -177,7 +177,7 @@ Json depth_json(const DepthReport& report) {
         {{"range_m", u.range_m},
          {"sd_linear_m", json_number(u.sigma_linear_m)},
          {"sd_sampled_m", json_number(u.sigma_sampled_m)},
-         {"interval_95_m", {json_number(u.interval_95_m[0]), json_number(u.interval_95_m[1])}},
+         {"interval_95_m", {json_number(u.interval_95_m.low), json_number(u.interval_95_m.high)}},
          {"non_physical_share", u.non_physical_share}});
   }
   return json;

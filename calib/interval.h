@@ -6,8 +6,11 @@
 
 namespace vernier {
 
+/// From low to high; of a proportion that nothing is known of, [0, 1].
 struct Interval {
   double low = 0, high = 1;
+
+  bool operator==(const Interval&) const = default;
 };
 
 /// Wilson's score interval for a proportion (Wilson 1927); `confidence` in (0, 1). trials = 0 gives

@@ -17,6 +17,7 @@
 #include "calib/board_state.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -182,15 +183,23 @@ RobustFit separated(const BoardObservations& observations,
   return fit;
 }
 
+void check_camera(const Rig& rig, int camera, int frame) {
+  if (camera >= 0 && camera < static_cast<int>(rig.cameras.size())) return;
+  throw Error(
+      fmt::format("frame {}", frame),
+      fmt::format("the rig has {} cameras, so none of number {}", rig.cameras.size(), camera),
+      "give the corners of this rig");
+}
+
 }  // namespace
 
 CornerResiduals corner_residuals(const BoardObservations& observations, const BoardState& state) {
   const auto target_m = warped_target(observations.target_m, state.warp_m);
   CornerResiduals residuals;
-  std::size_t f = 0;
   ViewLinearisation J;
   for (const BoardView& view : observations.views) {
-    while (state.frames[f] != view.frame) ++f;
+    const std::size_t f = frame_index(state.frames, view.frame);
+    check_camera(state.rig, view.camera, view.frame);
     linearise_view(state.rig.cameras[view.camera], state.rig.T_camera_first[view.camera],
                    state.T_first_board[f], target_m, view, Linearise::residual_only, J);
     std::vector<Eigen::Vector2d>& own = residuals.emplace_back();
@@ -255,6 +264,12 @@ void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
                       std::vector<CornerOutlier>& outliers) {
   const auto warped_m = warped_target(target_m, state.warp_m);
   for (CornerOutlier& outlier : outliers) {
+    check_camera(state.rig, outlier.camera, outlier.frame);
+    if (outlier.id < 0 || outlier.id >= static_cast<int>(target_m.size())) {
+      throw Error(fmt::format("frame {}, camera {}", outlier.frame, outlier.camera),
+                  fmt::format("the target has no corner {}", outlier.id),
+                  "give the outliers of this calibration");
+    }
     const auto frame = std::lower_bound(state.frames.begin(), state.frames.end(), outlier.frame);
     if (frame == state.frames.end() || *frame != outlier.frame) {
       outlier.residual_px = std::numeric_limits<double>::quiet_NaN();

@@ -10,6 +10,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/pose.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
@@ -179,7 +180,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
   return result;
 }
 
-std::array<double, 2> interval_95(const std::vector<double>& sorted) {
+Interval interval_95(const std::vector<double>& sorted) {
   return {quantile(sorted, 0.025, QuantileKind::linear),
           quantile(sorted, 0.975, QuantileKind::linear)};
 }

@@ -15,6 +15,7 @@
 #include "calib/board_state.h"
 #include "calib/calibration/outliers.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/solver/reprojection_problem.h"
@@ -76,7 +77,7 @@ class Copies {
     Eigen::Index at = 0;
     for (std::size_t v = 0; v < predicted_.size(); ++v) {
       const BoardView& view = observations_.views[v];
-      RandomStream draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
+      RandomStream draws(of_view(place(trial, 0), view.frame, view.camera));
       for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
         const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
         const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);
@@ -99,7 +100,7 @@ class Copies {
 
 /// Quantiles, each with probability 0.5 % beyond, of the extreme eigenvalues of W / n with W a
 /// Wishart matrix of n degrees of freedom, by Bartlett's decomposition.
-std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
+Interval wishart_band(int q, int n, std::uint64_t seed) {
   std::vector<double> least(wishart_draws), largest(wishart_draws);
   for (int k = 0; k < wishart_draws; ++k) {
     RandomStream draws({.seed = seed,
@@ -118,7 +119,7 @@ std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
           quantile(std::move(largest), 0.995, QuantileKind::lower)};
 }
 
-std::array<double, 2> mean_interval(double q, double n, double probability) {
+Interval mean_interval(double q, double n, double probability) {
   const double tail = 0.5 * (1 - probability);
   return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
 }
@@ -166,8 +167,8 @@ void judge(const Eigen::MatrixXd& errors,
 bool MonteCarloCheck::enough_trials_solved() const { return 100 * failed <= trials + failed; }
 
 bool MonteCarloCheck::scatter_matches_covariance() const {
-  return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
-         eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
+  return nees_mean >= nees_interval_99.low && nees_mean <= nees_interval_99.high &&
+         eigenvalues[0] >= eigenvalue_band_99.low && eigenvalues[1] <= eigenvalue_band_99.high &&
          ks_p > min_p && ks_p_components > min_p;
 }
 

@@ -19,6 +19,7 @@
 #include <set>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/statistics/quantile.h"
@@ -218,8 +219,10 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     CellResult result;
     result.cell = cell;
     const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
-    result.ceiling = ceiling == ceilings.end() ? std::numeric_limits<double>::quiet_NaN()
-                                               : std::strtod(ceiling->second.c_str(), nullptr);
+    result.ceiling = std::numeric_limits<double>::quiet_NaN();
+    if (ceiling != ceilings.end()) {
+      result.ceiling = vernier::internal::to_real(ceiling->second).value_or(result.ceiling);
+    }
     results.cells.push_back(std::move(result));
   }
   for (const Job& job : all_jobs(study)) {

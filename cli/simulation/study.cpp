@@ -86,6 +86,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Ses
     bool same = study.world_fingerprint == first.world_fingerprint &&
                 study.rig_fingerprint == first.rig_fingerprint &&
                 study.file.trials == first.file.trials &&
+                study.file.trials_per_block == first.file.trials_per_block &&
                 study.file.cells.size() == first.file.cells.size();
     for (std::size_t i = 0; same && i < study.file.cells.size(); ++i) {
       same = study.file.cells[i].settings == first.file.cells[i].settings;

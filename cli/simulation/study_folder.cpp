@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -94,11 +95,15 @@ Json cell_json(const CellResult& cell) {
   Json settings;
   for (const auto& [key, value] : cell.cell.settings) settings[key] = value_json(value);
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
+  const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
+  const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
           {"trials", s.trials},
           {"success", s.success},
-          {"success_interval_95", pair(s.success_interval_95)},
+          {"maps", s.maps},
+          {"success_interval_95", clustered},
+          {"success_interval_95_missing", missing},
           {"success_interval_binomial_95", pair(s.success_interval_binomial_95)},
           {"coverage", s.coverage},
           {"success_when_answered", s.success_when_answered},
@@ -125,19 +130,30 @@ Json study_json(const Study& study, const StudyResults& results) {
   return json;
 }
 
+namespace {
+
+std::string interval_text(const CellSummary& summary) {
+  if (!summary.success_interval_95) return "none";
+  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * summary.success_interval_95->low,
+                     100 * summary.success_interval_95->high);
+}
+
+}  // namespace
+
 std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept = !study.file.sweep_keys.empty();
   std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
                                  swept ? "cell" : "", "trials", "success", "95 % interval",
                                  "covered", "ceiling", "median m", "cpu ms", "p95 ms");
+  std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
+    if (!s.success_interval_95) missing.insert(s.why_no_interval);
     text += fmt::format(
-        "{:<24} {:>6} {:>6.2f} % [{:>5.2f}, {:>6.2f}] {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} "
-        "{:>9.1f}\n",
+        "{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} {:>9.1f}\n",
         swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        100 * s.success, 100 * s.success_interval_95.low, 100 * s.success_interval_95.high,
-        100 * s.coverage, 100 * cell.ceiling, s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
+        100 * s.success, interval_text(s), 100 * s.coverage, 100 * cell.ceiling, s.median_error_m,
+        s.cpu_ms_mean, s.cpu_ms_p95);
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
@@ -145,6 +161,7 @@ std::string study_table(const Study& study, const StudyResults& results) {
   text +=
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
+  for (const std::string& why : missing) text += fmt::format("no interval: it {}\n", why);
   if (results.blocks_done < results.blocks_total) {
     text += fmt::format("{} of {} blocks are there: run the study again to finish it\n",
                         results.blocks_done, results.blocks_total);

@@ -27,6 +27,7 @@
 #include "sim/study/ceiling.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
+#include "sim/study/success_interval.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -38,12 +39,19 @@ namespace {
 /// Changes when the meaning of stored results does.
 constexpr int results_version = 1;
 
-/// All that a cell's results depend on, as text: the key under which they are stored.
+/// Size of a block that is no part of a cell's key: all stores had it before sizes differed.
+constexpr int usual_block = 50;
+
+/// All that a cell's results depend on, as text: the key under which they are stored. Blocks of
+/// another size record their maps for other trials, and so are kept under another key.
 std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
                              {"rig", study.rig_fingerprint}};
   for (const auto& [name, value] : cell.settings) key[name] = value;
+  if (study.file.trials_per_block != usual_block) {
+    key["study.trials_per_block"] = study.file.trials_per_block;
+  }
   return key.dump();
 }
 
@@ -72,9 +80,9 @@ std::vector<Job> all_jobs(const Study& study) {
   std::vector<Job> jobs;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = cell_key(study, cell);
-    for (int first = 0, block = 0; first < study.file.trials; first += trials_per_block, ++block) {
-      jobs.push_back(
-          {&cell, key, block, first, std::min(trials_per_block, study.file.trials - first)});
+    const int size = study.file.trials_per_block;
+    for (int first = 0, block = 0; first < study.file.trials; first += size, ++block) {
+      jobs.push_back({&cell, key, block, first, std::min(size, study.file.trials - first)});
     }
   }
   return jobs;
@@ -209,6 +217,7 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
   for (const StudyCell& cell : study.file.cells) {
     CellResult result;
     result.cell = cell;
+    result.trials_per_block = study.file.trials_per_block;
     const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
     result.ceiling = ceiling == ceilings.end() ? std::numeric_limits<double>::quiet_NaN()
                                                : std::strtod(ceiling->second.c_str(), nullptr);
@@ -237,6 +246,7 @@ CellSummary summarise(const CellResult& cell) {
   constexpr double degree = 0.017453292519943295;
   CellSummary s;
   s.trials = static_cast<int>(cell.trials.size());
+  s.maps = static_cast<int>(cell.maps.size());
   int successes = 0, answered = 0, node = 0, close = 0, closer = 0;
   std::vector<double> errors, headings, cpu;
   double wall = 0;
@@ -256,8 +266,10 @@ CellSummary summarise(const CellResult& cell) {
   const double n = std::max(1, s.trials);
   s.success = successes / n;
   s.success_interval_binomial_95 = wilson_interval(successes, s.trials);
-  const double effective = s.trials / design_effect(cell.maps);
-  s.success_interval_95 = wilson_interval(s.success * effective, effective);
+  s.success_interval_95 = clustered_interval_95(cell.maps);
+  if (!s.success_interval_95) {
+    s.why_no_interval = fmt::format("needs {} maps, has {}", fewest_maps, s.maps);
+  }
   s.coverage = answered / n;
   s.success_when_answered = answered > 0 ? static_cast<double>(successes) / answered : 0;
   s.node_success = node / n;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,6 @@ struct StudyRun {
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
 };
 
-/// Trials of a block: they share one recorded map.
-inline constexpr int trials_per_block = 50;
-
 /// Runs what is missing of this shard. Blocks run in parallel, each on one thread, so results do
 /// not depend on the number of threads; a killed run goes on where it was.
 void run_study(const Study& study, const StudyRun& run);
@@ -47,6 +45,7 @@ struct CellResult {
   StudyCell cell;
   std::vector<TrialResult> trials;  ///< ascending
   std::vector<ClusterCount> maps;   ///< by block
+  int trials_per_block = 50;        ///< trial t is of block t / trials_per_block
   double ceiling = 1;               ///< the world's, for this cell's protocol and mount
 };
 
@@ -62,10 +61,12 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
 /// Figures of a cell.
 struct CellSummary {
   int trials = 0;
+  int maps = 0;  ///< recorded for them
   double success = 0;
-  Interval success_interval_95;           ///< Wilson with the effective number: clusters by map
-  Interval success_interval_binomial_95;  ///< Wilson as if trials were independent
-  double coverage = 0;                    ///< share answered
+  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
+  std::string why_no_interval;                  ///< "needs 6 maps, has 1"; empty where there is one
+  Interval success_interval_binomial_95;        ///< Wilson as if trials were independent
+  double coverage = 0;                          ///< share answered
   double success_when_answered = 0;
   double node_success = 0;               ///< of the map's node instead of the refined pose
   double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°

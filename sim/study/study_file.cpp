@@ -19,6 +19,7 @@
 #include "sim/experiment.h"
 #include "sim/query_protocol.h"
 #include "sim/sources.h"
+#include "sim/study/success_interval.h"
 
 namespace vernier::sim::internal {
 
@@ -105,6 +106,7 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
       fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "give 1 to 10000000");
     }
   }
+  study.trials_per_block = block_size(study.trials);
 }
 
 void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
@@ -337,6 +339,8 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
 }
 
 }  // namespace
+
+int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
 
 StudyFile parse_study(const std::string& text,
                       const std::string& place,

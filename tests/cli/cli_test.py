@@ -1007,6 +1007,21 @@ class Study(Case):
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
 
+    def test_an_interval_needs_six_maps(self):
+        file = self.study(5)
+        done = self.works('study', file, '-o', self.folder / 'few', '--json', '-q')
+        for cell in json.loads(done.stdout)['cells']:
+            self.assertIsNone(cell['success_interval_95'])
+            self.assertEqual(cell['success_interval_95_missing'], 'needs 6 maps, has 5')
+            self.assertEqual(cell['maps'], 5)
+        table = self.works('study', 'status', self.folder / 'few').stdout
+        self.assertIn('no interval: it needs 6 maps, has 5', table)
+        done = self.works('study', self.study(20), '-o', self.folder / 'more', '--json', '-q')
+        for cell in json.loads(done.stdout)['cells']:
+            self.assertEqual(cell['maps'], 7)
+            self.assertLess(cell['success_interval_95'][0], cell['success'])
+            self.assertIsNone(cell['success_interval_95_missing'])
+
     def test_a_merge_with_a_missing_shard_is_doubtful(self):
         self.works('study', self.study(), '-o', self.folder / 'part0', '--shard', '0/2', '-q')
         done = vernier('study', 'merge', self.folder / 'part0', '-o', self.folder / 'merged')
@@ -1024,7 +1039,7 @@ class Study(Case):
         running.wait()
         running.stderr.close()
         resumed = self.works('study', file, '-o', self.folder / 'killed', '--json')
-        self.assertRegex(resumed.stderr, r'0 of [1-7],')  # at least one block was kept
+        self.assertRegex(resumed.stderr, r': 0 of ([1-9]|1[0-3]),')  # of 14; one or more were kept
         whole = self.works('study', file, '-o', self.folder / 'whole', '--json')
         self.assertEqual(self.untimed(resumed.stdout), self.untimed(whole.stdout))
 

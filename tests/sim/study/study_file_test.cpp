@@ -41,6 +41,17 @@ TEST(StudyFile, DefaultsAreTheMemos) {
   EXPECT_EQ(e.method, "pgh");
 }
 
+TEST(StudyFile, FewTrialsStillRecordSixMaps) {
+  EXPECT_EQ(parse_study("[study]\ntrials = 20\n", "s.toml").trials_per_block, 3);
+  EXPECT_EQ(parse_study("[study]\n", "s.toml").trials_per_block, 50);
+  for (int trials = 6; trials < 1000; ++trials) {
+    const int size = block_size(trials);
+    EXPECT_GE((trials + size - 1) / size, 6) << trials;
+    EXPECT_EQ(size == 50, trials >= 300) << trials;
+  }
+  EXPECT_EQ(block_size(1), 1);
+}
+
 TEST(StudyFile, SweepsFormAGridTheFirstKeySlowest) {
   const StudyFile study = parse_study(
       "[study]\ntrials = 10\n[sweep]\n\"sources.edge_loss\" = [0, 0.2]\n"

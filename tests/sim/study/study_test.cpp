@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdint>
+
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/study_file.h"
@@ -72,7 +74,8 @@ TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
-  const Study s = study(120);
+  Study s = study(120), half = study(60);
+  s.file.trials_per_block = half.file.trials_per_block = 50;
   const std::string whole = words(run(s, "whole", 2));
   run(s, "sharded", 1, {0, 3});
   run(s, "sharded", 1, {2, 3});
@@ -80,7 +83,7 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
   EXPECT_EQ(words(run(s, "sharded", 1, {1, 3})), whole);
 
   // half the trials first, then all of them in the same folder
-  run(study(60), "resumed", 2);
+  run(half, "resumed", 2);
   int blocks_run = 0;
   run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }});
   EXPECT_EQ(blocks_run, 4);  // the first block of each cell was whole already
@@ -100,10 +103,47 @@ TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
   const double middle = summarise(results.cells[1]).median_error_m;
   EXPECT_LT(small.median_error_m, middle);  // psi_c 0.1, 1, 10
   EXPECT_LT(middle, large.median_error_m);
-  EXPECT_GE(small.success_interval_95.high, small.success);
-  EXPECT_LE(small.success_interval_95.low, small.success_interval_binomial_95.low + 1e-12);
+  ASSERT_TRUE(small.success_interval_95);
+  EXPECT_GE(small.success_interval_95->high, small.success);
+  EXPECT_LE(small.success_interval_95->low, small.success_interval_binomial_95.low + 1e-12);
   EXPECT_EQ(small.trials, 100);
   EXPECT_GT(small.cpu_ms_mean, 0);
+}
+
+// A block of another size records its map for other trials, so that its results are others too.
+TEST_F(StudyRuns, BlocksOfAnotherSizeAreNotTakenOver) {
+  Study pairs = study(12, "[10]"), whole = study(12, "[10]");
+  EXPECT_EQ(pairs.file.trials_per_block, 2);
+  whole.file.trials_per_block = 12;
+  const std::string alone = words(run(whole, "alone", 2));
+  const StudyResults in_pairs = run(pairs, "shared", 2);
+  EXPECT_EQ(in_pairs.blocks_done, 6);
+  EXPECT_EQ(study_results(whole, folder_ / "shared").blocks_done, 0);
+  EXPECT_EQ(words(run(whole, "shared", 2)), alone);
+  EXPECT_EQ(words(study_results(pairs, folder_ / "shared")), words(in_pairs));
+  EXPECT_NE(words(in_pairs), alone);
+}
+
+CellResult one_cell(int maps, int trials_per_map) {
+  CellResult cell;
+  cell.trials_per_block = trials_per_map;
+  for (int i = 0; i < maps * trials_per_map; ++i) {
+    TrialResult trial;
+    trial.trial = static_cast<std::uint32_t>(i);
+    trial.status = LocalisationStatus::answered;
+    cell.trials.push_back(trial);
+  }
+  cell.maps.assign(maps, {trials_per_map, trials_per_map});
+  return cell;
+}
+
+TEST(Summary, SaysWhyThereIsNoInterval) {
+  const CellSummary one = summarise(one_cell(1, 50)), six = summarise(one_cell(6, 3));
+  EXPECT_FALSE(one.success_interval_95);
+  EXPECT_EQ(one.why_no_interval, "needs 6 maps, has 1");
+  EXPECT_TRUE(six.success_interval_95);
+  EXPECT_EQ(six.why_no_interval, "");
+  EXPECT_EQ(six.maps, 6);
 }
 
 TEST(McNemar, IsTheExactBinomialTail) {

@@ -121,12 +121,31 @@ Json cell_json(const CellResult& cell) {
           {"world_ceiling", json_number(cell.ceiling)}};
 }
 
+Json comparisons_json(const StudyResults& results) {
+  Json comparisons = Json::array();
+  for (const auto& [a, b] : comparable_pairs(results.cells)) {
+    const PairedComparison c = compare(results.cells[a], results.cells[b]);
+    comparisons.push_back({{"a", short_label(results.cells[a].cell)},
+                           {"b", short_label(results.cells[b].cell)},
+                           {"both", c.both},
+                           {"only_a", c.only_a},
+                           {"only_b", c.only_b},
+                           {"neither", c.neither},
+                           {"maps", c.maps},
+                           {"test", "paired t over maps"},
+                           {"p_value", json_number(c.p_value)},
+                           {"mcnemar_p", json_number(c.mcnemar_p)}});
+  }
+  return comparisons;
+}
+
 Json study_json(const Study& study, const StudyResults& results) {
   Json json{{"trials", study.file.trials},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
             {"cells", Json::array()}};
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
+  json["comparisons"] = comparisons_json(results);
   return json;
 }
 

@@ -16,11 +16,13 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "calib/error.h"
 #include "calib/interval.h"
+#include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
@@ -139,6 +141,23 @@ double median(std::vector<double> values, double quantile = 0.5) {
   const auto low = static_cast<std::size_t>(at);
   const std::size_t high = std::min(low + 1, values.size() - 1);
   return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+std::map<std::uint32_t, const TrialResult*> by_number(const CellResult& cell) {
+  std::map<std::uint32_t, const TrialResult*> trials;
+  for (const TrialResult& trial : cell.trials) trials[trial.trial] = &trial;
+  return trials;
+}
+
+/// McNemar's exact p-value: the smaller count under Binomial(both counts, 1/2), both tails.
+double exact_mcnemar(int only_a, int only_b) {
+  const int discordant = only_a + only_b, fewer = std::min(only_a, only_b);
+  double log_term = -discordant * std::log(2.0), tail = 0;
+  for (int k = 0; k <= fewer; ++k) {
+    tail += std::exp(log_term);
+    log_term += std::log(static_cast<double>(discordant - k)) - std::log(k + 1.0);
+  }
+  return discordant > 0 ? std::min(1.0, 2 * tail) : 1;
 }
 
 }  // namespace
@@ -284,25 +303,59 @@ CellSummary summarise(const CellResult& cell) {
   return s;
 }
 
-PairedComparison compare(const CellResult& a, const CellResult& b) {
-  std::map<std::uint32_t, bool> success_of_a;
-  for (const TrialResult& trial : a.trials) success_of_a[trial.trial] = trial.success();
-  PairedComparison c;
+bool share_queries(const CellResult& a, const CellResult& b) {
+  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
+  bool shared = false;
   for (const TrialResult& trial : b.trials) {
-    const auto found = success_of_a.find(trial.trial);
-    if (found == success_of_a.end()) continue;
-    const bool in_a = found->second, in_b = trial.success();
+    const auto found = trials_of_a.find(trial.trial);
+    if (found == trials_of_a.end()) continue;
+    const Pose2D &p = found->second->truth, &q = trial.truth;
+    if (p.x_m != q.x_m || p.y_m != q.y_m || p.heading_rad != q.heading_rad) return false;
+    shared = true;
+  }
+  return shared;
+}
+
+PairedComparison compare(const CellResult& a, const CellResult& b) {
+  if (!share_queries(a, b)) {
+    throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",
+                "the cells have no queries in common, or asked in different places",
+                "compare cells of one protocol and seed");
+  }
+  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
+  PairedComparison c;
+  std::map<std::uint32_t, MapDifference> by_map;
+  for (const TrialResult& trial : b.trials) {
+    const auto found = trials_of_a.find(trial.trial);
+    if (found == trials_of_a.end()) continue;
+    const bool in_a = found->second->success(), in_b = trial.success();
     (in_a ? (in_b ? c.both : c.only_a) : (in_b ? c.only_b : c.neither))++;
+    MapDifference& map = by_map[trial.trial / static_cast<std::uint32_t>(a.trials_per_block)];
+    map.difference += in_a - in_b;
+    map.discordant += in_a != in_b;
+    ++map.trials;
   }
-  // Exact: the smaller count under Binomial(discordant, 1/2), both tails.
-  const int discordant = c.only_a + c.only_b, fewer = std::min(c.only_a, c.only_b);
-  double log_term = -discordant * std::log(2.0), tail = 0;
-  for (int k = 0; k <= fewer; ++k) {
-    tail += std::exp(log_term);
-    log_term += std::log(static_cast<double>(discordant - k)) - std::log(k + 1.0);
+  std::vector<MapDifference> maps;
+  for (const auto& [block, map] : by_map) maps.push_back(map);
+  c.maps = static_cast<int>(maps.size());
+  if (const std::optional<double> p = paired_p_value(maps)) {
+    c.p_value = *p;
+    c.mcnemar_p = exact_mcnemar(c.only_a, c.only_b);
   }
-  c.mcnemar_p = discordant > 0 ? std::min(1.0, 2 * tail) : 1;
   return c;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
+    const std::vector<CellResult>& cells) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t b = 1; b < cells.size(); ++b) {
+    for (std::size_t a = b; a-- > 0;) {
+      if (!share_queries(cells[a], cells[b])) continue;
+      pairs.emplace_back(a, b);
+      break;
+    }
+  }
+  return pairs;
 }
 
 }  // namespace vernier::sim::internal

@@ -1001,6 +1001,12 @@ class Study(Case):
                     'cpu_ms_p95', 'wall_ms_mean', 'protocol', 'world_ceiling'):
             self.assertIn(key, cell)
         self.assertEqual(cell['settings']['sources.calibration'], 10)
+        comparison, = json.loads(one.stdout)['comparisons']
+        self.assertEqual(comparison['test'], 'paired t over maps')
+        self.assertEqual(comparison['maps'], 6)
+        self.assertTrue(0 <= comparison['p_value'] <= 1)
+        self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
+        self.assertEqual(sum(comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')), 60)
         for i in range(2):
             self.works('study', file, '-o', self.folder / f'part{i}', '--shard', f'{i}/2', '-q')
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
@@ -1014,6 +1020,9 @@ class Study(Case):
             self.assertIsNone(cell['success_interval_95'])
             self.assertEqual(cell['success_interval_95_missing'], 'needs 6 maps, has 5')
             self.assertEqual(cell['maps'], 5)
+        comparison, = json.loads(done.stdout)['comparisons']
+        self.assertIsNone(comparison['p_value'])
+        self.assertIsNone(comparison['mcnemar_p'])
         table = self.works('study', 'status', self.folder / 'few').stdout
         self.assertIn('no interval: it needs 6 maps, has 5', table)
         done = self.works('study', self.study(20), '-o', self.folder / 'more', '--json', '-q')

@@ -5,8 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
+#include "calib/error.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/study_file.h"
@@ -146,8 +151,47 @@ TEST(Summary, SaysWhyThereIsNoInterval) {
   EXPECT_EQ(six.maps, 6);
 }
 
+// The seed and the protocol decide where queries stand; a sweep over psi_c does not.
+TEST_F(StudyRuns, CellsWithOtherQueriesAreNotCompared) {
+  Study s = study(6, "[0.1, 10]");
+  s.file = parse_study(
+      "[study]\ntrials = 6\n[map]\nspacing_m = 4\n[sweep]\n"
+      "\"sources.calibration\" = [0.1, 10]\n\"study.protocol\" = [\"near_path\", \"path\"]\n",
+      "s.toml");
+  const StudyResults results = run(s, "protocols", 2);
+  ASSERT_EQ(results.cells.size(), 4u);
+  EXPECT_FALSE(share_queries(results.cells[0], results.cells[1]));
+  EXPECT_TRUE(share_queries(results.cells[0], results.cells[2]));
+  EXPECT_THROW(compare(results.cells[0], results.cells[1]), Error);
+  const std::vector<std::pair<std::size_t, std::size_t>> expected{{0, 2}, {1, 3}};
+  EXPECT_EQ(comparable_pairs(results.cells), expected);
+
+  s.file = parse_study(
+      "[study]\ntrials = 2\n[map]\nspacing_m = 4\n[sweep]\n\"study.seed\" = [1, 2]\n", "s.toml");
+  EXPECT_TRUE(comparable_pairs(run(s, "seeds", 2).cells).empty());
+}
+
+TEST(Comparison, CountsMapsAndNotTrials) {
+  // all of four maps in favour of a, all of two in favour of b: 80 trials against 40
+  CellResult a = one_cell(6, 20), b = one_cell(6, 20);
+  for (std::size_t i = 0; i < 120; ++i) {
+    (i < 80 ? b : a).trials[i].status = LocalisationStatus::no_match;
+  }
+  const PairedComparison c = compare(a, b);
+  EXPECT_EQ(c.only_a, 80);
+  EXPECT_EQ(c.maps, 6);
+  EXPECT_LT(c.mcnemar_p, 1e-3);
+  EXPECT_GT(c.p_value, 0.3);
+  // the same trials on fewer maps have no p-value
+  a.trials_per_block = b.trials_per_block = 40;
+  EXPECT_TRUE(std::isnan(compare(a, b).p_value));
+  EXPECT_TRUE(std::isnan(compare(a, b).mcnemar_p));
+  EXPECT_EQ(compare(a, b).only_a, 80);
+}
+
 TEST(McNemar, IsTheExactBinomialTail) {
   CellResult a, b;
+  a.trials_per_block = b.trials_per_block = 1;
   for (std::uint32_t i = 0; i < 10; ++i) {
     TrialResult good, bad;
     good.trial = bad.trial = i;

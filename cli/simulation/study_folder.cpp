@@ -12,6 +12,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
@@ -49,6 +50,11 @@ Json value_json(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   return end != text.c_str() && *end == '\0' ? Json(value) : Json(text);
+}
+
+/// The kind of covariance that psi_c scales, or null where the rig has none.
+Json covariance_json(const Study& study) {
+  return study.rig.covariance ? Json(name(study.rig.covariance->kind)) : Json();
 }
 
 }  // namespace
@@ -141,6 +147,7 @@ Json comparisons_json(const StudyResults& results) {
 
 Json study_json(const Study& study, const StudyResults& results) {
   Json json{{"trials", study.file.trials},
+            {"rig", {{"file", study.file.rig}, {"covariance_kind", covariance_json(study)}}},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
             {"cells", Json::array()}};
@@ -177,6 +184,11 @@ std::string study_table(const Study& study, const StudyResults& results) {
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
+  const std::string covariance =
+      study.rig.covariance ? fmt::format("its covariance, which drives psi_c, is of kind {}",
+                                         name(study.rig.covariance->kind))
+                           : "without a covariance";
+  text += fmt::format("rig {}: {}\n", study.file.rig, covariance);
   text +=
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);

@@ -1013,6 +1013,20 @@ class Study(Case):
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
 
+    def test_a_study_names_the_covariance_that_drives_psi_c(self):
+        for rig, kind in (('nominal', 'mvb'), ('renamed.json', 'jackknife')):
+            if rig != 'nominal':
+                data = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+                data['covariance']['kind'] = kind
+                (self.folder / rig).write_text(json.dumps(data))
+            file = self.folder / 'kind.toml'
+            file.write_text(f'[study]\ntrials = 1\n[map]\nspacing_m = 4\n[rig]\nfile = "{rig}"\n')
+            out = self.folder / f'of_{kind}'
+            said = json.loads(self.works('study', file, '-o', out, '--json', '-q').stdout)
+            self.assertEqual(said['rig'], {'file': rig, 'covariance_kind': kind})
+            table = self.works('study', 'status', out).stdout
+            self.assertIn(f'rig {rig}: its covariance, which drives psi_c, is of kind {kind}', table)
+
     def test_an_interval_needs_six_maps(self):
         file = self.study(5)
         done = self.works('study', file, '-o', self.folder / 'few', '--json', '-q')

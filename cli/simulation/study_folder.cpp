@@ -45,8 +45,9 @@ Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Sessi
   return study;
 }
 
-/// A number as a number, a word as a word.
+/// A number as a number, true and false as they are, a word as a word.
 Json value_json(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   return end != text.c_str() && *end == '\0' ? Json(value) : Json(text);

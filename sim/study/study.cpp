@@ -50,7 +50,15 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
                              {"rig", study.rig_fingerprint}};
-  for (const auto& [name, value] : cell.settings) key[name] = value;
+  for (const auto& [name, value] : cell.settings) {
+    if (name != "localiser.knows_endpoint_sigma") key[name] = value;
+  }
+  // Before there was a choice the estimator was told this; results that it still holds for are
+  // kept.
+  const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
+  if (const double told = told_endpoint_sigma_px(cell.experiment); told != once_told) {
+    key["localiser.told_endpoint_sigma_px"] = told;
+  }
   if (study.file.trials_per_block != usual_block) {
     key["study.trials_per_block"] = study.file.trials_per_block;
   }

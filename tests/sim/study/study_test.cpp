@@ -129,6 +129,23 @@ TEST_F(StudyRuns, BlocksOfAnotherSizeAreNotTakenOver) {
   EXPECT_NE(words(in_pairs), alone);
 }
 
+TEST_F(StudyRuns, ASweptEndpointErrorIsToldOnlyWhereAskedFor) {
+  const auto lines = [&](const std::string& sources, const std::string& knows) {
+    Study s = study(6);
+    s.file = parse_study("[study]\ntrials = 6\n[map]\nspacing_m = 4\n[sources]\n" + sources +
+                             "[localiser]\nknows_endpoint_sigma = " + knows + "\n",
+                         "s.toml");
+    const StudyResults results = run(s, (sources.empty() ? "default_" : "swept_") + knows, 2);
+    int sum = 0;
+    for (const TrialResult& trial : results.cells[0].trials) sum += trial.lines;
+    return std::pair(sum, words(results));
+  };
+  EXPECT_EQ(lines("", "false").second, lines("", "true").second);
+  // told 2 px, the estimator finds depths worse than 0.45 m and leaves more lines out
+  EXPECT_GT(lines("endpoint_sigma_px = 2\n", "false").first,
+            lines("endpoint_sigma_px = 2\n", "true").first);
+}
+
 CellResult one_cell(int maps, int trials_per_map) {
   CellResult cell;
   cell.trials_per_block = trials_per_map;

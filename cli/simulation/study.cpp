@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "calib/error.h"
@@ -68,8 +69,16 @@ void run(const StudyArguments& options, Session& session) {
   const Study study = load_study(file, session);
   keep_inputs(file, job.folder);
   {
-    Progress progress(session, "study: blocks");
-    job.progress = [&](int done, int total) { progress.update(done, total); };
+    std::optional<Progress> ceilings, blocks;
+    job.ceiling_progress = [&](int done, int total) {
+      if (!ceilings) ceilings.emplace(session, "study: queries of the world ceiling");
+      ceilings->update(done, total);
+    };
+    job.progress = [&](int done, int total) {
+      ceilings.reset();
+      if (!blocks) blocks.emplace(session, "study: blocks");
+      blocks->update(done, total);
+    };
     run_study(study, job);
   }
   print(study, job.folder, session);

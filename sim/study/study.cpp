@@ -3,8 +3,9 @@
 #include "sim/study/study.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -17,7 +18,6 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "calib/error.h"
@@ -119,22 +119,67 @@ std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
   return missing;
 }
 
-/// The world's ceiling on the first queries of a cell.
+/// Calls work(0) … work(count - 1) on the threads of an arena.
+template <class Work>
+void in_parallel(tbb::task_arena& arena, int count, Work work) {
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          for (int i = range.begin(); i < range.end(); ++i) work(i);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+/// The world's ceiling on the first queries of a cell; calls `one_done` after each of them. The
+/// sum is in the order of the queries, whichever was done first.
 double compute_ceiling(const Study& study,
                        const Visibility& visibility,
-                       const ExperimentSettings& settings) {
+                       const ExperimentSettings& settings,
+                       tbb::task_arena& arena,
+                       const std::function<void()>& one_done) {
   NoiseFreeViewOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
-  const int queries = ceiling_queries(study);
+  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
+  in_parallel(arena, static_cast<int>(of_query.size()), [&](int i) {
+    of_query[i] = finder
+                      .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
+                                          settings.seed, static_cast<std::uint32_t>(i)))
+                      .ceiling();
+    one_done();
+  });
   double sum = 0;
-  for (int i = 0; i < queries; ++i) {
-    sum += finder
-               .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
-                                   settings.seed, static_cast<std::uint32_t>(i)))
-               .ceiling();
+  for (const double ceiling : of_query) sum += ceiling;
+  return sum / static_cast<double>(of_query.size());
+}
+
+/// Writes the ceilings that the store lacks into it, each as soon as it is known.
+void add_ceilings(const Study& study,
+                  const Visibility& visibility,
+                  const StudyRun& run,
+                  tbb::task_arena& arena,
+                  StudyStore& store) {
+  std::map<std::string, const ExperimentSettings*> missing;
+  for (const StudyCell& cell : study.file.cells) {
+    const std::string key = ceiling_key(study, cell.experiment);
+    if (store.note(key).empty()) missing.emplace(key, &cell.experiment);
   }
-  return sum / queries;
+  if (missing.empty()) return;
+  std::mutex mutex;
+  int done = 0;
+  const int total = static_cast<int>(missing.size()) * ceiling_queries(study);
+  if (run.ceiling_progress) run.ceiling_progress(0, total);
+  const auto one_done = [&] {
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (run.ceiling_progress) run.ceiling_progress(done, total);
+  };
+  for (const auto& [key, settings] : missing) {
+    store.set_metadata(
+        key, fmt::format("{}", compute_ceiling(study, visibility, *settings, arena, one_done)));
+  }
 }
 
 std::string store_name(const Shard& shard) {
@@ -180,17 +225,14 @@ void run_study(const Study& study, const StudyRun& run) {
   const std::vector<Job> jobs = missing_jobs(study, run);
   StudyStore store(run.folder / store_name(run.shard));
 
+  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::task_arena::automatic);
+  add_ceilings(study, visibility, run, arena, store);
+
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
-  std::set<std::string> ceilings;
   for (const StudyCell& cell : study.file.cells) {
     auto& shared = looks[looks_key(cell.experiment)];
     if (!shared && !jobs.empty()) {
       shared = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, cell.experiment));
-    }
-    const std::string key = ceiling_key(study, cell.experiment);
-    if (ceilings.insert(key).second && store.note(key).empty()) {
-      store.set_metadata(key,
-                         fmt::format("{}", compute_ceiling(study, visibility, cell.experiment)));
     }
   }
 
@@ -210,20 +252,7 @@ void run_study(const Study& study, const StudyRun& run) {
     store.put(block);
     if (run.progress) run.progress(++done, total);
   };
-  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::task_arena::automatic);
-  const tbb::global_control limit(
-      tbb::global_control::max_allowed_parallelism,
-      run.threads > 0
-          ? run.threads
-          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  arena.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, total, 1),
-        [&](const tbb::blocked_range<int>& range) {
-          for (int i = range.begin(); i < range.end(); ++i) do_job(i);
-        },
-        tbb::simple_partitioner());
-  });
+  in_parallel(arena, total, do_job);
 }
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {

@@ -37,10 +37,13 @@ struct StudyRun {
   int threads = 0;               ///< 0: as many as there are
   Shard shard;
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
+  /// The same of the queries whose world ceiling is worked out before the first block.
+  std::function<void(int done, int total)> ceiling_progress;
 };
 
-/// Runs what is missing of this shard. Blocks run in parallel, each on one thread, so results do
-/// not depend on the number of threads; a killed run goes on where it was.
+/// Runs what is missing of this shard. Blocks run in parallel, each on one thread, and so do the
+/// queries of a ceiling, so results do not depend on the number of threads; a killed run goes on
+/// where it was. The caller's own parallel work is not limited.
 void run_study(const Study& study, const StudyRun& run);
 
 /// A cell's results.

@@ -3,6 +3,7 @@
 #include "sim/study/study.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -64,7 +65,7 @@ class StudyRuns : public testing::Test {
   }
 
   StudyResults run(const Study& s, const std::string& name, int threads, Shard shard = {}) {
-    run_study(s, {folder_ / name, threads, shard, {}});
+    run_study(s, {folder_ / name, threads, shard, {}, {}});
     return study_results(s, folder_ / name);
   }
 
@@ -76,6 +77,39 @@ TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
   const std::string one = words(run(s, "one", 1)), two = words(run(s, "two", 2));
   EXPECT_GT(one.size(), 1000u);
   EXPECT_EQ(one, two);
+}
+
+// A limit for the whole process would slow down whoever uses the library beside its own threads.
+TEST_F(StudyRuns, TheProcessKeepsItsThreads) {
+  const auto allowed = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = allowed();
+  for (const int threads : {1, 3}) {
+    const std::string name = "threads" + std::to_string(threads);
+    int calls = 0;
+    const auto look_at = [&](int, int) {
+      ++calls;
+      EXPECT_EQ(allowed(), before);
+    };
+    run_study(study(6), {folder_ / name, threads, {}, look_at, look_at});
+    EXPECT_GT(calls, 12);
+  }
+}
+
+TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
+  Study s = study(7, "[0.1]");
+  std::vector<int> reported;
+  s.file.cells.push_back(s.file.cells[0]);  // shares the first one's ceiling
+  StudyRun job{folder_ / "ceilings", 2, {}, {}, [&](int done, int total) {
+                 EXPECT_EQ(total, 7);
+                 reported.push_back(done);
+               }};
+  run_study(s, job);
+  EXPECT_EQ(reported, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+  job.ceiling_progress = [](int, int) { FAIL() << "it is in the store"; };
+  run_study(s, job);
+  EXPECT_GT(study_results(s, folder_ / "ceilings").cells[0].ceiling, 0);
 }
 
 TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
@@ -90,10 +124,10 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
   // half the trials first, then all of them in the same folder
   run(half, "resumed", 2);
   int blocks_run = 0;
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }});
+  run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }, {}});
   EXPECT_EQ(blocks_run, 4);  // the first block of each cell was whole already
   EXPECT_EQ(words(study_results(s, folder_ / "resumed")), whole);
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int, int total) { EXPECT_EQ(total, 0); }});
+  run_study(s, {folder_ / "resumed", 2, {}, [&](int, int total) { EXPECT_EQ(total, 0); }, {}});
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {

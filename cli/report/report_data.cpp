@@ -80,7 +80,7 @@ Json report_study(const Study& study, const StudyResults& results) {
       {"commands", results.commands},
       {"sweep", nullptr},
       {"cells", Json::array()},
-      {"comparisons", Json::array()}};
+      {"comparisons", comparisons_json(results)}};
   if (study.file.sweep_keys.size() == 1) {
     const std::string& key = study.file.sweep_keys[0];
     Json values = Json::array();
@@ -95,15 +95,6 @@ Json report_study(const Study& study, const StudyResults& results) {
       cell["trial_list"].push_back(trial_json(t));
     }
     json["cells"].push_back(std::move(cell));
-    if (i == 0) continue;
-    const PairedComparison c = compare(results.cells[i - 1], results.cells[i]);
-    json["comparisons"].push_back({{"a", short_label(results.cells[i - 1].cell)},
-                                   {"b", short_label(results.cells[i].cell)},
-                                   {"both", c.both},
-                                   {"only_a", c.only_a},
-                                   {"only_b", c.only_b},
-                                   {"neither", c.neither},
-                                   {"mcnemar_p", c.mcnemar_p}});
   }
   return json;
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "calib/error.h"
@@ -69,8 +70,16 @@ void run(const StudyArguments& options, Session& session) {
   const Study study = load_study(file, session);
   keep_inputs(file, job.folder);
   {
-    Progress progress(session, "study: blocks");
-    job.progress = [&](int done, int total) { progress.update(done, total); };
+    std::optional<Progress> ceilings, blocks;
+    job.ceiling_progress = [&](int done, int total) {
+      if (!ceilings) ceilings.emplace(session, "study: queries of the world ceiling");
+      ceilings->update(done, total);
+    };
+    job.progress = [&](int done, int total) {
+      ceilings.reset();
+      if (!blocks) blocks.emplace(session, "study: blocks");
+      blocks->update(done, total);
+    };
     run_study(study, job);
   }
   print(study, job.folder, session);
@@ -87,6 +96,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Ses
     bool same = study.world_fingerprint == first.world_fingerprint &&
                 study.rig_fingerprint == first.rig_fingerprint &&
                 study.file.trials == first.file.trials &&
+                study.file.trials_per_block == first.file.trials_per_block &&
                 study.file.cells.size() == first.file.cells.size();
     for (std::size_t i = 0; same && i < study.file.cells.size(); ++i) {
       same = study.file.cells[i].settings == first.file.cells[i].settings;

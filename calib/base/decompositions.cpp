@@ -2,28 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/base/decompositions.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <utility>
 
 namespace vernier::internal {
-
-SymmetricEigen::SymmetricEigen(const Eigen::MatrixXd& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
-  values_ = eigen.eigenvalues();
-  vectors_ = eigen.eigenvectors();
-}
-
-Eigen::MatrixXd SymmetricEigen::root() const {
-  return vectors_ * values_.cwiseSqrt().asDiagonal() * vectors_.transpose();
-}
-
-Eigen::MatrixXd SymmetricEigen::inverse_root() const {
-  return vectors_ * values_.cwiseInverse().cwiseSqrt().asDiagonal() * vectors_.transpose();
-}
-
-Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& A) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
-}
 
 Cholesky::Cholesky(const Eigen::MatrixXd& A) : factor_(A) {}
 
@@ -62,6 +44,12 @@ Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd&
 
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return Eigen::LDLT<Eigen::MatrixXd>(A).solve(B);
+}
+
+Eigen::MatrixXd qr_triangle(Eigen::MatrixXd A) {
+  const auto n = A.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(A));
+  return qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
 }
 
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& X) {

@@ -27,6 +27,14 @@ class SymmetricEigen {
   Eigen::MatrixXd vectors_;
 };
 
+/// The same of the 9 x 9 matrices of the direct linear transform.
+struct SymmetricEigen9 {
+  Eigen::Matrix<double, 9, 1> eigenvalues;
+  Eigen::Matrix<double, 9, 9> eigenvectors;
+
+  explicit SymmetricEigen9(const Eigen::Matrix<double, 9, 9>& A);
+};
+
 /// The eigenvalues alone, which is faster; their last digits may differ from SymmetricEigen's.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& A);
 
@@ -45,7 +53,7 @@ class Cholesky {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
   Eigen::VectorXd solve_lower(const Eigen::VectorXd& b) const;  ///< L⁻¹ b
   Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
-  Eigen::VectorXd solve_upper(const Eigen::VectorXd& b) const;  ///< L⁻ᵀ b
+  Eigen::VectorXd solve_upper(const Eigen::VectorXd& b) const;          ///< L⁻ᵀ b
   Eigen::MatrixXd times_inverse_upper(const Eigen::MatrixXd& B) const;  ///< B L⁻ᵀ
   Eigen::MatrixXd inverse() const;
 
@@ -57,6 +65,17 @@ class Cholesky {
 /// symmetric A (Eigen::LDLT).
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// The singular values of A, largest first, and all its right singular vectors (Eigen::JacobiSVD).
+struct RightSingularVectors {
+  Eigen::VectorXd singular_values;
+  Eigen::MatrixXd V;
+
+  explicit RightSingularVectors(const Eigen::MatrixXd& A);
+};
+
+/// The upper triangle R of A = Q R, of at least as many rows as columns (Eigen::HouseholderQR).
+Eigen::MatrixXd qr_triangle(Eigen::MatrixXd A);
 
 /// An orthonormal basis of the columns of X, which must be independent (Eigen::HouseholderQR).
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& X);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board/board_homography.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "calib/base/decompositions.h"
 #include "calib/board_observations.h"
 #include "calib/error.h"
 
@@ -84,8 +84,8 @@ BoardHomography board_homography(const std::vector<Eigen::Vector3d>& target_m,
     rows.block<1, 3>(1, 6) = -q.y() * x.transpose();
     normal += rows.transpose() * rows;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(normal);
-  const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors().col(0);
+  const SymmetricEigen9 eigen(normal);
+  const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors.col(0);
   Eigen::Matrix3d H = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(h.data());
   H = to.matrix().inverse() * H * from.matrix();
   const double depth = H.row(2).dot(from.centre.homogeneous());  // λ at the corners' centre

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board/plane_homography.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
+
+#include "calib/base/decompositions.h"
 
 namespace vernier::internal {
 namespace {
@@ -42,10 +43,10 @@ std::optional<Eigen::Matrix3d> fit_homography(const std::vector<Eigen::Vector2d>
     rows.block<2, 3>(0, 6) = -u * x.transpose();
     A += rows.transpose() * rows;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(A);
+  const SymmetricEigen9 eigen(A);
   constexpr double min_second = 1e-6;  // of the largest: below, the points lie on a line
-  if (eigen.eigenvalues()[1] < min_second * eigen.eigenvalues()[8]) return std::nullopt;
-  const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors().col(0);
+  if (eigen.eigenvalues[1] < min_second * eigen.eigenvalues[8]) return std::nullopt;
+  const Eigen::Matrix<double, 9, 1> h = eigen.eigenvectors.col(0);
   Eigen::Matrix3d H;
   H << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
   return M->inverse() * H * *N;

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -125,12 +124,12 @@ Eigen::MatrixXd unobservable_directions(const Rig& rig,
     parameters.col(i) = move.parameters / scale;
   }
   D -= Q * (Q.transpose() * D).eval();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(D, Eigen::ComputeFullV);
+  const RightSingularVectors svd(D);
   Eigen::Index rank = 0;
-  for (; rank < svd.singularValues().size(); ++rank) {
-    if (!(svd.singularValues()[rank] > 1e-9 * svd.singularValues()[0])) break;
+  for (; rank < svd.singular_values.size(); ++rank) {
+    if (!(svd.singular_values[rank] > 1e-9 * svd.singular_values[0])) break;
   }
-  return parameters * svd.matrixV().rightCols(n - rank);
+  return parameters * svd.V.rightCols(n - rank);
 }
 
 Observability observability(const Rig& rig,

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include <Eigen/QR>
+#include "calib/base/decompositions.h"
 
 namespace vernier::internal {
 namespace {
@@ -17,8 +17,7 @@ Eigen::MatrixXd triangle(Eigen::MatrixXd M) {
     M.conservativeResize(n, n);
     M.bottomRows(n - given).setZero();
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(M));
-  return qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  return qr_triangle(std::move(M));
 }
 
 }  // namespace

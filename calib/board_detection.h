@@ -30,8 +30,8 @@ struct RejectedCorner {
 /// What became of one image.
 struct BoardDetection {
   std::filesystem::path image;
-  Eigen::Vector2i size_px{0, 0};
-  std::vector<int> ids;  ///< index of each corner into target_points; empty: no board
+  Eigen::Vector2i size_px{0, 0};  ///< 0, 0 where the image cannot be read
+  std::vector<int> ids;           ///< index of each corner into target_points; empty: no board
   std::vector<Eigen::Vector2d> corners_px;
   std::vector<RejectedCorner> rejected_corners;  ///< seen, not used
   std::string reason;                            ///< why there is no board, where there is none
@@ -65,14 +65,15 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern);
 struct ImageDetections {
   BoardObservations observations;
   std::vector<BoardDetection> used;     ///< one a view of the observations, camera after camera
-  std::vector<BoardDetection> refused;  ///< images without a board
+  std::vector<BoardDetection> refused;  ///< images without a board, or that cannot be read
 };
 
 /// Observations from the images of one or more cameras, one pattern a camera: images of the same
 /// number are one frame (calib/base/frame_numbering.h). Frames whose board was found by some
-/// cameras only count for those. Throws Error where a camera has no frame number in common with
-/// those before it or one twice, sizes disagree, no board is found, or more images show a board of
-/// more corners than of those asked for.
+/// cameras only count for those. An image that cannot be read is refused as one without a board is.
+/// Throws Error where a camera has no frame number in common with those before it or one twice,
+/// none of its images can be read, sizes disagree, no board is found, or more images show a board
+/// of more corners than of those asked for.
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target);
 
 /// A corners file of all the images, with a line of dashes for each that was refused.

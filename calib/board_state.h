@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "calib/pose.h"
@@ -20,6 +21,10 @@ struct BoardState {
   std::vector<Pose> T_first_board;  ///< one a frame
   Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board/board_warp.h)
 };
+
+/// Where `frame` is among `frames` (ascending), as those of a state are. Throws Error where it is
+/// not among them.
+std::size_t frame_index(const std::vector<int>& frames, int frame);
 
 /// The state at some of its frames, ascending; frames it does not have are left out.
 BoardState at_frames(const BoardState& state, const std::vector<int>& frames);

@@ -31,10 +31,13 @@ struct Camera {
   CameraModel model = Radial1{};
   Eigen::VectorXd parameters;  ///< f_px, ax, ox_px, oy_px, then the distortion k1 k2 p1 p2 k3 …
 
-  double f_px() const { return parameters[0]; }
-  double ax() const { return parameters[1]; }
-  double ox_px() const { return parameters[2]; }
-  double oy_px() const { return parameters[3]; }
+  double f_px() const { return core_parameter(0); }
+  double ax() const { return core_parameter(1); }
+  double ox_px() const { return core_parameter(2); }
+  double oy_px() const { return core_parameter(3); }
+
+  /// f_px, ax, ox_px or oy_px. Throws Error where the camera has no such parameter.
+  double core_parameter(Eigen::Index index) const;
 };
 
 /// How many parameters every model has before its distortion: f, ax, ox, oy.
@@ -49,13 +52,17 @@ std::string_view model_name(const CameraModel& model);
 std::vector<std::string> parameter_names(const CameraModel& model);
 int parameter_count(const CameraModel& model);
 
+/// Throws Error unless the camera has as many parameters as its model.
+void check_parameters(const Camera& camera);
+
 /// Derivatives of a projected pixel.
 struct ProjectionJacobian {
   Eigen::Matrix<double, 2, 3> point;                ///< px / m
   Eigen::Matrix<double, 2, Eigen::Dynamic> camera;  ///< px / parameter, in the order of the names
 };
 
-/// Pixel of a point in the camera's frame (metres, z > 0).
+/// Pixel of a point in the camera's frame (metres, z > 0). Throws Error where the camera has not as
+/// many parameters as its model, as the functions below do.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point);
 Eigen::Vector2d project(const Camera& camera,
                         const Eigen::Vector3d& point,

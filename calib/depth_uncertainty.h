@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
@@ -21,7 +21,7 @@ struct DepthUncertainty {
   double non_physical_share = 0;  ///< draws in which the rays do not meet in front of the rig
   /// 2.5 and 97.5 % over all draws; those in which the rays part count as beyond every depth, so an
   /// end can be infinite.
-  std::array<double, 2> interval_95_m{};
+  Interval interval_95_m{0, 0};
 };
 
 /// Depth where the rays of two pixels pass nearest each other under a rig; not positive where they

@@ -26,7 +26,8 @@ struct Rig {
 std::vector<std::string> parameter_names(const Rig& rig);
 int parameter_count(const Rig& rig);
 
-/// Values in the order of the names; a rotation as its rotation vector.
+/// Values in the order of the names; a rotation as its rotation vector. Throws Error where a camera
+/// has not as many parameters as its model.
 Eigen::VectorXd parameters(const Rig& rig);
 
 /// The rig at `rig` moved by `delta` in its tangent: intrinsics add, a rotation becomes

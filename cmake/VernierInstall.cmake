@@ -13,7 +13,8 @@ function(vernier_dependencies module result)
   get_target_property(needs ${module} INTERFACE_LINK_LIBRARIES)
   set(lines "")
   foreach(package IN ITEMS "Eigen3::|Eigen3 3.4" "Ceres::|Ceres 2.1" "fmt::|fmt"
-                           "Highway::|Highway" "yaml-cpp|yaml-cpp" "TBB::|TBB" "SQLite::|SQLite3")
+                           "Highway::|Highway" "yaml-cpp|yaml-cpp" "TBB::|TBB" "SQLite::|SQLite3"
+                           "JPEG::|JPEG" "PNG::|PNG")
     string(REPLACE "|" ";" package "${package}")
     list(GET package 0 namespace)
     list(GET package 1 arguments)

@@ -34,10 +34,10 @@ packages=(
   g++ cmake ninja-build ccache
   libceres-dev libopencv-dev libopencv-contrib-dev libeigen3-dev libtbb-dev librandom123-dev
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
-  libhwy-dev libyaml-cpp-dev esbuild
+  libhwy-dev libyaml-cpp-dev libboost-dev libjpeg-dev libpng-dev esbuild
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
-if [[ $scope == test ]]; then packages+=(clang-format git python3 chromium python3-mrcal colmap); fi
+if [[ $scope == test ]]; then packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap); fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }

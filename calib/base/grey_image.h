@@ -8,8 +8,8 @@
 namespace vernier::internal {
 
 /// An image file as 8-bit grey values; deeper ones are scaled from their own largest value. Throws
-/// Error for what is no image and for PNG, JPEG and Netpbm files that are cut off or, PNG, damaged:
-/// their decoders would fill in the rest or print to standard error.
+/// Error for what is no image and for PNG, JPEG and Netpbm files that are cut off or damaged: their
+/// decoders would fill in the rest or print to standard error.
 cv::Mat read_grey_image(const std::filesystem::path& file);
 
 }  // namespace vernier::internal

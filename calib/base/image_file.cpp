@@ -6,72 +6,18 @@
 #include <cctype>
 #include <charconv>
 #include <cstddef>
-#include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/image_damage.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
 
 constexpr std::string_view png_signature{"\x89PNG\r\n\x1a\n", 8};
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < count; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
-/// The cyclic redundancy check of PNG chunks (ISO 3309).
-std::uint32_t crc32(std::string_view bytes) {
-  std::uint32_t crc = ~0u;
-  for (const char byte : bytes) {
-    crc ^= static_cast<unsigned char>(byte);
-    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
-  }
-  return ~crc;
-}
-
-/// What is wrong with a PNG file's chunks, if anything.
-std::string png_fault(std::string_view bytes) {
-  std::size_t at = png_signature.size();
-  while (at + 12 <= bytes.size()) {
-    const std::size_t length = big_endian(bytes, at, 4);
-    if (at + 12 + length > bytes.size()) break;
-    if (crc32(bytes.substr(at + 4, 4 + length)) != big_endian(bytes, at + 8 + length, 4)) {
-      return "is damaged (a PNG checksum is wrong)";
-    }
-    if (bytes.substr(at + 4, 4) == "IEND") return "";
-    at += 12 + length;
-  }
-  return "is cut off (its PNG data have no end)";
-}
-
-/// Walks the segments of a JPEG file to its end-of-image marker.
-std::string jpeg_fault(std::string_view bytes) {
-  const std::string cut = "is cut off (its JPEG data have no end)";
-  std::size_t at = 2;
-  while (at + 4 <= bytes.size()) {
-    if (bytes[at] != '\xff') {  // coded pixels: up to the next marker
-      at = bytes.find('\xff', at);
-      if (at == std::string_view::npos) return cut;
-      continue;
-    }
-    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
-    if (marker == 0xd9) return "";
-    const bool alone = marker == 0x00 || marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8);
-    if (marker == 0xff) {
-      at += 1;
-    } else {
-      at += 2 + (alone ? 0 : big_endian(bytes, at + 2, 2));
-    }
-  }
-  const bool ends = at + 2 <= bytes.size() && bytes.substr(at, 2) == "\xff\xd9";
-  return ends ? "" : cut;
-}
 
 bool is_netpbm(std::string_view bytes) {
   return bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6";
@@ -111,8 +57,8 @@ std::string netpbm_fault(std::string_view bytes) {
 
 std::string fault_of(std::string_view bytes) {
   if (is_netpbm(bytes)) return netpbm_fault(bytes);
-  if (is_png(bytes)) return png_fault(bytes);
-  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_fault(bytes);
+  if (is_png(bytes)) return png_damage(bytes);
+  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_damage(bytes);
   return "";
 }
 

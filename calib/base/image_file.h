@@ -9,8 +9,8 @@
 
 namespace vernier::internal {
 
-/// The bytes of an image file. Throws Error for PNG, JPEG and Netpbm files that are cut off or,
-/// PNG, damaged: their decoders would fill in the rest or print to standard error.
+/// The bytes of an image file. Throws Error for PNG, JPEG and Netpbm files that are cut off or
+/// damaged: their decoders would fill in the rest or print to standard error.
 std::string read_image_bytes(const std::filesystem::path& file);
 
 /// Its pixels, with the flags of cv::imread. Throws Error(file) for what is no image.

@@ -55,6 +55,14 @@ std::vector<std::string_view> split_fields(std::string_view line, std::string_vi
   return fields;
 }
 
+std::optional<double> to_real(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
 double parse_real(std::string_view field, const std::string& place, std::string_view what) {
   return parse<double>(field, place, what);
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,10 @@ class TextLines {
 
 /// Fields of a line between separators; with a blank among these, repeated ones count once.
 std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);
+
+/// The number that all of `text` is, or nothing: the decimal point is a point whatever the locale
+/// says. Infinities and "nan" are numbers; a sign may lead, a blank may not.
+std::optional<double> to_real(std::string_view text);
 
 /// Throws Error(`place`) where `field` is no number, naming `what` it should have been.
 double parse_real(std::string_view field, const std::string& place, std::string_view what);

@@ -6,10 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -83,11 +83,7 @@ std::string YamlNode::text() const {
 double YamlNode::number() const {
   if (!node_.IsScalar()) throw Error(place(), "is not a number", "");
   const std::string& scalar = node_.Scalar();
-  const char* end = scalar.data() + scalar.size();
-  double value = 0;
-  const auto parsed =
-      std::from_chars(scalar.data() + (!scalar.empty() && scalar[0] == '+'), end, value);
-  if (parsed.ec == std::errc() && parsed.ptr == end && std::isfinite(value)) return value;
+  if (const auto value = to_real(scalar); value && std::isfinite(*value)) return *value;
   throw Error(place(), quoted(scalar) + " is not a finite number", "correct it");
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <variant>
 
@@ -65,7 +66,27 @@ std::vector<std::int64_t> frame_numbers(
   return {before.begin(), before.end()};
 }
 
+/// The board of an image. One that cannot be read is refused with the reason, and its Error is kept
+/// where it is the first.
+BoardDetection detect_or_refuse(const std::filesystem::path& image,
+                                const BoardTarget& target,
+                                std::optional<Error>& first_fault) {
+  try {
+    return detect_board(image, target);
+  } catch (const Error& error) {
+    if (!first_fault) first_fault = error;
+    BoardDetection refused;
+    refused.image = image;
+    refused.reason = error.fault() + (error.remedy().empty() ? "" : "; " + error.remedy());
+    return refused;
+  }
+}
+
 void add_detection(const BoardDetection& found, ImageDetections& result) {
+  if (found.size_px == Eigen::Vector2i::Zero()) {  // it could not be read
+    result.refused.push_back(found);
+    return;
+  }
   auto& size = result.observations.size_px[found.camera];
   if (size == Eigen::Vector2i::Zero()) size = found.size_px;
   if (size != found.size_px) {
@@ -95,7 +116,8 @@ void check_found(const ImageDetections& found, const std::string& place, const s
                 "count them again");
   }
   if (found.used.empty()) {
-    throw Error(place, "no " + name + " in any image", "of the first: " + refused.front().reason);
+    throw Error(place, "no " + name + " in any image",
+                "of the first, " + refused.front().image.string() + ": " + refused.front().reason);
   }
 }
 
@@ -164,12 +186,14 @@ ImageDetections detect_images(const std::vector<std::string>& patterns, const Bo
   result.observations.target_m = target_points(target);
   result.observations.size_px.assign(images.size(), Eigen::Vector2i::Zero());
   for (std::size_t camera = 0; camera < images.size(); ++camera) {
+    std::optional<Error> first_fault;
     for (const auto& image : images[camera]) {
-      BoardDetection found = detect_board(image, target);
+      BoardDetection found = detect_or_refuse(image, target, first_fault);
       found.camera = static_cast<int>(camera);
       found.frame = numbering.frame(parse_image_name(image).frame);
       add_detection(found, result);
     }
+    if (result.observations.size_px[camera] == Eigen::Vector2i::Zero()) throw *first_fault;
   }
   check_found(result, patterns.front(), name_of(target));
   check_and_sort(result.observations);

@@ -104,10 +104,8 @@ SimulatedBoard simulate_board(const Rig& rig,
     for (BoardView& view : views) {
       view.frame = frame;
       // feature: (frame, camera); the eye field would hold only four cameras
-      RandomStream noise({.seed = seed,
-                          .trial = trial,
-                          .feature = static_cast<std::uint32_t>(frame * 64 + view.camera),
-                          .source = board_source});
+      RandomStream noise(
+          of_view({.seed = seed, .trial = trial, .source = board_source}, frame, view.camera));
       for (auto& pixel : view.pixels_px) {
         pixel.x() += options.pixel_sigma_px * noise.normal();
         pixel.y() += options.pixel_sigma_px * noise.normal();

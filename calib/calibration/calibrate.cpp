@@ -350,7 +350,11 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   const auto more = warnings_of(*estimate.calibration, honest.matrix, s);
   auto& warnings = estimate.calibration->warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
-  if (options.check_input) add_doubts(s, options, estimate);
+  if (options.check_input) {
+    const auto folds = inversion_warnings(estimate.rig);
+    warnings.insert(warnings.end(), folds.begin(), folds.end());
+    add_doubts(s, options, estimate);
+  }
   estimate.evidence = CalibrationEvidence{
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};
   if (options.prior) estimate.evidence->priors.push_back(*options.prior);

@@ -18,6 +18,7 @@
 #include "calib/calibration/merged_boards.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
+#include "calib/calibration/result_checks.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
@@ -32,7 +33,7 @@
 #include "calib/solver/normal_equations.h"
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/pair_equations.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/scaled_root.h"
 
 namespace vernier {
@@ -395,6 +396,8 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
         fmt::format("held as known exactly, since the prior gives them no variance: {}",
                     fmt::join(unlisted, ", ")));
   }
+  const auto folds = inversion_warnings(result.estimate.rig);
+  summary.warnings.insert(summary.warnings.end(), folds.begin(), folds.end());
   summary.warnings.insert(summary.warnings.begin(), diagnosis.warnings.begin(),
                           diagnosis.warnings.end());
   summary.trust_warnings.insert(summary.trust_warnings.begin(), diagnosis.trust_warnings.begin(),

@@ -85,8 +85,7 @@ MergedBoards merge_boards(const std::vector<BoardTerm>& terms, const Rig& rig) {
     const double weight = std::pow(merged.pixel_sigma_px / term.pixel_sigma_px, 2);
     merged.parts.push_back({merged.state.frames.size(), evidence.frames.size()});
     for (BoardView view : evidence.observations.views) {
-      const auto at = std::lower_bound(evidence.frames.begin(), evidence.frames.end(), view.frame);
-      view.frame = next_frame + static_cast<int>(at - evidence.frames.begin());
+      view.frame = next_frame + static_cast<int>(frame_index(evidence.frames, view.frame));
       for (int& id : view.ids) id += offset;
       merged.corner_weights.emplace_back(view.ids.size(), weight);
       merged.observations.views.push_back(std::move(view));

@@ -17,13 +17,14 @@
 #include "calib/board_state.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/solver/loss.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "calib/solver/reprojection_problem.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -107,7 +108,7 @@ double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
   std::partial_sort(order.begin(), order.begin() + n, order.end());
   std::vector<double> lengths;
   for (std::ptrdiff_t k = 0; k < n; ++k) lengths.push_back(residuals[order[k].second].norm());
-  return median(std::move(lengths)) / rayleigh_median;
+  return median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
 /// One flag a corner of every view.
@@ -144,8 +145,8 @@ bool some_view_stands_out(const BoardObservations& observations, const BoardStat
         std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, residuals[v].size()))));
   }
   return std::any_of(rms.begin(), rms.end(), [](const std::vector<double>& own) {
-    return !own.empty() &&
-           *std::max_element(own.begin(), own.end()) > 3 * std::max(min_sigma_px, median(own));
+    return !own.empty() && *std::max_element(own.begin(), own.end()) >
+                               3 * std::max(min_sigma_px, median_or_zero(own));
   });
 }
 
@@ -182,15 +183,23 @@ RobustFit separated(const BoardObservations& observations,
   return fit;
 }
 
+void check_camera(const Rig& rig, int camera, int frame) {
+  if (camera >= 0 && camera < static_cast<int>(rig.cameras.size())) return;
+  throw Error(
+      fmt::format("frame {}", frame),
+      fmt::format("the rig has {} cameras, so none of number {}", rig.cameras.size(), camera),
+      "give the corners of this rig");
+}
+
 }  // namespace
 
 CornerResiduals corner_residuals(const BoardObservations& observations, const BoardState& state) {
   const auto target_m = warped_target(observations.target_m, state.warp_m);
   CornerResiduals residuals;
-  std::size_t f = 0;
   ViewLinearisation J;
   for (const BoardView& view : observations.views) {
-    while (state.frames[f] != view.frame) ++f;
+    const std::size_t f = frame_index(state.frames, view.frame);
+    check_camera(state.rig, view.camera, view.frame);
     linearise_view(state.rig.cameras[view.camera], state.rig.T_camera_first[view.camera],
                    state.T_first_board[f], target_m, view, Linearise::residual_only, J);
     std::vector<Eigen::Vector2d>& own = residuals.emplace_back();
@@ -206,7 +215,7 @@ double robust_pixel_sigma(const CornerResiduals& residuals) {
   for (const auto& view : residuals) {
     for (const Eigen::Vector2d& r : view) lengths.push_back(r.norm());
   }
-  return lengths.empty() ? 0 : median(std::move(lengths)) / rayleigh_median;
+  return lengths.empty() ? 0 : median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
 std::optional<BoardState> robust_minimum(const BoardObservations& observations,
@@ -255,6 +264,12 @@ void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
                       std::vector<CornerOutlier>& outliers) {
   const auto warped_m = warped_target(target_m, state.warp_m);
   for (CornerOutlier& outlier : outliers) {
+    check_camera(state.rig, outlier.camera, outlier.frame);
+    if (outlier.id < 0 || outlier.id >= static_cast<int>(target_m.size())) {
+      throw Error(fmt::format("frame {}, camera {}", outlier.frame, outlier.camera),
+                  fmt::format("the target has no corner {}", outlier.id),
+                  "give the outliers of this calibration");
+    }
     const auto frame = std::lower_bound(state.frames.begin(), state.frames.end(), outlier.frame);
     if (frame == state.frames.end() || *frame != outlier.frame) {
       outlier.residual_px = std::numeric_limits<double>::quiet_NaN();

@@ -21,7 +21,8 @@ struct RobustFit {
   std::vector<CornerOutlier> outliers;
 };
 
-/// Residuals of every corner (prediction less pixel, px), view by view.
+/// Residuals of every corner (prediction less pixel, px), view by view. Throws Error where the
+/// state does not have a view's frame or camera.
 using CornerResiduals = std::vector<std::vector<Eigen::Vector2d>>;
 CornerResiduals corner_residuals(const BoardObservations& observations, const BoardState& state);
 
@@ -58,7 +59,7 @@ std::vector<std::string> overrejected_cameras(const BoardObservations& observati
                                               const Rig& rig);
 
 /// Sets how far outliers lie from where `state` predicts them: not a number where it does not have
-/// their frame.
+/// their frame. Throws Error where the rig has no such camera or the target no such corner.
 void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,
                       const BoardState& state,
                       std::vector<CornerOutlier>& outliers);

@@ -3,10 +3,12 @@
 #include "calib/calibration/result_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <variant>
 #include <vector>
 
@@ -19,6 +21,55 @@
 #include "calib/rig_prior.h"
 
 namespace vernier::internal {
+namespace {
+
+/// The ninth of the image that a place is in, `x` and `y` from 0 to 1: "top left", "bottom", ….
+std::string ninth_of(double x, double y) {
+  const std::string row = y < 1.0 / 3 ? "top" : y > 2.0 / 3 ? "bottom" : "";
+  const std::string column = x < 1.0 / 3 ? "left" : x > 2.0 / 3 ? "right" : "";
+  if (row.empty() && column.empty()) return "middle";
+  return row + (row.empty() || column.empty() ? "" : " ") + column;
+}
+
+std::optional<std::string> inversion_warning(const Camera& camera) {
+  constexpr int columns = 33, rows = 25;
+  const Eigen::Vector2d last_px = (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
+  const Eigen::Vector2d centre_px(camera.ox_px(), camera.oy_px());
+  int folded = 0;
+  double least_px = std::numeric_limits<double>::infinity();
+  std::vector<std::string> regions;
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const double x = static_cast<double>(i) / (columns - 1);
+      const double y = static_cast<double>(j) / (rows - 1);
+      const Eigen::Vector2d pixel(x * last_px.x(), y * last_px.y());
+      if (try_unproject(camera, pixel)) continue;
+      ++folded;
+      least_px = std::min(least_px, (pixel - centre_px).norm());
+      const std::string region = ninth_of(x, y);
+      if (std::find(regions.begin(), regions.end(), region) == regions.end()) {
+        regions.push_back(region);
+      }
+    }
+  }
+  if (folded == 0) return {};
+  return fmt::format(
+      "the distortion of camera \"{}\" cannot be inverted in {:.2g} % of its image ({}; from "
+      "{:.0f} "
+      "px of its principal point on): pixels there have no ray, and what needs one ends with an "
+      "error; use a model with fewer distortion parameters, or add views at the image's border",
+      camera.name, 100.0 * folded / (columns * rows), fmt::join(regions, ", "), least_px);
+}
+
+}  // namespace
+
+std::vector<std::string> inversion_warnings(const Rig& rig) {
+  std::vector<std::string> warnings;
+  for (const Camera& camera : rig.cameras) {
+    if (const auto warning = inversion_warning(camera)) warnings.push_back(*warning);
+  }
+  return warnings;
+}
 
 std::optional<std::string> ill_conditioning_warning(const Covariance& bound, const Rig& rig) {
   if (bound.matrix.rows() == 0) return {};

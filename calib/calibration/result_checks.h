@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/covariance.h"
 #include "calib/rig.h"
@@ -29,5 +30,10 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
                                                   const Eigen::MatrixXd& bound,
                                                   const Eigen::MatrixXd& honest,
                                                   int clusters);
+
+/// Does each pixel of each camera have a ray? One warning a camera whose distortion cannot be
+/// inverted at some of 33 x 25 pixels spread over its image, with the region: the coefficients fold
+/// the image where no corner kept them from it.
+std::vector<std::string> inversion_warnings(const Rig& rig);
 
 }  // namespace vernier::internal

@@ -23,7 +23,32 @@ CameraModel find_model(std::string_view name) {
   }
 }
 
+[[noreturn]] void throw_wrong_parameters(const Camera& camera) {
+  throw Error("camera \"" + camera.name + "\"",
+              "it has " + std::to_string(camera.parameters.size()) + " parameters, not " +
+                  std::to_string(parameter_count(camera.model)),
+              "give f_px, ax, ox_px, oy_px, then the model's distortion");
+}
+
+/// The camera's parameters, as many as the model `Model` has.
+template <class Model>
+const double* parameters_of(const Camera& camera) {
+  constexpr auto count =
+      core_parameter_count + static_cast<Eigen::Index>(Model::distortion_names.size());
+  if (camera.parameters.size() != count) throw_wrong_parameters(camera);
+  return camera.parameters.data();
+}
+
 }  // namespace
+
+double Camera::core_parameter(Eigen::Index index) const {
+  if (index >= parameters.size()) throw_wrong_parameters(*this);
+  return parameters[index];
+}
+
+void check_parameters(const Camera& camera) {
+  if (camera.parameters.size() != parameter_count(camera.model)) throw_wrong_parameters(camera);
+}
 
 CameraModel camera_model(std::string_view name) { return find_model(name); }
 
@@ -47,23 +72,25 @@ int parameter_count(const CameraModel& model) {
 }
 
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point) {
-  const double* a = camera.parameters.data();
   const Eigen::Vector2d x = point.head<2>() / point.z();
-  const Eigen::Vector2d x_d = std::visit(
-      [&](auto m) -> Eigen::Vector2d { return m.distort(x, a + core_parameter_count).x; },
+  return std::visit(
+      [&](auto m) -> Eigen::Vector2d {
+        const double* a = parameters_of<decltype(m)>(camera);
+        const Eigen::Vector2d x_d = m.distort(x, a + core_parameter_count).x;
+        return {a[0] * a[1] * x_d[0] + a[2], a[0] * x_d[1] + a[3]};
+      },
       camera.model);
-  return {a[0] * a[1] * x_d[0] + a[2], a[0] * x_d[1] + a[3]};
 }
 
 Eigen::Vector2d project(const Camera& camera,
                         const Eigen::Vector3d& point,
                         ProjectionJacobian& jacobian) {
-  const double* a = camera.parameters.data();
-  const double fx = a[0] * a[1], fy = a[0];
   const double inverse_z = 1 / point.z();
   const Eigen::Vector2d x = point.head<2>() * inverse_z;
   return std::visit(
       [&](auto m) -> Eigen::Vector2d {
+        const double* a = parameters_of<decltype(m)>(camera);
+        const double fx = a[0] * a[1], fy = a[0];
         const auto d = m.distort(x, a + core_parameter_count);
         jacobian.camera.resize(2, camera.parameters.size());
         jacobian.camera.template leftCols<core_parameter_count>() << a[1] * d.x[0], fy * d.x[0], 1,
@@ -83,11 +110,11 @@ Eigen::Vector2d project(const Camera& camera,
 }
 
 std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::Vector2d& pixel) {
-  const double* a = camera.parameters.data();
-  if (!(a[0] > 0 && a[1] > 0)) return std::nullopt;
-  const Eigen::Vector2d target((pixel[0] - a[2]) / (a[0] * a[1]), (pixel[1] - a[3]) / a[0]);
   return std::visit(
       [&](auto m) -> std::optional<Eigen::Vector3d> {
+        const double* a = parameters_of<decltype(m)>(camera);
+        if (!(a[0] > 0 && a[1] > 0)) return std::nullopt;
+        const Eigen::Vector2d target((pixel[0] - a[2]) / (a[0] * a[1]), (pixel[1] - a[3]) / a[0]);
         Eigen::Vector2d x = target;
         auto d = m.distort(x, a + core_parameter_count);
         for (int iteration = 0; iteration < 50; ++iteration) {

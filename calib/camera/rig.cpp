@@ -42,6 +42,7 @@ Eigen::VectorXd parameters(const Rig& rig) {
   Eigen::VectorXd a(parameter_count(rig));
   int index = 0;
   for (const Camera& camera : rig.cameras) {
+    check_parameters(camera);
     a.segment(index, camera.parameters.size()) = camera.parameters;
     index += static_cast<int>(camera.parameters.size());
   }

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/formats/rig_json.h"
 #include "calib/pose.h"
@@ -243,11 +243,7 @@ const std::string& Line::word(std::size_t index) const {
 
 double Line::number(std::size_t index) const {
   const std::string& text = word(index);
-  double value = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() && std::isfinite(value)) {
-    return value;
-  }
+  if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
   throw Error(place_, "\"" + text + "\" is not a finite number", "correct it");
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -141,7 +142,7 @@ namespace {
 
 /// The double that is written as shortly as its float is.
 double shortest(double of_float) {
-  return std::stod(fmt::format("{}", static_cast<float>(of_float)));
+  return to_real(fmt::format("{}", static_cast<float>(of_float))).value_or(of_float);
 }
 
 /// Image pair after image pair: its number, its pixels four by four, its noise.

@@ -43,8 +43,7 @@ void add_views(const BoardObservations& observations,
                Json& json) {
   Json views = Json::array(), corners = Json::array();
   for (const BoardView& view : observations.views) {
-    const auto frame = std::lower_bound(frames.begin(), frames.end(), view.frame);
-    views.push_back({frame - frames.begin(), view.camera});
+    views.push_back({frame_index(frames, view.frame), view.camera});
     std::vector<double> cells(3 * grid.points(), 0);
     for (int i = 0; i < grid.points(); ++i) cells[3 * i + 2] = -1;  // not seen
     for (std::size_t i = 0; i < view.ids.size(); ++i) {

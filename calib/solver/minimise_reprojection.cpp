@@ -207,10 +207,9 @@ class Minimisation {
   }
 
   void add_views(const BoardObservations& observations) {
-    std::size_t frame = 0;
     for (std::size_t v = 0; v < observations.views.size(); ++v) {
       const BoardView& view = observations.views[v];
-      while (start_.frames[frame] != view.frame) ++frame;
+      const std::size_t frame = frame_index(start_.frames, view.frame);
       std::vector<double*> blocks{buffer_.intrinsics(view.camera), buffer_.board(frame)};
       if (view.camera > 0) blocks.push_back(buffer_.camera_pose(view.camera));
       if (what_.warp == BoardWarp::free) blocks.push_back(buffer_.warp());

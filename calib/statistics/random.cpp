@@ -11,6 +11,14 @@
 
 namespace vernier::internal {
 
+RandomCounter of_view(RandomCounter place, int frame, int camera) {
+  const std::uint64_t identity =
+      std::uint64_t{64} * static_cast<std::uint32_t>(frame) + static_cast<std::uint32_t>(camera);
+  place.feature = static_cast<std::uint32_t>(identity);
+  place.frame = static_cast<std::uint32_t>(identity >> 32);
+  return place;
+}
+
 RandomStream::RandomStream(const RandomCounter& place)
     : key_{static_cast<std::uint32_t>(place.seed), static_cast<std::uint32_t>(place.seed >> 32)},
       counter_{place.trial, place.feature, place.source << 24 | place.eye << 22 | place.frame, 0} {

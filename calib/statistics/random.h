@@ -19,6 +19,11 @@ struct RandomCounter {
   std::uint32_t frame = 0;    ///< 22 bits: time step or look
 };
 
+/// `place` for what a camera sees in a frame, another one for every frame from 0 and every camera
+/// from 0 to 63: sets the feature and, with what does not fit into its 32 bits, the counter's
+/// frame.
+RandomCounter of_view(RandomCounter place, int frame, int camera);
+
 /// Stream of random numbers at one place: Philox4x32-10 (Salmon et al., "Parallel random numbers:
 /// as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye · frame,
 /// draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples monotonically.

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "calib/interval.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/sampler.h"
@@ -55,7 +55,7 @@ struct SampledPoint {
   Eigen::Matrix3d covariance;    ///< m², about the mean
   /// 2.5 and 97.5 % of the depth z over all draws; those whose rays part lie beyond every depth, so
   /// an end can be infinite.
-  std::array<double, 2> depth_interval_95_m{};
+  Interval depth_interval_95_m{0, 0};
   double non_physical_share = 0;  ///< draws in which the rays part, or a pixel has no ray
 };
 
@@ -72,6 +72,6 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
                                                 int other = 1);
 
 /// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite where one is.
-std::array<double, 2> interval_95(const std::vector<double>& sorted);
+Interval interval_95(const std::vector<double>& sorted);
 
 }  // namespace vernier::internal

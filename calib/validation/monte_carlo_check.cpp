@@ -15,12 +15,14 @@
 #include "calib/board_state.h"
 #include "calib/calibration/outliers.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/solver/resolve.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 #include "calib/statistics/scaled_root.h"
 
@@ -75,7 +77,7 @@ class Copies {
     Eigen::Index at = 0;
     for (std::size_t v = 0; v < predicted_.size(); ++v) {
       const BoardView& view = observations_.views[v];
-      RandomStream draws(place(trial, static_cast<std::uint32_t>(64 * view.frame + view.camera)));
+      RandomStream draws(of_view(place(trial, 0), view.frame, view.camera));
       for (std::size_t i = 0; i < predicted_[v].size(); ++i) {
         const double w = problem_.corner_weights.empty() ? 1 : problem_.corner_weights[v][i];
         const double sigma = problem_.pixel_sigma_px / std::sqrt(w > 0 ? w : 1);
@@ -98,7 +100,7 @@ class Copies {
 
 /// Quantiles, each with probability 0.5 % beyond, of the extreme eigenvalues of W / n with W a
 /// Wishart matrix of n degrees of freedom, by Bartlett's decomposition.
-std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
+Interval wishart_band(int q, int n, std::uint64_t seed) {
   std::vector<double> least(wishart_draws), largest(wishart_draws);
   for (int k = 0; k < wishart_draws; ++k) {
     RandomStream draws({.seed = seed,
@@ -113,13 +115,11 @@ std::array<double, 2> wishart_band(int q, int n, std::uint64_t seed) {
     least[k] = eigenvalues[0];
     largest[k] = eigenvalues[q - 1];
   }
-  const int tail = wishart_draws / 200;
-  std::nth_element(least.begin(), least.begin() + tail, least.end());
-  std::nth_element(largest.begin(), largest.end() - 1 - tail, largest.end());
-  return {least[tail], *(largest.end() - 1 - tail)};
+  return {quantile(std::move(least), 0.005, QuantileKind::upper),
+          quantile(std::move(largest), 0.995, QuantileKind::lower)};
 }
 
-std::array<double, 2> mean_interval(double q, double n, double probability) {
+Interval mean_interval(double q, double n, double probability) {
   const double tail = 0.5 * (1 - probability);
   return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
 }
@@ -167,8 +167,8 @@ void judge(const Eigen::MatrixXd& errors,
 bool MonteCarloCheck::enough_trials_solved() const { return 100 * failed <= trials + failed; }
 
 bool MonteCarloCheck::scatter_matches_covariance() const {
-  return nees_mean >= nees_interval_99[0] && nees_mean <= nees_interval_99[1] &&
-         eigenvalues[0] >= eigenvalue_band_99[0] && eigenvalues[1] <= eigenvalue_band_99[1] &&
+  return nees_mean >= nees_interval_99.low && nees_mean <= nees_interval_99.high &&
+         eigenvalues[0] >= eigenvalue_band_99.low && eigenvalues[1] <= eigenvalue_band_99.high &&
          ks_p > min_p && ks_p_components > min_p;
 }
 

@@ -8,6 +8,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/interval.h"
 #include "calib/solver/reprojection_problem.h"
 
 namespace vernier::internal {
@@ -26,14 +27,15 @@ struct MonteCarloCheck {
   int trials = 0;  ///< that were solved
   int failed = 0;  ///< that did not converge
   double nees_mean = 0;
-  double nees_expected = 0;                  ///< q
-  std::array<double, 2> nees_interval_95{};  ///< of the mean, were C right
-  std::array<double, 2> nees_interval_99{};
+  double nees_expected = 0;         ///< q
+  Interval nees_interval_95{0, 0};  ///< of the mean, were C right
+  Interval nees_interval_99{0, 0};
   std::vector<double> std_ratios;               ///< sampled over predicted; 0 for a held parameter
   double std_ratio_min = 0, std_ratio_max = 0;  ///< of those that are free
   /// Least and largest eigenvalue of the sample covariance of W δ, and the 0.5 % quantile of the
   /// least and the 99.5 % quantile of the largest, simulated for a Wishart matrix of that size.
-  std::array<double, 2> eigenvalues{}, eigenvalue_band_99{};
+  std::array<double, 2> eigenvalues{};
+  Interval eigenvalue_band_99{0, 0};
   double ks_p = 0;  ///< Kolmogorov and Smirnov: NEES against χ²_q
   double ks_p_components =
       0;  ///< the least of q tests of W δ against N(0, 1), times q (Bonferroni)

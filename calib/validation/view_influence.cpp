@@ -18,6 +18,22 @@
 #include "calib/statistics/scaled_root.h"
 
 namespace vernier::internal {
+namespace {
+
+/// How many corners the views of each frame hold.
+std::vector<int> corners_by_frame(const CalibrationEvidence& evidence, const std::string& place) {
+  if (evidence.T_first_board.size() != evidence.frames.size()) {
+    throw Error(place, "its evidence has not one pose of the board a frame", "calibrate again");
+  }
+  std::vector<int> corners(evidence.frames.size());
+  for (const BoardView& view : evidence.observations.views) {
+    corners[frame_index(evidence.frames, view.frame)] += static_cast<int>(view.ids.size());
+  }
+  return corners;
+}
+
+}  // namespace
+
 std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equations,
                                           const Eigen::MatrixXd& bound) {
   constexpr double decides_alone = 1 - 1e-6;
@@ -56,17 +72,16 @@ std::vector<ViewInfluence> view_influence(const RigEstimate& estimate, const std
   }
   const CalibrationEvidence& evidence = *estimate.evidence;
   const double sigma = estimate.calibration->pixel_sigma_px;
+  const std::vector<int> corners = corners_by_frame(evidence, place);
   const ReducedNormalEquations equations = reduced_normal_equations(
       evidence.observations,
       {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m}, sigma,
       evidence.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free);
   auto influences =
       view_influence(equations, required_covariance(estimate, CovarianceChoice::mvb, place).matrix);
-  for (std::size_t f = 0; f < influences.size(); ++f) influences[f].frame = evidence.frames[f];
-  std::size_t f = 0;
-  for (const BoardView& view : evidence.observations.views) {
-    while (evidence.frames[f] != view.frame) ++f;
-    influences[f].corners += static_cast<int>(view.ids.size());
+  for (std::size_t f = 0; f < influences.size(); ++f) {
+    influences[f].frame = evidence.frames[f];
+    influences[f].corners = corners[f];
   }
   for (std::size_t k = 0; k < influences.size(); ++k) {
     influences[k].rms_px =

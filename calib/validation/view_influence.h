@@ -42,7 +42,8 @@ std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equation
                                           const Eigen::MatrixXd& bound);
 
 /// One a frame of the estimate's evidence. A board whose warp is not zero is taken to have been
-/// estimated with it. Throws Error(`place`) without evidence, pixel noise or the bound.
+/// estimated with it. Throws Error(`place`) without evidence, pixel noise or the bound,
+/// and an Error where a view is of a frame that has no pose.
 std::vector<ViewInfluence> view_influence(const RigEstimate& estimate,
                                           const std::string& place = "rig");
 

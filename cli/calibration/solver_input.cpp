@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <sstream>
 
+#include "calib/base/text_lines.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/camera.h"
@@ -20,17 +21,9 @@ namespace vernier::cli {
 namespace {
 
 double number(const std::string& text, const std::string& option) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size() || !std::isfinite(value)) {
-    throw Error(option, fmt::format("\"{}\" is not a finite number", text),
-                "write it like left.ax=1");
-  }
-  return value;
+  if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
+  throw Error(option, fmt::format("\"{}\" is not a finite number", text),
+              "write it like left.ax=1");
 }
 
 /// "left.ax=1" or "left.ax".

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "calib/covariance.h"
+#include "calib/estimate/outlier_lines.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {
@@ -95,10 +96,7 @@ std::string rig_table(const RigEstimate& estimate) {
           fmt::format("prior: chi² {:.2f} for {} parameters it knows (p at most {:.2g})\n",
                       s.prior_chi2, s.prior_dof, chi_squared_survival(s.prior_chi2, s.prior_dof));
     }
-    for (const CornerOutlier& o : s.outliers) {
-      text += fmt::format("left out: corner {} of frame {}, {}, {:.1f} px from its place\n", o.id,
-                          o.frame, estimate.rig.cameras[o.camera].name, o.residual_px);
-    }
+    for (const std::string& line : outlier_lines(estimate)) text += "left out: " + line + "\n";
     text += pair_outlier_lines(s.pair_outliers);
   }
   if (const auto warp_m = estimated_warp_m(estimate)) {

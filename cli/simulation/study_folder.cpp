@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
@@ -45,9 +47,8 @@ Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Sessi
 
 /// A number as a number, a word as a word.
 Json value_json(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return end != text.c_str() && *end == '\0' ? Json(value) : Json(text);
+  const std::optional<double> value = to_real(text);
+  return value ? Json(*value) : Json(text);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/statistics/quantile.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -41,12 +42,9 @@ struct MatchArguments {
 };
 
 double median_sigma(const std::vector<CornerMatch>& matches) {
-  if (matches.empty()) return 0;
   std::vector<double> sigma;
   for (const CornerMatch& match : matches) sigma.push_back(match.sigma_px);
-  const auto middle = sigma.begin() + static_cast<long>(sigma.size() / 2);
-  std::nth_element(sigma.begin(), middle, sigma.end());
-  return *middle;
+  return median_or_zero(std::move(sigma));
 }
 
 std::vector<ImageMatching> match_all(const std::vector<ImageFiles>& files,

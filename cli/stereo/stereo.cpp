@@ -13,7 +13,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
@@ -69,11 +69,11 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
     share.push_back(common / (own + common));
     relative.push_back(s.relative_sigma);
   }
-  f.depth_m = median(depth);
-  f.matching_m = median(matching);
-  f.calibration_m = median(calibration);
-  f.calibration_share = median(share);
-  f.relative = median(relative);
+  f.depth_m = median_or_zero(depth);
+  f.matching_m = median_or_zero(matching);
+  f.calibration_m = median_or_zero(calibration);
+  f.calibration_share = median_or_zero(share);
+  f.relative = median_or_zero(relative);
   return f;
 }
 

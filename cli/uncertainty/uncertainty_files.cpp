@@ -101,7 +101,7 @@ std::string triangulation_csv(const UncertaintyReport& report) {
                        frame_label(r.frame), r.distance_m, r.place.name, r.linear.x_m.x(),
                        r.linear.x_m.y(), r.linear.x_m.z(), c.x(), c.y(), c.z(),
                        cell(std::sqrt(r.sampled.covariance(2, 2))), o.x(), o.y(), o.z(),
-                       interval[0], interval[1], r.sampled_total.non_physical_share);
+                       interval.low, interval.high, r.sampled_total.non_physical_share);
   }
   return csv;
 }
@@ -125,7 +125,7 @@ std::string depth_csv(const UncertaintyReport& report) {
   for (const DepthReport& r : report.depth) {
     for (const DepthUncertainty& u : r.ranges) {
       csv += fmt::format("{},{},{},{},{},{},{}\n", quoted(r.camera), u.range_m, u.sigma_linear_m,
-                         u.sigma_sampled_m, u.interval_95_m[0], u.interval_95_m[1],
+                         u.sigma_sampled_m, u.interval_95_m.low, u.interval_95_m.high,
                          u.non_physical_share);
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
@@ -21,7 +22,7 @@ namespace {
 Json distance(double distance_m) { return std::isinf(distance_m) ? Json("inf") : Json(distance_m); }
 
 /// Five significant digits, so that a page stays small.
-double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)); }
+double rounded(double value) { return to_real(fmt::format("{:.5g}", value)).value_or(value); }
 
 template <typename Matrix>
 Json matrix(const Matrix& m) {
@@ -113,13 +114,13 @@ Json projection_json(const ProjectionReport& report, GridDetail detail) {
 }
 
 Json sampled_json(const SampledPoint& sampled) {
-  return {
-      {"sd_m", deviations(sampled.covariance)},
-      {"covariance_m2", matrix(sampled.covariance)},
-      {"mean_shift_m", vector(sampled.mean_shift_m)},
-      {"depth_interval_95_m",
-       {json_number(sampled.depth_interval_95_m[0]), json_number(sampled.depth_interval_95_m[1])}},
-      {"non_physical_share", sampled.non_physical_share}};
+  return {{"sd_m", deviations(sampled.covariance)},
+          {"covariance_m2", matrix(sampled.covariance)},
+          {"mean_shift_m", vector(sampled.mean_shift_m)},
+          {"depth_interval_95_m",
+           {json_number(sampled.depth_interval_95_m.low),
+            json_number(sampled.depth_interval_95_m.high)}},
+          {"non_physical_share", sampled.non_physical_share}};
 }
 
 Json triangulation_json(const TriangulationReport& report) {
@@ -176,7 +177,7 @@ Json depth_json(const DepthReport& report) {
         {{"range_m", u.range_m},
          {"sd_linear_m", json_number(u.sigma_linear_m)},
          {"sd_sampled_m", json_number(u.sigma_sampled_m)},
-         {"interval_95_m", {json_number(u.interval_95_m[0]), json_number(u.interval_95_m[1])}},
+         {"interval_95_m", {json_number(u.interval_95_m.low), json_number(u.interval_95_m.high)}},
          {"non_physical_share", u.non_physical_share}});
   }
   return json;

@@ -71,7 +71,7 @@ std::string triangulation_text(const UncertaintyReport& report) {
                         both(sd(r.linear.calibration, 2), sd(r.sampled.covariance, 2)),
                         number(sd(r.linear.observation, 2)),
                         number(sd(r.linear.calibration + r.linear.observation, 2)),
-                        fmt::format("{:.4g} … {:.4g}", interval[0], interval[1]),
+                        fmt::format("{:.4g} … {:.4g}", interval.low, interval.high),
                         percent(r.sampled_total.non_physical_share));
   }
   return text;
@@ -107,7 +107,7 @@ std::string depth_text(const DepthReport& report) {
   for (const DepthUncertainty& u : report.ranges) {
     text += fmt::format("{:>8} {:>19} {:>21} {:>13}\n", number(u.range_m),
                         both(u.sigma_linear_m, u.sigma_sampled_m),
-                        fmt::format("{:.4g} … {:.4g}", u.interval_95_m[0], u.interval_95_m[1]),
+                        fmt::format("{:.4g} … {:.4g}", u.interval_95_m.low, u.interval_95_m.high),
                         percent(u.non_physical_share));
   }
   return text;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "sim/sources.h"
 #include "sim/sources/measured_sources.h"
 
@@ -22,7 +23,9 @@ const SourceParameter& parameter_of(std::string_view key) {
 }
 
 /// Four digits: more than any interval here is worth.
-double rounded(double value) { return std::stod(fmt::format("{:.4g}", value)); }
+double rounded(double value) {
+  return vernier::internal::to_real(fmt::format("{:.4g}", value)).value_or(value);
+}
 
 std::string text_of(const MeasuredValue& measured) {
   return measured.known() ? fmt::format("{:.4g}", measured.value) : "not known";

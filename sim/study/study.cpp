@@ -19,8 +19,10 @@
 #include <set>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/interval.h"
+#include "calib/statistics/quantile.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
@@ -31,6 +33,7 @@
 
 namespace vernier::sim::internal {
 
+using namespace vernier::internal;
 using namespace localise;
 
 namespace {
@@ -124,13 +127,10 @@ std::string store_name(const Shard& shard) {
                           : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count);
 }
 
-double median(std::vector<double> values, double quantile = 0.5) {
+/// Not a number of none.
+double quantile_or_nan(std::vector<double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double at = quantile * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+  return quantile(std::move(values), p, QuantileKind::linear);
 }
 
 }  // namespace
@@ -146,7 +146,8 @@ void run_study(const Study& study, const StudyRun& run) {
   const Visibility visibility(study.world);
   const std::vector<Job> jobs = missing_jobs(study, run);
   StudyStore store(run.folder / store_name(run.shard));
-  if (!run.command.empty() && !jobs.empty()) store.set_metadata(command_key(run.command), run.command);
+  if (!run.command.empty() && !jobs.empty())
+    store.set_metadata(command_key(run.command), run.command);
 
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
   std::set<std::string> ceilings;
@@ -218,8 +219,10 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     CellResult result;
     result.cell = cell;
     const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
-    result.ceiling = ceiling == ceilings.end() ? std::numeric_limits<double>::quiet_NaN()
-                                               : std::strtod(ceiling->second.c_str(), nullptr);
+    result.ceiling = std::numeric_limits<double>::quiet_NaN();
+    if (ceiling != ceilings.end()) {
+      result.ceiling = vernier::internal::to_real(ceiling->second).value_or(result.ceiling);
+    }
     results.cells.push_back(std::move(result));
   }
   for (const Job& job : all_jobs(study)) {
@@ -271,11 +274,11 @@ CellSummary summarise(const CellResult& cell) {
   s.node_success = node / n;
   s.recall_05 = close / n;
   s.recall_025 = closer / n;
-  s.median_error_m = median(errors);
-  s.median_heading_error_rad = median(headings);
+  s.median_error_m = quantile_or_nan(errors, 0.5);
+  s.median_heading_error_rad = quantile_or_nan(headings, 0.5);
   for (const double ms : cpu) s.cpu_ms_mean += ms / n;
-  s.cpu_ms_median = median(cpu);
-  s.cpu_ms_p95 = median(cpu, 0.95);
+  s.cpu_ms_median = quantile_or_nan(cpu, 0.5);
+  s.cpu_ms_p95 = quantile_or_nan(cpu, 0.95);
   s.wall_ms_mean = wall / n;
   return s;
 }

@@ -170,12 +170,7 @@ ViewFrustum::ViewFrustum(const Camera& camera, double near_m, double far_m)
     throw Error(place, "its range of depths is empty", "choose 0 < near_m < far_m");
   }
   if (camera.size_px.minCoeff() < 1) throw Error(place, "its image has no pixels", "set size_px");
-  if (camera.parameters.size() != parameter_count(camera.model)) {
-    throw Error(place,
-                "it has " + std::to_string(camera.parameters.size()) + " parameters, not " +
-                    std::to_string(parameter_count(camera.model)),
-                "give f_px, ax, ox_px, oy_px, then the model's distortion");
-  }
+  check_parameters(camera);
   bound_border();
 }
 

@@ -249,9 +249,15 @@ class RealPairs(Case):
         for name in ('left01.jpg', 'left02.jpg'):
             data = (IMAGES / name).read_bytes()
             (self.folder / name).write_bytes(data if name == 'left01.jpg' else data[:9000])
-        self.complains('detect', '--left', self.folder / 'left*.jpg', '--board', '9x6', '-o',
-                       self.folder / 'c.vnl', of='left02.jpg: is cut off',
-                       leaves=[self.folder / 'c.vnl'])
+        detect = ('detect', '--left', self.folder / 'left*.jpg', '--board', '9x6', '-o',
+                  self.folder / 'c.vnl')
+        done = self.works(*detect)
+        self.assertIn('1 boards found in 1 frames', done.stdout)
+        self.assertIn('left02.jpg: is cut off', done.stdout)
+        (self.folder / 'c.vnl').unlink()
+        for name in ('left01.jpg', 'left02.jpg'):
+            (self.folder / name).write_bytes((IMAGES / name).read_bytes()[:9000])
+        self.complains(*detect, of='left01.jpg: is cut off', leaves=[self.folder / 'c.vnl'])
 
     def test_kalibrs_checkerboard_file(self):
         target = self.folder / 'target.yaml'
@@ -697,6 +703,15 @@ class ModelCheck(Case):
                           '640x480', '-o', self.folder / 'rig.json')
         words = ('models were not compared: with some views left out, camera 1 ("right"): no view '
                  'of the board is left of it')
+        self.assertIn(words, done.stderr)
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        self.assertTrue(any(w.startswith(words) for w in rig['calibration']['warnings']))
+
+    def test_a_distortion_that_folds_the_image_is_named(self):
+        done = self.works('calibrate', '--left', IMAGES / 'left0[1-5].jpg', '--right',
+                          IMAGES / 'right0[1-5].jpg', '--board', '9x6', '--square-m', '0.025',
+                          '--model', 'opencv5', '--no-model-check', '-o', self.folder / 'rig.json')
+        words = 'the distortion of camera "left" cannot be inverted in 1.'
         self.assertIn(words, done.stderr)
         rig = json.loads((self.folder / 'rig.json').read_text())
         self.assertTrue(any(w.startswith(words) for w in rig['calibration']['warnings']))

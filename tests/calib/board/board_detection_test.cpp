@@ -10,6 +10,7 @@
 #include "calib/board_target.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 
@@ -74,6 +75,46 @@ TEST_F(BoardDetectionTest, CornersFileKeepsLeftAndRightWhereTheFirstLeftBoardIsM
   }
   EXPECT_EQ(after.views[0].camera, 1);
   EXPECT_EQ(after.views[0].frame, 1);
+}
+
+TEST_F(BoardDetectionTest, AnImageThatCannotBeReadIsRefusedByName) {
+  write_image("L/01.pgm");
+  write_image("L/02.pgm");
+  write_image("L/03.pgm");
+  write_image("R/01.pgm");
+  write_image("R/02.pgm");
+  write_image("R/03.pgm");
+  std::filesystem::resize_file(folder_ / "L/01.pgm", 9000);
+  write_atomically(folder_ / "R/02.pgm", "no image");
+  const ImageDetections found = detect_images({pattern("L/*.pgm"), pattern("R/*.pgm")}, board);
+  EXPECT_EQ(found.used.size(), 4u);
+  EXPECT_EQ(found.observations.views.size(), 4u);
+  EXPECT_EQ(found.observations.size_px[0], Eigen::Vector2i(440, 320));
+  ASSERT_EQ(found.refused.size(), 2u);
+  EXPECT_EQ(found.refused[0].image, folder_ / "L/01.pgm");
+  EXPECT_EQ(found.refused[0].frame, 1);
+  EXPECT_EQ(found.refused[0].reason,
+            "is cut off (it has fewer pixels than its header says); copy it again, or leave it "
+            "out");
+  EXPECT_EQ(found.refused[1].image, folder_ / "R/02.pgm");
+  EXPECT_EQ(found.refused[1].camera, 1);
+  EXPECT_EQ(found.refused[1].reason, "is not an image that can be read; check the file");
+  write_corners(found, board, folder_ / "corners.vnl");
+  EXPECT_NE(read_whole(folder_ / "corners.vnl").find(pattern("R/02.pgm") + " - - -\n"),
+            std::string::npos);
+}
+
+TEST_F(BoardDetectionTest, ACameraWhoseImagesCannotBeReadIsAnErrorThatNamesTheFirst) {
+  write_image("L/01.pgm");
+  write_image("L/02.pgm");
+  write_image("R/01.pgm");
+  write_image("R/02.pgm");
+  write_atomically(folder_ / "R/01.pgm", "no image");
+  std::filesystem::resize_file(folder_ / "R/02.pgm", 9000);
+  EXPECT_EQ(test::error_message([&] {
+              detect_images({pattern("L/*.pgm"), pattern("R/*.pgm")}, board);
+            }),
+            pattern("R/01.pgm") + ": is not an image that can be read; check the file");
 }
 
 TEST_F(BoardDetectionTest, FramesThatDoNotPairAreAnError) {

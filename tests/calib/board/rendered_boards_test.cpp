@@ -306,8 +306,9 @@ TEST_F(RenderedBoards, DamagedFilesAreNamed) {
   EXPECT_EQ(error_output("a1.pgm", cut),
             ": is cut off (it has fewer pixels than its header says); copy it again, or leave it "
             "out");
-  EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes[bytes.size() / 2] ^= 1; }),
-            ": is damaged (a PNG checksum is wrong); copy it again, or leave it out");
+  EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes[bytes.size() / 2] ^= 1; })
+                .find(": is damaged (libpng: "),
+            0u);
   EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes = "text"; }),
             ": is not an image that can be read; check the file");
   EXPECT_EQ(error_output("a1.png", [](std::string& bytes) { bytes.clear(); }),

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -217,6 +218,33 @@ TEST(Outliers, MoreThanHalfOfACamerasViewsAreNotLeftOut) {
       test::error_message([] { calibrate(mostly_displaced(8), {.check_input = false}); });
   EXPECT_NE(error_output.find("did not converge"), std::string::npos) << error_output;
   EXPECT_NE(error_output.find(words), std::string::npos) << error_output;
+}
+
+TEST(Outliers, FramesAndCamerasThatTheStateDoesNotHaveAreAnError) {
+  const auto board = simulate_board(test::stereo_rig(), {}, 33, 0, {.frames = 4});
+  BoardObservations strange = board.observations;
+  strange.views.back().frame = 9;
+  EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),
+            "frame 9: a view is of it, but no pose of the board is; give a pose for every frame of "
+            "the views");
+  strange = board.observations;
+  strange.views.back().camera = 2;
+  EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),
+            "frame 3: the rig has 2 cameras, so none of number 2; give the corners of this rig");
+
+  std::vector<CornerOutlier> outliers{{9, 0, 0, "", {0, 0}, 0}};
+  measure_outliers(board.observations.target_m, board.truth, outliers);
+  EXPECT_TRUE(std::isnan(outliers[0].residual_px));
+  outliers = {{1, 2, 0, "", {0, 0}, 0}};
+  EXPECT_NE(test::error_message([&] {
+              measure_outliers(board.observations.target_m, board.truth, outliers);
+            }).find("none of number 2"),
+            std::string::npos);
+  outliers = {{1, 0, 54, "", {0, 0}, 0}};
+  EXPECT_NE(test::error_message([&] {
+              measure_outliers(board.observations.target_m, board.truth, outliers);
+            }).find("the target has no corner 54"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -4,8 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+
 #include "calib/error.h"
 #include "calib/opencv_models.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
@@ -81,6 +87,33 @@ TEST(Camera, RadialModelsAreOpenCv8WithZeros) {
   full.parameters.head<5>() = radial.parameters;
   const Eigen::Vector3d point(0.5, 0.4, 1.5);
   EXPECT_LT((project(radial, point) - project(full, point)).norm(), 1e-10);
+}
+
+TEST(CameraWithoutParameters, IsAnErrorThatNamesIt) {
+  const std::string words =
+      "camera \"left\": it has 0 parameters, not 5; give f_px, ax, ox_px, oy_px, then the model's "
+      "distortion";
+  const Camera camera;
+  ProjectionJacobian jacobian;
+  const auto message = [](const std::function<void()>& call) { return test::error_message(call); };
+  EXPECT_EQ(message([&] { project(camera, {0, 0, 1}); }), words);
+  EXPECT_EQ(message([&] { project(camera, {0, 0, 1}, jacobian); }), words);
+  EXPECT_EQ(message([&] { unproject(camera, {320, 240}); }), words);
+  EXPECT_EQ(message([&] { try_unproject(camera, {320, 240}); }), words);
+  EXPECT_EQ(message([&] { camera.f_px(); }), words);
+  EXPECT_EQ(message([&] { camera.oy_px(); }), words);
+  EXPECT_EQ(message([&] { check_parameters(camera); }), words);
+  EXPECT_EQ(message([&] { parameters(Rig{{camera}, {Pose{}}}); }), words);
+}
+
+TEST(CameraWithoutParameters, NorMayItHaveTooMany) {
+  Camera camera = test::stereo_rig().cameras[0];
+  camera.model = Pinhole{};
+  EXPECT_EQ(camera.ax(), camera.parameters[1]);
+  EXPECT_NE(test::error_message([&] {
+              project(camera, {0, 0, 1});
+            }).find("it has 5 parameters, not 4"),
+            std::string::npos);
 }
 
 }  // namespace

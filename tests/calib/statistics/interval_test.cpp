@@ -6,8 +6,28 @@
 
 #include <vector>
 
+#include "calib/depth_uncertainty.h"
+#include "calib/uncertainty/sampled_propagation.h"
+#include "calib/validation/monte_carlo_check.h"
+
 namespace vernier {
+
+using namespace internal;
+
 namespace {
+
+// What is an interval is one Interval everywhere, unset from 0 to 0 where it is of no proportion.
+TEST(Interval, IsTheTypeOfEveryInterval) {
+  EXPECT_EQ(Interval{}, (Interval{0, 1}));
+  EXPECT_NE(Interval{}, (Interval{0, 0.5}));
+  EXPECT_EQ(DepthUncertainty().interval_95_m, (Interval{0, 0}));
+  EXPECT_EQ(MonteCarloCheck().nees_interval_95, (Interval{0, 0}));
+  EXPECT_EQ(MonteCarloCheck().nees_interval_99, (Interval{0, 0}));
+  EXPECT_EQ(MonteCarloCheck().eigenvalue_band_99, (Interval{0, 0}));
+  const std::vector<double> sorted{0, 1, 2, 3, 4};
+  EXPECT_NEAR(interval_95(sorted).low, 0.1, 1e-12);
+  EXPECT_NEAR(interval_95(sorted).high, 3.9, 1e-12);
+}
 
 // Known figures: 835 and 256 of 900.
 TEST(Wilson, KnownIntervals) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "calib/error.h"
@@ -35,6 +36,19 @@ TEST(RandomStream, RefusesFieldsBeyondTheirBits) {
   EXPECT_THROW(RandomStream({.source = 256}), Error);
   EXPECT_THROW(RandomStream({.eye = 4}), Error);
   EXPECT_THROW(RandomStream({.frame = 1u << 22}), Error);
+}
+
+TEST(RandomCounter, OfViewsDiffersForAllFramesAndCameras) {
+  EXPECT_EQ(of_view({.seed = 5}, 3, 1).feature, 193u);
+  EXPECT_EQ(of_view({.seed = 5}, 3, 1).frame, 0u);
+  constexpr int largest = std::numeric_limits<int>::max();
+  std::set<double> firsts;
+  for (const int frame : {0, 1, 1 << 25, 1 << 26, (1 << 26) + 1, largest - (1 << 26), largest}) {
+    for (const int camera : {0, 1, 63}) {
+      firsts.insert(RandomStream(of_view({.seed = 5}, frame, camera)).uniform());
+    }
+  }
+  EXPECT_EQ(firsts.size(), 21u);
 }
 
 TEST(NormalQuantile, InvertsTheDistribution) {

@@ -105,8 +105,8 @@ TEST(SampledPropagation, DepthIntervalIsTheLinearOneAtSmallPsi) {
   // The standard error of a 2.5 % quantile of n normal draws is sqrt(p(1-p)/n)/phi(z) = 2.67/√n
   // standard deviations; two ends, two-sided.
   const double band = normal_quantile(1 - alarm / 4) * 2.67 / std::sqrt(samples);
-  EXPECT_NEAR((u.interval_95_m[0] - 2) / u.sigma_linear_m, -1.96, band);
-  EXPECT_NEAR((u.interval_95_m[1] - 2) / u.sigma_linear_m, 1.96, band);
+  EXPECT_NEAR((u.interval_95_m.low - 2) / u.sigma_linear_m, -1.96, band);
+  EXPECT_NEAR((u.interval_95_m.high - 2) / u.sigma_linear_m, 1.96, band);
 }
 
 }  // namespace

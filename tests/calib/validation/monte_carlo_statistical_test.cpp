@@ -64,15 +64,15 @@ TEST(MonteCarloCheck, TheBoundIsRightForWhiteNoise) {
     RecordProperty(std::string("eigenvalues_") + model,
                    std::to_string(check.eigenvalues[0]) + " " +
                        std::to_string(check.eigenvalues[check.eigenvalues.size() - 1]) + " in " +
-                       std::to_string(check.eigenvalue_band_99[0]) + " " +
-                       std::to_string(check.eigenvalue_band_99[1]));
+                       std::to_string(check.eigenvalue_band_99.low) + " " +
+                       std::to_string(check.eigenvalue_band_99.high));
     RecordProperty(std::string("ks_p_") + model, std::to_string(check.ks_p) + ", components " +
                                                      std::to_string(check.ks_p_components));
     EXPECT_TRUE(check.consistent())
         << model << ": NEES " << check.nees_mean << " of " << check.nees_expected
         << ", eigenvalues " << check.eigenvalues[0] << " " << check.eigenvalues[1] << " in "
-        << check.eigenvalue_band_99[0] << " " << check.eigenvalue_band_99[1] << ", p " << check.ks_p
-        << " " << check.ks_p_components;
+        << check.eigenvalue_band_99.low << " " << check.eigenvalue_band_99.high << ", p "
+        << check.ks_p << " " << check.ks_p_components;
     EXPECT_EQ(check.nees_expected, calibrated.covariance.rows());
     EXPECT_GT(check.std_ratio_min, 0.88);  // 3.7 standard deviations of a ratio from 500 trials
     EXPECT_LT(check.std_ratio_max, 1.12);

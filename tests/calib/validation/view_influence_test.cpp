@@ -142,5 +142,18 @@ TEST(ViewInfluence, SaysWhatIsMissing) {
             std::string::npos);
 }
 
+TEST(ViewInfluence, AViewOfAnUnknownFrameIsAnError) {
+  RigEstimate estimate = calibrate(some_views(41));
+  estimate.evidence->observations.views.back().frame = 99;
+  EXPECT_EQ(test::error_message([&] { view_influence(estimate); }),
+            "frame 99: a view is of it, but no pose of the board is; give a pose for every frame "
+            "of the views");
+  estimate.evidence->frames.push_back(99);
+  EXPECT_NE(test::error_message([&] {
+              view_influence(estimate);
+            }).find("its evidence has not one pose of the board a frame"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/base/image_damage.h"
+
+#include <png.h>
+
+#include <array>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+
+// libjpeg's headers need <cstddef> and <cstdio> before them.
+#include <jpeglib.h>
+
+#include <jerror.h>
+
+namespace vernier::internal {
+namespace {
+
+constexpr std::uint64_t most_pixels = 1u << 30;  // more than OpenCV decodes
+
+/// libjpeg's and libpng's errors leave their functions by longjmp. So nothing that is alive across
+/// one of their calls has a destructor.
+struct JpegCheck {
+  jpeg_error_mgr errors{};  // first: libjpeg knows no more of this than its address
+  std::jmp_buf at_error{};
+  jpeg_decompress_struct decoder{};
+  bool cut_off = false;
+  std::array<char, JMSG_LENGTH_MAX> damage{};  ///< the first, in libjpeg's words
+};
+
+JpegCheck& check_of(j_common_ptr decoder) { return *reinterpret_cast<JpegCheck*>(decoder->err); }
+
+/// Whether a warning of libjpeg says that pixels are lost, and not only that something is unusual.
+bool loses_pixels(int code) {
+  return code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_ARITH_BAD_CODE ||
+         code == JWRN_MUST_RESYNC;
+}
+
+void on_jpeg_message(j_common_ptr decoder, int level) {
+  JpegCheck& check = check_of(decoder);
+  if (level >= 0) return;  // a trace
+  const int code = decoder->err->msg_code;
+  if (code == JWRN_JPEG_EOF) check.cut_off = true;
+  if (loses_pixels(code) && check.damage[0] == '\0') {
+    decoder->err->format_message(decoder, check.damage.data());
+  }
+}
+
+void on_jpeg_error(j_common_ptr decoder) { std::longjmp(check_of(decoder).at_error, 1); }
+
+void print_nothing(j_common_ptr) {}
+
+void read_jpeg(JpegCheck& check, const unsigned char* bytes, std::size_t size) {
+  jpeg_decompress_struct& decoder = check.decoder;
+  if (setjmp(check.at_error) != 0) return;
+  jpeg_create_decompress(&decoder);
+  jpeg_mem_src(&decoder, bytes, static_cast<unsigned long>(size));
+  jpeg_read_header(&decoder, TRUE);
+  if (std::uint64_t{decoder.image_width} * decoder.image_height > most_pixels) return;
+  decoder.out_color_space = decoder.jpeg_color_space;
+  decoder.scale_num = 1;
+  decoder.scale_denom = 8;
+  decoder.do_fancy_upsampling = FALSE;
+  jpeg_start_decompress(&decoder);
+  auto* row = decoder.mem->alloc_sarray(
+      reinterpret_cast<j_common_ptr>(&decoder), JPOOL_IMAGE,
+      decoder.output_width * static_cast<unsigned>(decoder.output_components), 1);
+  while (decoder.output_scanline < decoder.output_height) jpeg_read_scanlines(&decoder, row, 1);
+  jpeg_finish_decompress(&decoder);
+}
+
+struct PngCheck {
+  const unsigned char* next = nullptr;
+  std::size_t left = 0;
+  bool cut_off = false;
+  std::array<char, 200> damage{};  ///< in libpng's words
+};
+
+void read_png_bytes(png_structp decoder, png_bytep to, std::size_t count) {
+  auto& check = *static_cast<PngCheck*>(png_get_io_ptr(decoder));
+  if (count > check.left) {
+    check.cut_off = true;
+    png_error(decoder, "the file has no end");
+  }
+  std::memcpy(to, check.next, count);
+  check.next += count;
+  check.left -= count;
+}
+
+void on_png_error(png_structp decoder, png_const_charp words) {
+  auto& check = *static_cast<PngCheck*>(png_get_error_ptr(decoder));
+  std::snprintf(check.damage.data(), check.damage.size(), "%s", words);
+  png_longjmp(decoder, 1);
+}
+
+void on_png_warning(png_structp, png_const_charp) {}
+
+void read_png(PngCheck& check, png_structp decoder, png_infop info) {
+  if (setjmp(png_jmpbuf(decoder)) != 0) return;
+  png_set_read_fn(decoder, &check, read_png_bytes);
+  png_read_info(decoder, info);
+  const png_uint_32 height = png_get_image_height(decoder, info);
+  if (std::uint64_t{png_get_image_width(decoder, info)} * height > most_pixels) return;
+  const int passes = png_set_interlace_handling(decoder);
+  png_start_read_image(decoder);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (png_uint_32 y = 0; y < height; ++y) png_read_row(decoder, nullptr, nullptr);
+  }
+  png_read_end(decoder, nullptr);
+}
+
+}  // namespace
+
+std::string jpeg_damage(std::string_view bytes) {
+  JpegCheck check;
+  check.decoder.err = jpeg_std_error(&check.errors);
+  check.errors.error_exit = on_jpeg_error;
+  check.errors.emit_message = on_jpeg_message;
+  check.errors.output_message = print_nothing;
+  read_jpeg(check, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_destroy_decompress(&check.decoder);
+  if (check.cut_off) return "is cut off (its JPEG data have no end)";
+  if (check.damage[0] == '\0') return "";
+  return "is damaged (libjpeg: " + std::string(check.damage.data()) + ")";
+}
+
+std::string png_damage(std::string_view bytes) {
+  PngCheck check;
+  check.next = reinterpret_cast<const unsigned char*>(bytes.data());
+  check.left = bytes.size();
+  png_structp decoder =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &check, on_png_error, on_png_warning);
+  png_infop info = decoder ? png_create_info_struct(decoder) : nullptr;
+  if (info) read_png(check, decoder, info);
+  png_destroy_read_struct(&decoder, &info, nullptr);
+  if (check.cut_off) return "is cut off (its PNG data have no end)";
+  if (check.damage[0] == '\0') return "";
+  return "is damaged (libpng: " + std::string(check.damage.data()) + ")";
+}
+
+}  // namespace vernier::internal

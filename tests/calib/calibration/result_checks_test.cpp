@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/calibration/result_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+#include "calib/camera.h"
+#include "calib/fisheye4.h"
+#include "calib/opencv_models.h"
+#include "calib/rig.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+
+using namespace internal;
+
+namespace {
+
+/// The left camera as calibrated from five of OpenCV's pairs, whose boards leave the corners empty.
+Rig folded_rig() {
+  Rig rig = test::stereo_rig(OpenCv5{});
+  rig.cameras[0].parameters << 534.75583, 0.9993611, 338.2308, 236.27274, -0.29390355, 0.14699124,
+      0.0016356615, -0.00040864219, -0.13166338;
+  return rig;
+}
+
+TEST(InversionWarnings, NameTheCameraAndTheRegion) {
+  const std::vector<std::string> warnings = inversion_warnings(folded_rig());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("the distortion of camera \"left\" cannot be inverted in 1."), 0u)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find("(top left, bottom left; from 38"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("use a model with fewer distortion parameters"), std::string::npos);
+}
+
+TEST(InversionWarnings, LensesThatDoNotFoldPassInSilence) {
+  EXPECT_TRUE(inversion_warnings(test::stereo_rig()).empty());
+  for (const CameraModel& model : {CameraModel(OpenCv5{}), CameraModel(Fisheye4{})}) {
+    Rig rig = test::stereo_rig(model);
+    for (Camera& camera : rig.cameras) {
+      camera.parameters.tail(camera.parameters.size() - core_parameter_count).setZero();
+    }
+    EXPECT_TRUE(inversion_warnings(rig).empty());
+  }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -8,9 +8,12 @@
 #include "calib/opencv_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "datasets/shipped.h"
 
 namespace vernier::bench {
+
+using namespace vernier::internal;
 
 struct StereoProblem {
   BoardObservations observations;

@@ -10,12 +10,13 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
+#include "calib/covariance.h"
 #include "calib/pose.h"
 #include "calib/solver/parameter_buffer.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// A calibration as a Ceres user writes it, one analytic block of all residuals a view, for
 /// ceres::Covariance.

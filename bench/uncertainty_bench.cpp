@@ -11,6 +11,7 @@
 
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/opencv_models.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
@@ -19,6 +20,7 @@
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "datasets/shipped.h"
 

@@ -17,6 +17,10 @@ struct Interval {
 /// [0, 1]. `trials` need not be whole: an effective number serves for clustered data.
 Interval wilson_interval(double successes, double trials, double confidence = 0.95);
 
+/// Clopper and Pearson's interval for a proportion (1934): holds its confidence at least, whatever
+/// the proportion. Throws Error unless 0 <= successes <= trials and confidence is in (0, 1).
+Interval clopper_pearson_interval(int successes, int trials, double confidence = 0.95);
+
 /// Successes and trials of one cluster: trials that share a map.
 struct ClusterCount {
   int successes = 0, trials = 0;

@@ -17,6 +17,7 @@
 #include "calib/mrcal/mrcal_uncertainty.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/report/report_data.h"
 
 namespace vernier::cli {
 namespace {
@@ -78,10 +79,8 @@ Finding share_finding() {
 
 std::vector<Finding> findings() {
   const char* data = std::getenv("VERNIER_DATA");
-  const bool plotly =
-      !shipped_file("page/plotly-cartesian.min.js").empty() ||
-      !shipped_file("page/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js")
-           .empty();
+  const fs::path page = shipped_file("page/report.html");
+  const bool plots = !page.empty() && has_plots(page.parent_path());
   return {
       {"vernier", VERNIER_VERSION},
       {"compiler", __VERSION__},
@@ -98,7 +97,9 @@ std::vector<Finding> findings() {
       shipped_finding("rig nominal", "rigs/nominal.rig.json"),
       shipped_finding("report page", "page/report.html"),
       {"report plots (plotly)",
-       plotly ? "found" : "missing: run npm ci in cli/page; pages hold tables only", plotly},
+       plots ? "found"
+             : "missing: pages hold tables only; build again with -DVERNIER_PAGE_PLOTS=ON",
+       plots},
       library_finding(),
       python_finding(),
       image_finding(),

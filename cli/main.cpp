@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   using namespace vernier;
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres would say, results and errors say
   cli::Session session;
+  session.command = cli::command_line(argc, argv);
   CLI::App app{
       "Vernier: how wrong a stereo rig is, and what that does downstream.\n"
       "Calibrate, sample correlated errors, and send them through a simulated building."};

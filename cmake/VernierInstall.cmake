@@ -1,46 +1,51 @@
-# Installation: headers in include/vernier, the libraries with a CMake package (vernier::calib …),
-# and in share/vernier what the program needs to find.
+# Installation: headers in include/vernier, the libraries with a CMake package whose components are
+# the modules (vernier::calib …), and in share/vernier what the program needs to find.
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()
 include(CMakePackageConfigHelpers)
-set(vernier_modules calib stereo localise sim)
+set(vernier_components calib stereo localise sim)  # each brings those to its left
 set(vernier_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vernier)
 
-# A library that is headers only leaves nothing to link, and no installed header shows it: whoever
-# uses the package need not have it.
-foreach(module IN LISTS vernier_modules)
-  get_target_property(interface ${module} INTERFACE_LINK_LIBRARIES)
-  list(REMOVE_ITEM interface $<LINK_ONLY:nlohmann_json::nlohmann_json>
-                             $<LINK_ONLY:Random123::Random123>)
-  set_property(TARGET ${module} PROPERTY INTERFACE_LINK_LIBRARIES ${interface})
-  list(APPEND vernier_needs ${interface})
-endforeach()
-
-# The package asks for what the libraries link, and for nothing else.
-set(VERNIER_FIND_DEPENDENCIES "find_dependency(Eigen3 3.4)\n")
-foreach(package IN ITEMS "Ceres::|Ceres 2.1" "fmt::|fmt" "TBB::|TBB" "SQLite::|SQLite3"
-                         "tomlplusplus::|tomlplusplus" "spdlog::|spdlog" "Highway::|Highway"
-                         "yaml-cpp|yaml-cpp" "JPEG::|JPEG" "PNG::|PNG")
-  string(REPLACE "|" ";" package "${package}")
-  list(GET package 0 namespace)
-  list(GET package 1 arguments)
-  if(vernier_needs MATCHES "${namespace}")
-    string(APPEND VERNIER_FIND_DEPENDENCIES "find_dependency(${arguments})\n")
+# vernier_dependencies(MODULE RESULT): the find_dependency lines for what a module links, and for
+# nothing else.
+function(vernier_dependencies module result)
+  get_target_property(needs ${module} INTERFACE_LINK_LIBRARIES)
+  set(lines "")
+  foreach(package IN ITEMS "Eigen3::|Eigen3 3.4" "Ceres::|Ceres 2.1" "fmt::|fmt"
+                           "Highway::|Highway" "yaml-cpp|yaml-cpp" "TBB::|TBB" "SQLite::|SQLite3"
+                           "JPEG::|JPEG" "PNG::|PNG")
+    string(REPLACE "|" ";" package "${package}")
+    list(GET package 0 namespace)
+    list(GET package 1 arguments)
+    if(needs MATCHES "${namespace}")
+      string(APPEND lines "  find_dependency(${arguments})\n")
+    endif()
+  endforeach()
+  if(needs MATCHES "opencv_")
+    string(REGEX MATCHALL "opencv_[a-z0-9]+" parts "${needs}")
+    list(REMOVE_DUPLICATES parts)
+    list(TRANSFORM parts REPLACE "^opencv_" "")
+    list(JOIN parts " " parts)
+    string(APPEND lines "  find_dependency(OpenCV 4.6 COMPONENTS ${parts})\n")
   endif()
-endforeach()
-if(vernier_needs MATCHES "opencv_")
-  string(REGEX MATCHALL "opencv_[a-z0-9]+" components "${vernier_needs}")
-  list(REMOVE_DUPLICATES components)
-  list(TRANSFORM components REPLACE "^opencv_" "")
-  list(JOIN components " " components)
-  string(APPEND VERNIER_FIND_DEPENDENCIES
-         "find_dependency(OpenCV 4.6 COMPONENTS ${components})\n")
-endif()
+  set(${result} "${lines}" PARENT_SCOPE)
+endfunction()
 
-install(TARGETS ${vernier_modules} EXPORT vernier_targets
-        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vernier)
-install(EXPORT vernier_targets NAMESPACE vernier:: DESTINATION ${vernier_package_dir})
+# One set of targets a component; the package file reads those that are asked for.
+set(VERNIER_READ_COMPONENTS "")
+foreach(component IN LISTS vernier_components)
+  install(TARGETS ${component} EXPORT vernier_${component}_targets
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vernier)
+  install(EXPORT vernier_${component}_targets NAMESPACE vernier::
+          DESTINATION ${vernier_package_dir})
+  vernier_dependencies(${component} dependencies)
+  string(APPEND VERNIER_READ_COMPONENTS
+         "if(\"${component}\" IN_LIST vernier_wanted)\n${dependencies}"
+         "  include(\${CMAKE_CURRENT_LIST_DIR}/vernier_${component}_targets.cmake)\n"
+         "  set(vernier_${component}_FOUND TRUE)\nendif()\n")
+endforeach()
+list(JOIN vernier_components " " VERNIER_COMPONENTS)
 configure_package_config_file(cmake/vernier-config.cmake.in vernier-config.cmake
                               INSTALL_DESTINATION ${vernier_package_dir}
                               NO_SET_AND_CHECK_MACRO)
@@ -49,12 +54,7 @@ install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake
               ${PROJECT_BINARY_DIR}/vernier-config-version.cmake cmake/FindHighway.cmake
         DESTINATION ${vernier_package_dir})
 
-# The program finds these beside itself, in ../share/vernier. Without the plots, which npm brings,
-# the report's page holds tables only.
+# The program finds these beside itself, in ../share/vernier; cli/page adds the report's page.
 set(vernier_share_dir ${CMAKE_INSTALL_DATADIR}/vernier)
 install(DIRECTORY datasets/worlds datasets/rigs DESTINATION ${vernier_share_dir})
 install(FILES python/mrcal_uncertainty.py DESTINATION ${vernier_share_dir}/python)
-install(DIRECTORY cli/page/js DESTINATION ${vernier_share_dir}/page)
-install(FILES cli/page/report.html cli/page/report.css DESTINATION ${vernier_share_dir}/page)
-install(FILES cli/page/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js
-        DESTINATION ${vernier_share_dir}/page OPTIONAL)

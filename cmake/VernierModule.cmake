@@ -1,11 +1,12 @@
-# vernier_module(NAME PUBLIC … ROOMS … SOURCES … DEPENDS … PRIVATE …)
+# vernier_module(NAME PUBLIC … ROOMS … SOURCES … DEPENDS … PRIVATE … HEADER_ONLY …)
 # One static (or shared) library vernier::NAME. PUBLIC headers are installed and included as
 # "NAME/header.h", in the tree and after installation alike. ROOMS are sub-folders that add their
 # sources and internal headers to the library. DEPENDS are the modules to its left; PRIVATE
-# libraries never appear in public headers.
+# libraries never appear in public headers. Of HEADER_ONLY libraries the sources see the headers and
+# nothing is linked, so that the installed package does not name them.
 function(vernier_module name)
   set(gcc_false_alarms -Wno-restrict -Wno-stringop-overflow -Wno-maybe-uninitialized)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;ROOMS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;ROOMS;SOURCES;DEPENDS;PRIVATE;HEADER_ONLY" ${ARGN})
   # In a unity build the constants of one source shadow nothing that matters in another.
   set(vernier_shadow $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>)
   add_library(${name} ${ARG_SOURCES})
@@ -27,6 +28,10 @@ function(vernier_module name)
   target_link_libraries(${name} PUBLIC Eigen3::Eigen ${ARG_DEPENDS})
   foreach(library IN LISTS ARG_PRIVATE)
     target_link_libraries(${name} PRIVATE ${library})
+  endforeach()
+  foreach(library IN LISTS ARG_HEADER_ONLY)
+    target_include_directories(
+      ${name} SYSTEM PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_INCLUDE_DIRECTORIES>)
   endforeach()
   foreach(room IN LISTS ARG_ROOMS)
     add_subdirectory(${room})

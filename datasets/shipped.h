@@ -14,8 +14,8 @@
 /// Recipes of the shipped world and rig.
 namespace vernier::datasets {
 
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 /// An office floor of the memo's size, seed 1.
 inline WorldDescription workshop() {

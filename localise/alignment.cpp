@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/error.h"
 #include "localise/place.h"
 
 namespace vernier::localise::internal {
@@ -30,6 +31,19 @@ struct Level {
   Eigen::Vector2d a_m, b_m, direction;
   double length_m, height_m, sigma_m;
 };
+
+void check(const AlignmentOptions& o) {
+  constexpr double most_steps = 1000;  // the votes of shifts fill a square of them
+  const auto good = [](double most, double step) {
+    return step > 0 && most >= 0 && most / step <= most_steps;
+  };
+  if (!good(o.max_turn_rad, o.turn_step_rad) || !good(o.max_shift_m, o.shift_step_m) ||
+      !(o.position_sigma_m > 0)) {
+    throw Error("alignment options",
+                "turns and shifts need steps above 0, at most 1000 either way, and a sigma above 0",
+                "");
+  }
+}
 
 struct Plan {
   std::vector<Upright> uprights;
@@ -272,6 +286,7 @@ Pose2D ascend(const Neighbours& lines, Pose2D T) {
 Alignment align(const PlaceView& query_view,
                 const PlaceView& node_view,
                 const AlignmentOptions& options) {
+  check(options);
   const Plan query = plan_of(query_view), node = plan_of(node_view);
   ShiftVotes votes(query, node, options);
   Pose2D start;

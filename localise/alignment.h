@@ -24,7 +24,8 @@ struct Alignment {
 /// lines over turn and shift, then ascent of a robust score in which every upright or level line of
 /// the query finds the line of the node that agrees with it best. The score counts both ways: a
 /// line of the node explains many fragments of the query but once. Generalised Hough
-/// transform after matching: Ashbrook et al. 1995.
+/// transform after matching: Ashbrook et al. 1995. Throws Error for steps or a sigma that are not
+/// above 0, a largest turn or shift below 0, and more than 1000 steps either way.
 Alignment align(const PlaceView& query,
                 const PlaceView& node,
                 const AlignmentOptions& options = {});

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "calib/error.h"
@@ -42,7 +41,8 @@ struct Entry {
 
 void check(const PghOptions& o) {
   if (o.angle_bins < 1 || o.distance_bins < 1 || o.height_bands < 1 || !(o.max_distance > 0) ||
-      !(o.angle_sigma_rad > 0) || !(o.distance_sigma > 0) || o.max_lines < 2) {
+      !(o.band_height_m > 0) || !(o.angle_sigma_rad > 0) || !(o.distance_sigma > 0) ||
+      o.max_lines < 2) {
     throw Error("histogram options", "bins, bands, distances and sigmas must be above zero", "");
   }
 }
@@ -116,10 +116,15 @@ Pgh build(const std::vector<int>& chosen,
   return pgh;
 }
 
-/// Indices of the `most` largest lengths, in their old order.
+/// Whether a line of this length has a direction.
+bool has_direction(double length) { return length > 1e-9 && std::isfinite(length); }
+
+/// Indices of the `most` largest lengths, in their old order; 0 stands for a line to leave out.
 std::vector<int> longest(const std::vector<double>& lengths, int most) {
-  std::vector<int> order(lengths.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    if (lengths[i] > 0) order.push_back(static_cast<int>(i));
+  }
   if (static_cast<int>(order.size()) > most) {
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return lengths[a] > lengths[b]; });
@@ -176,7 +181,8 @@ Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& optio
   std::vector<Eigen::Vector3d> directions;
   for (const PlaceLine& line : lines) {
     const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
-    subtended.push_back(line.length_m() / std::max(middle.head<2>().norm(), 0.1));
+    const double range = std::max(middle.head<2>().norm(), 0.1);
+    subtended.push_back(has_direction(line.length_m()) ? line.length_m() / range : 0);
     directions.push_back((line.b_m - line.a_m).normalized());
   }
   const auto weight = [&](int i) { return std::min(options.max_weight_m, lines[i].length_m()); };
@@ -198,11 +204,13 @@ Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& optio
 Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& options) {
   check(options);
   std::vector<double> lengths;
-  for (const ImageSegment& line : lines) lengths.push_back(line.length_px());
+  for (const ImageSegment& line : lines) {
+    lengths.push_back(has_direction(line.length_px()) ? line.length_px() : 0);
+  }
   const auto entry_of = [&](int reference, int other) {
     const ImageSegment &r = lines[reference], &o = lines[other];
     const Eigen::Vector2d u = (r.b_px - r.a_px) / lengths[reference];
-    const Eigen::Vector2d v = (o.b_px - o.a_px) / std::max(lengths[other], 1e-9);
+    const Eigen::Vector2d v = (o.b_px - o.a_px) / lengths[other];
     Entry entry;
     entry.angle_rad = std::acos(std::min(1.0, std::abs(u.dot(v))));
     entry.weight = lengths[other];

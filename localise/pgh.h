@@ -37,13 +37,15 @@ struct PghOptions {
 };
 
 /// Histograms of lines in space: angle and distance in three dimensions, in bands of the other
-/// line's height. A line without any other in reach gets no row.
+/// line's height. A line without any other in reach gets no row. A line without a length (its ends
+/// less than 1e-9 apart, or not finite) has no direction and is ignored. Throws Error for options
+/// out of range.
 Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& options = {});
 
 /// Options for image lines: pixels, no bands.
 PghOptions image_pgh_options();
 
-/// Histograms of lines in the image plane.
+/// Histograms of lines in the image plane, by the same rules.
 Pgh image_histograms(std::span<const stereo::ImageSegment> lines, const PghOptions& options);
 
 }  // namespace vernier::localise

@@ -42,7 +42,8 @@ double distance_m(const Pose2D& a, const Pose2D& b) {
 }
 
 double heading_difference_rad(const Pose2D& a, const Pose2D& b) {
-  return -std::remainder(b.heading_rad - a.heading_rad, 2 * std::numbers::pi);
+  const double turn = -std::remainder(b.heading_rad - a.heading_rad, 2 * std::numbers::pi);
+  return turn <= -std::numbers::pi ? std::numbers::pi : turn;
 }
 
 Pose2D compose(const Pose2D& from, const Pose2D& step) {

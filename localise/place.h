@@ -18,7 +18,8 @@ struct Pose2D {
 
 /// Distance on the floor.
 double distance_m(const Pose2D& a, const Pose2D& b);
-/// Difference of headings a - b in (-pi, pi].
+/// Difference of headings a - b in (-pi, pi]: positive where a is counter-clockwise from b, and pi
+/// where they are opposite.
 double heading_difference_rad(const Pose2D& a, const Pose2D& b);
 /// Where `step`, given in the frame of `from`, is in the world.
 Pose2D compose(const Pose2D& from, const Pose2D& step);

@@ -34,18 +34,22 @@ packages=(
   g++ cmake ninja-build ccache
   libceres-dev libopencv-dev libopencv-contrib-dev libeigen3-dev libtbb-dev librandom123-dev
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
-  libhwy-dev libyaml-cpp-dev libjpeg-dev libpng-dev
+  libhwy-dev libyaml-cpp-dev libboost-dev libjpeg-dev libpng-dev esbuild
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
-if [[ $scope == test ]]; then packages+=(clang-format git python3 chromium python3-mrcal colmap); fi
+if [[ $scope == test ]]; then packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap); fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }
 if ! has_sample_images; then packages+=(opencv-doc); fi
 
-# A page without its plots is better than no page: nothing about npm ever stops the script.
-has_page() { [[ -f cli/page/package-lock.json ]]; }
-if has_page && ! command -v npm >/dev/null && ! command -v node >/dev/null; then packages+=(npm); fi
+# plotly.js, of which the report's page draws its plots; nothing of Python's is needed.
+plotly=usr/share/python3-plotly/plotly.js
+has_plotly() { [[ -f /$plotly || -f build/python3-plotly/$plotly ]]; }
+
+# Only the page's test needs npm, and nothing about it ever stops the script.
+has_npm() { command -v npm >/dev/null || command -v node >/dev/null; }
+if [[ $scope == test ]] && ! has_npm; then packages+=(npm); fi
 
 is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
@@ -92,45 +96,37 @@ install_missing() {
   fi
 }
 
-# Minimal images leave /usr/share/doc out when they unpack a package: then unpack it beside.
-fetch_sample_images() {
-  if has_sample_images; then return; fi
-  echo "unpacking the sample images of opencv-doc into build/opencv-doc" >&2
-  local folder
+# Unpacks a package beside, into build, without what it depends on.
+unpack_beside() {
+  local package=$1 folder
+  echo "unpacking $package into build/$package" >&2
   folder=$(mktemp --directory)
-  if ! (cd "$folder" && apt-get --quiet download opencv-doc >&2); then
+  if ! (cd "$folder" && apt-get --quiet download "$package" >&2); then
     update_lists
-    (cd "$folder" && apt-get --quiet download opencv-doc >&2)
+    (cd "$folder" && apt-get --quiet download "$package" >&2)
   fi
-  mkdir --parents build/opencv-doc
-  dpkg-deb --extract "$folder"/opencv-doc_*.deb build/opencv-doc
+  mkdir --parents "build/$package"
+  dpkg-deb --extract "$folder/$package"_*.deb "build/$package"
   rm --recursive --force "$folder"
 }
 
-install_page() {
-  if ! has_page; then return; fi
-  local wanted=runtime stamp=cli/page/node_modules/.installed options=(--omit=dev)
-  if [[ $scope == test ]]; then
-    wanted=all
-    options=()
-  fi
-  # "all" holds "runtime"; a lock file newer than the stamp calls for both again.
-  if [[ -f $stamp && ! cli/page/package-lock.json -nt $stamp ]]; then
-    if [[ $(<"$stamp") == all || $(<"$stamp") == "$wanted" ]]; then return; fi
-  fi
+install_browser_driver() {
+  local stamp=tests/cli/node_modules/.installed
+  if [[ $scope != test || ($stamp -nt tests/cli/package-lock.json) ]]; then return; fi
   if ! command -v npm >/dev/null; then
-    echo "warning: no npm here, so the report's page will hold tables only" >&2
+    echo "warning: no npm here, so the report page's test will be skipped" >&2
     return
   fi
-  echo "installing the page's plots with npm" >&2
-  if (cd cli/page && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error \
-    "${options[@]}" >&2); then
-    echo "$wanted" >"$stamp"
+  echo "installing the browser driver of the page's test with npm" >&2
+  if (cd tests/cli && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2); then
+    touch "$stamp"
   else
-    echo "warning: npm failed, so the report's page will hold tables only" >&2
+    echo "warning: npm failed, so the report page's test will be skipped" >&2
   fi
 }
 
 install_missing
-fetch_sample_images
-install_page
+# Minimal images leave /usr/share/doc out when they install a package.
+if ! has_sample_images; then unpack_beside opencv-doc; fi
+if ! has_plotly; then unpack_beside python3-plotly; fi
+install_browser_driver

@@ -3,54 +3,100 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Installs what is missing, builds everything and runs every test; with sanitizers, the unit tests.
+# Ends with what each part cost and CTest's line on the tests.
 set -euo pipefail
 
 usage() {
   cat <<'USAGE'
-usage: scripts/test.sh [--quick]
-  --quick   without the second build, under address and undefined-behaviour sanitizers
+usage: scripts/test.sh [--quick] [--measure]
+  --quick     without the second build, under address and undefined-behaviour sanitizers
+  --measure   write what each unit costs to compile, and fail where one costs too much; a build
+              folder that measures goes on measuring
 USAGE
 }
 
 quick=no
-case "${1:-}" in
-  "") ;;
-  --quick) quick=yes ;;
-  -h | --help)
-    usage
-    exit 0
-    ;;
-  *)
-    usage >&2
-    exit 2
-    ;;
-esac
+measure=no
+while (($# > 0)); do
+  case "$1" in
+    --quick) quick=yes ;;
+    --measure) measure=yes ;;
+    -h | --help)
+      usage
+      exit 0
+      ;;
+    *)
+      usage >&2
+      exit 2
+      ;;
+  esac
+  shift
+done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/part_times.sh
 jobs=$(nproc)
 log=build/release/ctest.log
-step() { echo "== $* ($((SECONDS / 60)) min $((SECONDS % 60)) s)"; }
+rm --force "$log"
 
-step "packages"
+# Seconds that tests ran, several at a time; CTest does not know their CPU time.
+print_test_times() {
+  local name seconds LC_ALL=C
+  printf '\n%-66s %9s\n' "release tests: by label, and the slowest" "test s"
+  while IFS=$'\t' read -r name seconds; do
+    printf '  %-64.64s %9.1f\n' "$name" "$seconds"
+  done < <(sed --quiet --regexp-extended \
+    's/^ *(\S+) *= *([0-9.]+) sec\*proc *\(([0-9]+ tests?)\).*/label \1, \3\t\2/p' "$log"
+    sed --quiet --regexp-extended \
+      's/^ *[0-9]+\/[0-9]+ +Test +#[0-9]+: (\S+) .* ([0-9.]+) sec.*/\1\t\2/p' "$log" |
+      sort --field-separator=$'\t' --key=2 --numeric-sort --reverse | sed 8q)
+}
+
+close() {
+  local code=$? failed_part=$part_open
+  end_parts
+  echo
+  print_part_times
+  if [[ -f $log ]]; then
+    print_test_times
+    echo
+    grep --max-count=1 'tests passed' "$log" || true
+  fi
+  if ((code != 0)); then echo "test.sh: failed in the part '$failed_part'" >&2; fi
+}
+trap close EXIT
+
+begin_part "packages"
 scripts/install_packages.sh --test
-step "format"
+begin_part "format"
 scripts/check_format.sh
 
-step "release: build"
-cmake --preset release -DVERNIER_BUILD_TESTS=ON -DVERNIER_BUILD_PROGRAM=ON
+begin_part "release: build"
+options=()
+if [[ $measure == yes ]]; then options+=(-DVERNIER_MEASURE_BUILD=ON); fi
+# Without unity: where sources share a unit, one lives on the includes of another.
+cmake --preset release -DVERNIER_BUILD_TESTS=ON -DVERNIER_BUILD_PROGRAM=ON \
+  -DCMAKE_UNITY_BUILD=OFF "${options[@]}"
 cmake --build --preset release --parallel "$jobs"
-step "release: every installed header compiles alone"
+begin_part "release: every installed header compiles alone"
 cmake --build --preset release --parallel "$jobs" --target all_verify_interface_header_sets
-step "release: tests"
+cost=0
+if [[ $measure == yes ]]; then
+  # The tests run even so; the exit code says it in the end.
+  scripts/check_build_cost.py build/release --top 5 || cost=$?
+fi
+begin_part "release: tests"
 ctest --preset release --parallel "$jobs" --no-tests=error | tee "$log"
 
 if [[ $quick == no ]]; then
-  step "sanitizers: build the unit tests"
-  cmake --preset asan -DVERNIER_BUILD_TESTS=ON
+  begin_part "sanitizers: build"
+  cmake --preset asan -DVERNIER_BUILD_TESTS=ON -DCMAKE_UNITY_BUILD=OFF
   cmake --build --preset asan --parallel "$jobs" --target unit_tests
-  step "sanitizers: tests"
+  begin_part "sanitizers: tests"
   ctest --preset asan --parallel "$jobs" --no-tests=error
 fi
 
-step "done"
-grep --max-count=1 'tests passed' "$log"
+if ((cost != 0)); then
+  begin_part "check of what units cost to compile, see above"
+  exit "$cost"
+fi

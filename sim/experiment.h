@@ -35,8 +35,13 @@ struct ExperimentSettings {
   double map_spacing_m = 0.5;
   int map_headings = 0;  ///< a node; 0: along the route
   std::string method = "pgh";
+  bool knows_endpoint_sigma = false;  ///< the estimator is told sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
+
+/// The end-point error that the estimator reckons with: 0.15 px, or max(0.1 px, psi_g) where it
+/// knows psi_g.
+double told_endpoint_sigma_px(const ExperimentSettings& settings);
 
 /// One localisation trial: where the robot was, what was answered, and what that cost.
 struct TrialResult {

@@ -47,6 +47,10 @@ Eigen::VectorXd Cholesky::solve_upper(const Eigen::VectorXd& b) const {
   return factor_.matrixU().solve(b);
 }
 
+Eigen::MatrixXd Cholesky::times_inverse_upper(const Eigen::MatrixXd& B) const {
+  return factor_.matrixL().solve(B.transpose()).transpose();
+}
+
 Eigen::MatrixXd Cholesky::inverse() const {
   const auto n = factor_.rows();
   return solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));

@@ -46,6 +46,7 @@ class Cholesky {
   Eigen::VectorXd solve_lower(const Eigen::VectorXd& b) const;  ///< L⁻¹ b
   Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
   Eigen::VectorXd solve_upper(const Eigen::VectorXd& b) const;  ///< L⁻ᵀ b
+  Eigen::MatrixXd times_inverse_upper(const Eigen::MatrixXd& B) const;  ///< B L⁻ᵀ
   Eigen::MatrixXd inverse() const;
 
  private:

@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "calib/statistics/quantile.h"
+
 namespace vernier::internal {
 namespace {
 
@@ -38,10 +40,7 @@ double steepest(const cv::Mat& grey) {
   cv::Sobel(grey, dy, CV_32F, 0, 1, 3, 1.0 / 8);
   cv::magnitude(dx, dy, gradient);
   std::vector<float> values(gradient.begin<float>(), gradient.end<float>());
-  const auto at =
-      values.begin() + static_cast<long>(0.999 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return quantile(std::move(values), 0.999, QuantileKind::lower);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@
 #include "calib/solver/normal_equations.h"
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/pair_equations.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/scaled_root.h"
 
 namespace vernier {

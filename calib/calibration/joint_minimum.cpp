@@ -23,6 +23,7 @@
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/pair_equations.h"
 #include "calib/solver/resolve_pairs.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -33,9 +34,7 @@ constexpr double min_scale = 0.01;  // of the stated noise: no corner is better 
 
 double median_length(std::vector<double> values) {
   for (double& v : values) v = std::abs(v);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return quantile(std::move(values), 0.5, QuantileKind::upper);
 }
 
 constexpr double normal_median = 0.6744897501960817;  // of |z|

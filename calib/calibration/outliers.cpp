@@ -24,7 +24,7 @@
 #include "calib/solver/loss.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "calib/solver/reprojection_problem.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -108,7 +108,7 @@ double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
   std::partial_sort(order.begin(), order.begin() + n, order.end());
   std::vector<double> lengths;
   for (std::ptrdiff_t k = 0; k < n; ++k) lengths.push_back(residuals[order[k].second].norm());
-  return median(std::move(lengths)) / rayleigh_median;
+  return median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
 /// One flag a corner of every view.
@@ -145,8 +145,8 @@ bool some_view_stands_out(const BoardObservations& observations, const BoardStat
         std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, residuals[v].size()))));
   }
   return std::any_of(rms.begin(), rms.end(), [](const std::vector<double>& own) {
-    return !own.empty() &&
-           *std::max_element(own.begin(), own.end()) > 3 * std::max(min_sigma_px, median(own));
+    return !own.empty() && *std::max_element(own.begin(), own.end()) >
+                               3 * std::max(min_sigma_px, median_or_zero(own));
   });
 }
 
@@ -215,7 +215,7 @@ double robust_pixel_sigma(const CornerResiduals& residuals) {
   for (const auto& view : residuals) {
     for (const Eigen::Vector2d& r : view) lengths.push_back(r.norm());
   }
-  return lengths.empty() ? 0 : median(std::move(lengths)) / rayleigh_median;
+  return lengths.empty() ? 0 : median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
 std::optional<BoardState> robust_minimum(const BoardObservations& observations,

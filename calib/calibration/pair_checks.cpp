@@ -21,6 +21,7 @@
 #include "calib/pair_observations.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -54,13 +55,6 @@ std::optional<double> before_infinity_px(const Rig& rig, const Eigen::Vector4d& 
   return (y.tail<2>() - far->pixel_px).dot(far->nearer);
 }
 
-double quantile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImagePair& image) {
   const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
   std::vector<Eigen::Vector4d> some;
@@ -78,7 +72,7 @@ std::optional<double> quartile_before_px(const Rig& rig, const std::vector<Eigen
     if (const auto b = before_infinity_px(rig, y)) before.push_back(*b);
   }
   if (2 * before.size() <= some.size()) return std::nullopt;
-  return quantile(std::move(before), 0.25);
+  return quantile(std::move(before), 0.25, QuantileKind::lower);
 }
 
 /// Standard deviation of that quartile as far as the rig decides it, by central differences.
@@ -135,8 +129,8 @@ bool on_a_plane(const PairObservations& pairs,
   }
   if (points.size() < fewest_pairs) return false;
   // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
-  return fraction_on_distorted_plane(points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5) / f) >=
-         0.95;
+  return fraction_on_distorted_plane(
+             points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5, QuantileKind::lower) / f) >= 0.95;
 }
 
 void check_rays(const PairObservations& pairs, const Rig& rig, const std::string& place) {

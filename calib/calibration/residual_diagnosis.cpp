@@ -29,7 +29,7 @@
 #include "calib/solver/initial_rig.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "calib/solver/reprojection_problem.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -196,7 +196,7 @@ class Diagnosis {
         together.push_back(pair.together_px(i, PairReading::as_is, rig));
       }
       // a few frames far off spoil the intrinsics of all: then only these are meant
-      const double far_px = 2.5 * median(together);
+      const double far_px = 2.5 * median_or_zero(together);
       const bool some_far =
           std::any_of(together.begin(), together.end(), [&](double px) { return px > far_px; });
       std::vector<std::pair<double, std::size_t>> apart;
@@ -235,7 +235,7 @@ class Diagnosis {
       sums.push_back(sum);
       rms_px.push_back(rms_of(sum, view.size()));
     }
-    const double usual = median(rms_px);
+    const double usual = median_or_zero(rms_px);
     std::vector<std::pair<double, std::size_t>> poor;
     double poor_sum = 0;
     std::size_t poor_corners = 0;
@@ -272,7 +272,8 @@ class Diagnosis {
         if (is_own) sum += view_sum;
       }
       // the usual image of each, so that single bad ones are no fault of the camera
-      const double own_px = median(std::move(own)), others_px = median(std::move(others));
+      const double own_px = median_or_zero(std::move(own)),
+                   others_px = median_or_zero(std::move(others));
       if (!(own_px > 2.5 * others_px)) continue;
       findings_.push_back(
           {sum / sum_px2_,

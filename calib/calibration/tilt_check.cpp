@@ -22,6 +22,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/solver/normal_equations.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -56,8 +57,7 @@ NormalsAlone normals_alone(const BoardObservations& observations,
     result.normals.emplace_back(normal.z() < 0 ? Eigen::Vector3d(-normal) : normal);
     rms.push_back(fit.rms_px);
   }
-  std::nth_element(rms.begin(), rms.begin() + rms.size() / 2, rms.end());
-  result.noise_px = rms[rms.size() / 2];
+  result.noise_px = quantile(std::move(rms), 0.5, QuantileKind::upper);
   return result;
 }
 

@@ -20,6 +20,9 @@
 #include "calib/rig.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 /// A change of the rig's parameters and of the essential matrix with it.

@@ -8,7 +8,7 @@
 #include "calib/base/decompositions.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 
 namespace vernier {
 

@@ -22,7 +22,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/scaled_root.h"
 
 namespace vernier {

@@ -21,6 +21,9 @@
 #include "calib/rig.h"
 
 namespace vernier {
+
+using namespace internal;
+
 namespace {
 
 std::vector<Eigen::Index> places_of(const std::vector<std::string>& names, const Rig& rig) {

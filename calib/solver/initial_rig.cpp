@@ -18,6 +18,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/solver/initial_camera.h"
+#include "calib/statistics/quantile.h"
 
 namespace vernier::internal {
 namespace {
@@ -25,8 +26,7 @@ namespace {
 using PoseOfView = std::map<std::pair<int, int>, Pose>;  // T_camera_board by (camera, frame)
 
 double middle(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
+  return quantile(std::move(values), 0.5, QuantileKind::upper);
 }
 
 /// Angle (radians) and the share of the translation that differs.

@@ -12,22 +12,10 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 
 namespace vernier::internal {
-namespace {
-
-/// Between the two order statistics beside it.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  if (sorted[below] == sorted[above]) return sorted[below];  // infinite perhaps
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-}  // namespace
-
 Interval bootstrap_interval(std::size_t clusters,
                             const ClusterStatistic& statistic,
                             const BootstrapOptions& options) {
@@ -53,9 +41,9 @@ Interval bootstrap_interval(std::size_t clusters,
     if (!std::isnan(value)) values.push_back(value);
   }
   if (values.empty()) return {nan, nan};
-  std::sort(values.begin(), values.end());
   const double tail = 0.5 * (1 - options.confidence);
-  return {quantile(values, tail), quantile(values, 1 - tail)};
+  return {quantile(values, tail, QuantileKind::linear),
+          quantile(values, 1 - tail, QuantileKind::linear)};
 }
 
 }  // namespace vernier::internal

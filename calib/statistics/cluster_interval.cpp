@@ -11,20 +11,10 @@
 
 #include "calib/interval.h"
 #include "calib/statistics/bootstrap.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
 
 namespace vernier::internal {
-
-double student_quantile(double p, int dof) {
-  const double z = normal_quantile(p), n = dof, z2 = z * z;
-  if (dof == 1) return std::tan(M_PI * (p - 0.5));
-  if (dof == 2) return (2 * p - 1) * std::sqrt(2 / (4 * p * (1 - p)));
-  const double g1 = z * (z2 + 1) / 4;
-  const double g2 = z * ((5 * z2 + 16) * z2 + 3) / 96;
-  const double g3 = z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / 384;
-  const double g4 = z * ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / 92160;
-  return z + g1 / n + g2 / (n * n) + g3 / (n * n * n) + g4 / (n * n * n * n);
-}
 
 Interval cluster_interval(int clusters,
                           const ClusterStatistic& statistic,

@@ -26,8 +26,4 @@ Interval cluster_interval(int clusters,
                           const BootstrapOptions& options = {.resamples = 999},
                           bool is_scale = false);
 
-/// Quantile of Student's t for p in (0.5, 1), by the expansion about the normal one (Abramowitz and
-/// Stegun 26.7.5); exact for one and two degrees of freedom, right to 1 % from three at p = 0.975.
-double student_quantile(double p, int dof);
-
 }  // namespace vernier::internal

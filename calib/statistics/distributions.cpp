@@ -3,31 +3,123 @@
 #include "calib/statistics/distributions.h"
 
 #include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
 
-#include "calib/statistics/chi_squared.h"
+#include "calib/error.h"
 #include "calib/statistics/random.h"
 
 namespace vernier::internal {
-double chi_squared_cdf(double x, double dof) { return 1 - chi_squared_survival(x, dof); }
+namespace {
 
-double chi_squared_quantile(double p, double dof) {
-  const double v = 2 / (9 * dof);
-  double x = dof * std::pow(std::max(0.01, 1 - v + normal_quantile(p) * std::sqrt(v)), 3);
-  const double a = 0.5 * dof;
-  int sign = 0;
-  const double log_gamma = ::lgamma_r(a, &sign);  // std::lgamma writes a global
-  for (int i = 0; i < 50; ++i) {
-    const double density = 0.5 * std::exp((a - 1) * std::log(0.5 * x) - 0.5 * x - log_gamma);
-    const double step = (chi_squared_cdf(x, dof) - p) / density;
-    x = std::max(0.1 * x, x - step);
-    if (std::abs(step) < 1e-12 * x) break;
+// Doubles throughout: long double would cost five times as much for digits nobody reads.
+using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>,
+                                             boost::math::policies::promote_float<false>>;
+using ChiSquared = boost::math::chi_squared_distribution<double, Policy>;
+using Fisher = boost::math::fisher_f_distribution<double, Policy>;
+using Student = boost::math::students_t_distribution<double, Policy>;
+using Binomial = boost::math::binomial_distribution<double, Policy>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check_dof(const char* distribution, double dof) {
+  if (!(dof > 0) || std::isinf(dof)) {
+    throw Error(distribution, "its degrees of freedom are not a number above 0", "");
   }
-  return x;
 }
 
+void check_number(const char* distribution, double x) {
+  if (std::isnan(x)) throw Error(distribution, "x is not a number", "");
+}
+
+void check_probability(const char* distribution, double p) {
+  if (!(p > 0 && p < 1)) throw Error(distribution, "p is not between 0 and 1", "");
+}
+
+void check_binomial(int trials, double probability) {
+  if (trials < 0 || !(probability >= 0 && probability <= 1)) {
+    throw Error("binomial distribution", "its trials are negative or its probability none", "");
+  }
+}
+
+}  // namespace
+
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+double normal_survival(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
+
+double chi_squared_cdf(double x, double dof) {
+  check_dof("chi-squared", dof);
+  check_number("chi-squared", x);
+  if (x <= 0) return 0;
+  return x == infinity ? 1 : cdf(ChiSquared(dof), x);
+}
+
+double chi_squared_survival(double x, double dof) {
+  check_dof("chi-squared", dof);
+  check_number("chi-squared", x);
+  if (x <= 0) return 1;
+  return x == infinity ? 0 : cdf(complement(ChiSquared(dof), x));
+}
+
+double chi_squared_quantile(double p, double dof) {
+  check_dof("chi-squared", dof);
+  check_probability("chi-squared", p);
+  return boost::math::quantile(ChiSquared(dof), p);
+}
+
+double fisher_cdf(double x, double d1, double d2) {
+  check_dof("F distribution", std::min(d1, d2));
+  check_number("F distribution", x);
+  if (x <= 0) return 0;
+  return x == infinity ? 1 : cdf(Fisher(d1, d2), x);
+}
+
+double fisher_survival(double x, double d1, double d2) {
+  check_dof("F distribution", std::min(d1, d2));
+  check_number("F distribution", x);
+  if (x <= 0) return 1;
+  return x == infinity ? 0 : cdf(complement(Fisher(d1, d2), x));
+}
+
+double student_cdf(double t, double dof) {
+  check_dof("t distribution", dof);
+  check_number("t distribution", t);
+  return cdf(Student(dof), t);
+}
+
+double student_survival(double t, double dof) { return student_cdf(-t, dof); }
+
+double student_quantile(double p, double dof) {
+  check_dof("t distribution", dof);
+  check_probability("t distribution", p);
+  return boost::math::quantile(Student(dof), p);
+}
+
+double beta_quantile(double p, double a, double b) {
+  check_dof("beta distribution", std::min(a, b));
+  check_probability("beta distribution", p);
+  return boost::math::quantile(boost::math::beta_distribution<double, Policy>(a, b), p);
+}
+
+double binomial_cdf(int successes, int trials, double probability) {
+  check_binomial(trials, probability);
+  if (successes < 0) return 0;
+  return successes >= trials ? 1 : cdf(Binomial(trials, probability), successes);
+}
+
+double binomial_survival(int successes, int trials, double probability) {
+  check_binomial(trials, probability);
+  if (successes < 0) return 1;
+  return successes >= trials ? 0 : cdf(complement(Binomial(trials, probability), successes));
+}
 
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf) {
   std::sort(sample.begin(), sample.end());
@@ -42,6 +134,20 @@ double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<doub
   double p = 0;
   for (int k = 1; k < 100; ++k) p += (k % 2 ? 2 : -2) * std::exp(-2 * k * k * x * x);
   return std::clamp(p, 0.0, 1.0);
+}
+
+std::vector<double> holm_adjusted(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const double step = static_cast<double>(p.size() - k) * p[order[k]];
+    largest = std::max(largest, std::min(1.0, step));
+    adjusted[order[k]] = largest;
+  }
+  return adjusted;
 }
 
 double draw_chi_squared(RandomStream& draws, double dof) {

@@ -9,18 +9,42 @@
 
 namespace vernier::internal {
 
-/// Distribution function of χ² with `dof` degrees of freedom (calib/statistics/chi_squared.h).
-double chi_squared_cdf(double x, double dof);
+// Distributions, by Boost.Math. A cdf is P(X <= x), a survival function P(X > x), each computed by
+// itself and not as one less the other, so that both tails keep their relative accuracy. All throw
+// Error for degrees of freedom that are not above 0, a p outside (0, 1) and an x that is no number.
 
-/// Its inverse, by Newton's method from Wilson and Hilferty's cube. p in (0, 1).
+/// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h), which draws.
+double normal_cdf(double z);
+double normal_survival(double z);
+
+/// χ² with `dof` degrees of freedom.
+double chi_squared_cdf(double x, double dof);
+double chi_squared_survival(double x, double dof);
 double chi_squared_quantile(double p, double dof);
 
-/// Distribution function of the standard normal.
-double normal_cdf(double z);
+/// Fisher's F with d1 and d2 degrees of freedom.
+double fisher_cdf(double x, double d1, double d2);
+double fisher_survival(double x, double d1, double d2);
+
+/// Student's t with `dof` degrees of freedom.
+double student_cdf(double t, double dof);
+double student_survival(double t, double dof);
+double student_quantile(double p, double dof);
+
+/// Quantile of the beta distribution.
+double beta_quantile(double p, double a, double b);
+
+/// Binomial: at most, and more than, `successes` of `trials`.
+double binomial_cdf(int successes, int trials, double probability);
+double binomial_survival(int successes, int trials, double probability);
 
 /// Probability that a sample from a distribution lies as far from its distribution function as
 /// `sample` does from `cdf` (Kolmogorov's limit with Stephens' correction for n >= 4).
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf);
+
+/// p-values adjusted for their number by Holm's step-down method (Holm 1979): a hypothesis with an
+/// adjusted p below α may be rejected with a probability of at most α of any false rejection.
+std::vector<double> holm_adjusted(const std::vector<double>& p);
 
 /// A draw from χ² with `dof` > 2 degrees of freedom (Marsaglia and Tsang 2000).
 double draw_chi_squared(RandomStream& draws, double dof);

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/interval.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "calib/error.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
 
 namespace vernier {
@@ -18,6 +22,22 @@ Interval wilson_interval(double successes, double trials, double confidence) {
   const double centre = (p + z * z / (2 * trials)) / shrink;
   const double half = z * std::sqrt(p * (1 - p) / trials + z * z / (4 * trials * trials)) / shrink;
   return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+Interval clopper_pearson_interval(int successes, int trials, double confidence) {
+  if (successes < 0 || successes > trials || !(confidence > 0 && confidence < 1)) {
+    throw Error(
+        "Clopper-Pearson interval",
+        fmt::format("{} successes of {} at a confidence of {}", successes, trials, confidence),
+        "give 0 <= successes <= trials and a confidence between 0 and 1");
+  }
+  const double tail = 0.5 * (1 - confidence);
+  Interval interval;
+  if (successes > 0) interval.low = beta_quantile(tail, successes, trials - successes + 1);
+  if (successes < trials) {
+    interval.high = beta_quantile(1 - tail, successes + 1, trials - successes);
+  }
+  return interval;
 }
 
 double design_effect(std::span<const ClusterCount> clusters) {

@@ -103,9 +103,7 @@ Eigen::MatrixXd updated_factor(const Eigen::MatrixXd& factor,
                                const Eigen::MatrixXd& information,
                                double times) {
   // F (L Lᵀ)⁻¹ Fᵀ = (L⁻¹ Fᵀ)ᵀ (L⁻¹ Fᵀ)
-  return gain(factor, information, times)
-      .solve_lower(Eigen::MatrixXd(factor.transpose()))
-      .transpose();
+  return gain(factor, information, times).times_inverse_upper(factor);
 }
 
 ViewAdvice advise_views(const Eigen::MatrixXd& factor,

@@ -17,6 +17,7 @@
 #include "calib/rig_and_boards.h"
 #include "calib/sampler.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
@@ -180,15 +181,8 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
 }
 
 Interval interval_95(const std::vector<double>& sorted) {
-  const auto quantile = [&](double p) {
-    const double at = p * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(at);
-    const auto above = std::min(below + 1, sorted.size() - 1);
-    const double part = at - static_cast<double>(below);
-    if (part == 0 || std::isinf(sorted[below])) return sorted[below];
-    return sorted[below] + part * (sorted[above] - sorted[below]);
-  };
-  return {quantile(0.025), quantile(0.975)};
+  return {quantile(sorted, 0.025, QuantileKind::linear),
+          quantile(sorted, 0.975, QuantileKind::linear)};
 }
 
 }  // namespace vernier::internal

@@ -22,6 +22,7 @@
 #include "calib/solver/resolve.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 #include "calib/statistics/scaled_root.h"
 
@@ -114,10 +115,8 @@ Interval wishart_band(int q, int n, std::uint64_t seed) {
     least[k] = eigenvalues[0];
     largest[k] = eigenvalues[q - 1];
   }
-  const int tail = wishart_draws / 200;
-  std::nth_element(least.begin(), least.begin() + tail, least.end());
-  std::nth_element(largest.begin(), largest.end() - 1 - tail, largest.end());
-  return {least[tail], *(largest.end() - 1 - tail)};
+  return {quantile(std::move(least), 0.005, QuantileKind::upper),
+          quantile(std::move(largest), 0.995, QuantileKind::lower)};
 }
 
 Interval mean_interval(double q, double n, double probability) {

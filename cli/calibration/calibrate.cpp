@@ -62,7 +62,7 @@ std::string comparison_table(const ModelComparison& comparison) {
 void judge(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
-  for (const std::string& doubt : summary.trust_warnings) session.doubt(doubt);
+  for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
 }
 
 void run(const CalibrateArguments& options, Session& session) {

@@ -48,7 +48,8 @@ void calibrate_pairs(const std::string& pairs_file,
       rig_table(joint.estimate) + seen.text + fmt::format("written to {}\n", output);
   write_rig(joint.estimate, output, keep_evidence ? KeepEvidence::yes : KeepEvidence::no);
   for (const std::string& warning : joint.estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : joint.estimate.calibration->trust_warnings) session.doubt(doubt);
+  for (const std::string& warning : joint.estimate.calibration->trust_warnings)
+    session.add_trust_warning(warning);
   session.result(json, text);
 }
 

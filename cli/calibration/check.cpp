@@ -87,7 +87,7 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   RigFile file = read_rig(path);
   for (const std::string& warning : file.warnings) {
     const bool doubt = warning.starts_with(stored_warning_prefix(path.string()));
-    doubt ? session.doubt(warning) : session.warn(warning);
+    doubt ? session.add_trust_warning(warning) : session.warn(warning);
   }
   if (!file.estimate.evidence || !file.estimate.calibration) {
     throw Error(options.rig, "it holds no evidence to solve again",
@@ -115,7 +115,8 @@ Solved solve(const CheckArguments& options, Session& session) {
   BoardObservations observations = load(options.board, session);
   check_holdout(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
-  for (const std::string& doubt : solved.estimate.calibration->trust_warnings) session.doubt(doubt);
+  for (const std::string& warning : solved.estimate.calibration->trust_warnings)
+    session.add_trust_warning(warning);
   return solved;
 }
 
@@ -153,7 +154,7 @@ void run(const CheckArguments& options, Session& session) {
     } else {
       text += part.text;
     }
-    for (const std::string& failure : part.failures) session.doubt(failure);
+    for (const std::string& failure : part.failures) session.add_trust_warning(failure);
   };
   if (solved.stated) add("file", check_file(*solved.stated, solved.estimate));
   if (options.no_mrcal) {

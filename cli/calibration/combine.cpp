@@ -253,7 +253,8 @@ void run(const CombineArguments& options, Session& session) {
   }
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
   for (const std::string& warning : estimate.calibration->warnings) session.warn(warning);
-  for (const std::string& doubt : estimate.calibration->trust_warnings) session.doubt(doubt);
+  for (const std::string& warning : estimate.calibration->trust_warnings)
+    session.add_trust_warning(warning);
   session.result(whole, text + tail + fmt::format("written to {}\n", options.output));
 }
 

@@ -13,7 +13,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -34,7 +35,7 @@ void Session::say(const std::string& line) const {
   if (!quiet) fmt::print(stderr, "{}\n", line);
 }
 
-void Session::doubt(const std::string& reason) {
+void Session::add_trust_warning(const std::string& reason) {
   trust_warnings_.push_back(reason);
   fmt::print(stderr, "vernier: doubtful: {}\n", reason);
 }
@@ -97,6 +98,21 @@ CLI::App* add_verb(CLI::App& app,
   verb->add_flag("--json", session.json, "print one JSON object on standard output");
   verb->footer("Example:\n  " + example);
   return verb;
+}
+
+std::string command_line(int argc, const char* const* argv) {
+  std::string line = "vernier";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return std::isalnum(c) || c >= 0x80 || std::strchr("_-./,:=@%+", c);
+    });
+    line += plain ? " " + word : " '";
+    if (plain) continue;
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += "'";
+  }
+  return line;
 }
 
 Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }

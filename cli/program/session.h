@@ -20,6 +20,10 @@ namespace vernier::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// The words of a call in one line, quoted where a shell would read them otherwise; the program by
+/// its name alone.
+std::string command_line(int argc, const char* const* argv);
+
 /// A number, or null where it is not finite, which JSON cannot say.
 Json json_number(double value);
 
@@ -31,13 +35,14 @@ class Session {
  public:
   bool quiet = false;
   bool json = false;
+  std::string command;  ///< the call as a shell takes it; pages and results say it
 
   /// A line to standard error, unless quiet.
   void say(const std::string& line) const;
   /// A warning to standard error, unless quiet.
   void warn(const std::string& line) const { say("warning: " + line); }
   /// The result is there but not to be trusted, for this reason: exit code 3.
-  void doubt(const std::string& reason);
+  void add_trust_warning(const std::string& reason);
   /// The result: the JSON object with --json, else the text, to standard output.
   void result(const Json& object, const std::string& text) const;
 

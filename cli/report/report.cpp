@@ -68,8 +68,8 @@ void add_study(const std::string& folder, Session& session, Validation proof, Js
     throw Error(folder, "holds no finished block", "run the study first");
   }
   if (results.blocks_done < results.blocks_total) {
-    session.doubt(fmt::format("the study is not finished: {} of {} blocks", results.blocks_done,
-                              results.blocks_total));
+    session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
+                                          results.blocks_done, results.blocks_total));
   }
   data["study"] = report_study(study, results);
   data["world"] = report_world(study.world);
@@ -128,15 +128,6 @@ std::string title_of(const ReportArguments& options, const Inputs& inputs) {
                                 : "A calibration and how well it is known";
 }
 
-std::string command_of(const Inputs& inputs) {
-  const auto file = [](const std::string& name) { return fs::path(name).filename().string(); };
-  if (!inputs.study.empty()) return "vernier study study.toml -o " + file(inputs.study);
-  std::string command = "vernier report";
-  if (!inputs.evaluation.empty()) command += " " + file(inputs.evaluation);
-  for (const std::string& rig : inputs.rigs) command += " " + file(rig);
-  return command + " -o report.html";
-}
-
 void run(const ReportArguments& options, Session& session) {
   const fs::path page_folder = shipped_file("page/report.html").parent_path();
   if (page_folder.empty()) {
@@ -150,16 +141,21 @@ void run(const ReportArguments& options, Session& session) {
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},
                      {"instruction_set", instruction_set()},
-                     {"command", command_of(inputs)}};
+                     {"command", session.command}};
   data["rigs"] = Json::array();
   if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
   if (!inputs.evaluation.empty()) data["evaluation"] = report_evaluation(inputs.evaluation);
   for (const NamedRig& rig : rigs) add_rig(rig, session, proof, data);
   const std::string page = assemble_page(page_folder, data);
+  const bool plots = has_plots(page_folder);
   write_atomically(options.output, page);
-  session.result({{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}},
-                 fmt::format("{} ({:.1f} MB, opens without network)\n", options.output,
-                             static_cast<double>(page.size()) / 1e6));
+  if (!plots) {
+    session.warn("the page has tables only, no plots: vernier was built without them (see doctor)");
+  }
+  session.result(
+      {{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}, {"plots", plots}},
+      fmt::format("{} ({:.1f} MB, opens without network{})\n", options.output,
+                  static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
 }
 
 }  // namespace

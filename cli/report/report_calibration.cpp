@@ -90,6 +90,30 @@ void add_covariance(const RigEstimate& estimate, Json& json) {
   if (estimate.rig.cameras.size() == 2) json["depth"] = depth_json(estimate);
 }
 
+/// Whether the covariance is the bound and the views scatter as white noise does: then it is true.
+/// So it is of simulated views; those of real images pull harder.
+bool is_true_bound(const RigEstimate& estimate, const Json& views) {
+  if (!estimate.covariance || estimate.covariance->kind != CovarianceKind::mvb) return false;
+  double pull = 0, noise = 0;  // squared; the page says their ratio
+  for (const Json& view : views) {
+    if (!view["influence"].is_number() || !view["influence_noise"].is_number()) return false;
+    pull += std::pow(view["influence"].get<double>(), 2);
+    noise += std::pow(view["influence_noise"].get<double>(), 2);
+  }
+  return noise > 0 && pull < 1.2 * 1.2 * noise;
+}
+
+/// A rig file of before warns of any bound.
+void drop_warning_of_bound(Json& warnings) {
+  Json kept = Json::array();
+  for (Json& one : warnings) {
+    const bool of_bound =
+        one.get_ref<const std::string&>().starts_with("covariance is the minimum variance bound");
+    if (!of_bound) kept.push_back(std::move(one));
+  }
+  warnings = std::move(kept);
+}
+
 /// Puts warnings there that are not there yet.
 void add_warnings(const Json& more, Json& warnings) {
   for (const Json& one : more) {
@@ -129,6 +153,8 @@ Json report_rig(const RigEstimate& estimate,
     json["projection"] = report_projection(estimate);
     if (estimate.covariance_mvb || estimate.covariance->kind == CovarianceKind::mvb) {
       json["view_influence"] = report_views(estimate);
+      json["true_bound"] = is_true_bound(estimate, json["view_influence"]);
+      if (json["true_bound"]) drop_warning_of_bound(json["calibration"]["warnings"]);
     }
   }
   if (proof == Validation::make) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/error.h"
 #include "cli/program/session.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
@@ -28,6 +29,8 @@ namespace vernier::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* plotly_file = "plotly.js";
 
 Json trial_json(const TrialResult& t) {
   Json row{t.trial, t.truth.x_m, t.truth.y_m, t.truth.heading_rad};
@@ -62,18 +65,6 @@ std::string fill(const std::string& page,
   return filled;
 }
 
-/// Scripts of the page in the order of their names.
-std::string scripts_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".js") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  std::string text;
-  for (const fs::path& file : files) text += read_whole(file) + "\n";
-  return text;
-}
-
 }  // namespace
 
 Json report_study(const Study& study, const StudyResults& results) {
@@ -86,9 +77,10 @@ Json report_study(const Study& study, const StudyResults& results) {
       {"method", first.experiment.method},
       {"world_ceiling",
        std::isfinite(results.cells[0].ceiling) ? Json(results.cells[0].ceiling) : Json(nullptr)},
+      {"commands", results.commands},
       {"sweep", nullptr},
       {"cells", Json::array()},
-      {"comparisons", Json::array()}};
+      {"comparisons", comparisons_json(results)}};
   if (study.file.sweep_keys.size() == 1) {
     const std::string& key = study.file.sweep_keys[0];
     Json values = Json::array();
@@ -103,15 +95,6 @@ Json report_study(const Study& study, const StudyResults& results) {
       cell["trial_list"].push_back(trial_json(t));
     }
     json["cells"].push_back(std::move(cell));
-    if (i == 0) continue;
-    const PairedComparison c = compare(results.cells[i - 1], results.cells[i]);
-    json["comparisons"].push_back({{"a", short_label(results.cells[i - 1].cell)},
-                                   {"b", short_label(results.cells[i].cell)},
-                                   {"both", c.both},
-                                   {"only_a", c.only_a},
-                                   {"only_b", c.only_b},
-                                   {"neither", c.neither},
-                                   {"mcnemar_p", c.mcnemar_p}});
   }
   return json;
 }
@@ -175,6 +158,8 @@ Json report_view(const Study& study) {
                             seen.edges.size(), sighting.segments.size())}};
 }
 
+bool has_plots(const fs::path& folder) { return fs::is_regular_file(folder / plotly_file); }
+
 std::string assemble_page(const fs::path& folder, const Json& data) {
   std::string json;
   // a file name may hold any bytes, and no "<" may end or open anything in the page
@@ -186,19 +171,19 @@ std::string assemble_page(const fs::path& folder, const Json& data) {
     }
   }
   std::string plotly;
-  for (const fs::path& file :
-       {folder / "plotly-cartesian.min.js",
-        folder / "node_modules" / "plotly.js-cartesian-dist-min" / "plotly-cartesian.min.js"}) {
-    if (plotly.empty() && fs::is_regular_file(file)) {
-      plotly = "<script>" + read_whole(file) + "</script>";
-    }
+  if (!fs::is_regular_file(folder / "report.js")) {
+    throw Error("report", "this build has no script for the page, because esbuild was missing",
+                "run scripts/install_packages.sh, then configure and build again");
+  }
+  if (has_plots(folder)) {
+    plotly = "<script id=\"plotly\">" + read_whole(folder / plotly_file) + "</script>";
   }
   return fill(read_whole(folder / "report.html"),
               {{"<!--VERNIER:CSS-->", read_whole(folder / "report.css")},
                {"<!--VERNIER:PLOTLY-->", plotly},
                {"<!--VERNIER:DATA-->",
                 "<script type=\"application/json\" id=\"data\">" + json + "</script>"},
-               {"<!--VERNIER:JS-->", scripts_in(folder / "js")}});
+               {"<!--VERNIER:JS-->", read_whole(folder / "report.js")}});
 }
 
 }  // namespace vernier::cli

@@ -18,7 +18,10 @@ Json report_world(const World& world);
 /// The view of the first trial of a study's middle cell.
 Json report_view(const Study& study);
 
-/// Fills the page's template. Without plotly in the folder the page says so and holds tables only.
+/// Whether pages made from the folder's files have plots: not where it was built without.
+bool has_plots(const std::filesystem::path& folder);
+
+/// Fills the page's template. A page without plots says so and holds tables only.
 std::string assemble_page(const std::filesystem::path& folder, const Json& data);
 
 }  // namespace vernier::cli

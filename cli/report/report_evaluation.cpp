@@ -9,6 +9,7 @@
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
 #include "cli/program/session.h"
+#include "cli/stereo/evaluate_figures.h"
 
 namespace vernier::cli {
 namespace {

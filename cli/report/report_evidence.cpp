@@ -19,6 +19,7 @@
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_estimate.h"
+#include "calib/statistics/quantile.h"
 #include "calib/validation/residual_structure.h"
 #include "calib/validation/view_influence.h"
 #include "cli/program/session.h"
@@ -99,10 +100,10 @@ MapFigures figures_of(const ProjectionGrid& grid) {
     if (std::isfinite(sd)) sds.push_back(sd);
   }
   if (sds.empty()) return {NAN, NAN, NAN};
-  std::sort(sds.begin(), sds.end());
   const std::size_t middle =
       static_cast<std::size_t>(grid.rows / 2) * grid.columns + grid.columns / 2;
-  return {worst_sd(grid.covariance[middle]), sds[sds.size() / 2], sds.back()};
+  return {worst_sd(grid.covariance[middle]), quantile(sds, 0.5, QuantileKind::upper),
+          quantile(sds, 1, QuantileKind::lower)};
 }
 
 Json map_json(const ProjectionGrid& grid, double distance_m) {
@@ -125,8 +126,8 @@ std::array<double, 3> board_ranges(const CalibrationEvidence& evidence) {
   middle /= static_cast<double>(evidence.observations.target_m.size());
   std::vector<double> ranges;
   for (const Pose& T : evidence.T_first_board) ranges.push_back((T * middle).norm());
-  std::sort(ranges.begin(), ranges.end());
-  return {ranges.front(), ranges[ranges.size() / 2], ranges.back()};
+  return {quantile(ranges, 0, QuantileKind::lower), quantile(ranges, 0.5, QuantileKind::upper),
+          quantile(ranges, 1, QuantileKind::lower)};
 }
 
 Json camera_projection(const RigAndBoards& honest,

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "calib/error.h"
@@ -65,11 +66,20 @@ void run(const StudyArguments& options, Session& session) {
   job.folder = options.folder;
   job.threads = options.threads;
   job.shard = shard_of(options.shard);
+  job.command = session.command;
   const Study study = load_study(file, session);
   keep_inputs(file, job.folder);
   {
-    Progress progress(session, "study: blocks");
-    job.progress = [&](int done, int total) { progress.update(done, total); };
+    std::optional<Progress> ceilings, blocks;
+    job.ceiling_progress = [&](int done, int total) {
+      if (!ceilings) ceilings.emplace(session, "study: queries of the world ceiling");
+      ceilings->update(done, total);
+    };
+    job.progress = [&](int done, int total) {
+      ceilings.reset();
+      if (!blocks) blocks.emplace(session, "study: blocks");
+      blocks->update(done, total);
+    };
     run_study(study, job);
   }
   print(study, job.folder, session);
@@ -86,6 +96,7 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Ses
     bool same = study.world_fingerprint == first.world_fingerprint &&
                 study.rig_fingerprint == first.rig_fingerprint &&
                 study.file.trials == first.file.trials &&
+                study.file.trials_per_block == first.file.trials_per_block &&
                 study.file.cells.size() == first.file.cells.size();
     for (std::size_t i = 0; same && i < study.file.cells.size(); ++i) {
       same = study.file.cells[i].settings == first.file.cells[i].settings;
@@ -128,12 +139,14 @@ void merge(const StudyArguments& options, Session& session) {
   StudyStore merged(target / "results.sqlite");
   for (const auto& [key, block] : blocks) merged.put(block);
   for (const auto& [key, value] : notes) merged.set_metadata(key, value);
+  merged.set_metadata(command_key(session.command), session.command);
 
   const Study study = open_folder(target, session);
   const StudyResults results = study_results(study, target);
   if (results.blocks_done < results.blocks_total) {
-    session.doubt(fmt::format("{} of {} blocks are missing from the merged study",
-                              results.blocks_total - results.blocks_done, results.blocks_total));
+    session.add_trust_warning(fmt::format("{} of {} blocks are missing from the merged study",
+                                          results.blocks_total - results.blocks_done,
+                                          results.blocks_total));
   }
   session.result(study_json(study, results), study_table(study, results));
 }

@@ -7,12 +7,14 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
 #include "calib/base/text_lines.h"
+#include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
@@ -45,10 +47,16 @@ Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Sessi
   return study;
 }
 
-/// A number as a number, a word as a word.
+/// A number as a number, true and false as they are, a word as a word.
 Json value_json(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
   const std::optional<double> value = to_real(text);
   return value ? Json(*value) : Json(text);
+}
+
+/// The kind of covariance that psi_c scales, or null where the rig has none.
+Json covariance_json(const Study& study) {
+  return study.rig.covariance ? Json(name(study.rig.covariance->kind)) : Json();
 }
 
 }  // namespace
@@ -95,11 +103,15 @@ Json cell_json(const CellResult& cell) {
   Json settings;
   for (const auto& [key, value] : cell.cell.settings) settings[key] = value_json(value);
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
+  const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
+  const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
           {"trials", s.trials},
           {"success", s.success},
-          {"success_interval_95", pair(s.success_interval_95)},
+          {"maps", s.maps},
+          {"success_interval_95", clustered},
+          {"success_interval_95_missing", missing},
           {"success_interval_binomial_95", pair(s.success_interval_binomial_95)},
           {"coverage", s.coverage},
           {"success_when_answered", s.success_when_answered},
@@ -117,35 +129,72 @@ Json cell_json(const CellResult& cell) {
           {"world_ceiling", json_number(cell.ceiling)}};
 }
 
+Json comparisons_json(const StudyResults& results) {
+  Json comparisons = Json::array();
+  for (const auto& [a, b] : comparable_pairs(results.cells)) {
+    const PairedComparison c = compare(results.cells[a], results.cells[b]);
+    comparisons.push_back({{"a", short_label(results.cells[a].cell)},
+                           {"b", short_label(results.cells[b].cell)},
+                           {"both", c.both},
+                           {"only_a", c.only_a},
+                           {"only_b", c.only_b},
+                           {"neither", c.neither},
+                           {"maps", c.maps},
+                           {"test", "paired t over maps"},
+                           {"p_value", json_number(c.p_value)},
+                           {"mcnemar_p", json_number(c.mcnemar_p)}});
+  }
+  return comparisons;
+}
+
 Json study_json(const Study& study, const StudyResults& results) {
   Json json{{"trials", study.file.trials},
+            {"rig", {{"file", study.file.rig}, {"covariance_kind", covariance_json(study)}}},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
             {"cells", Json::array()}};
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
+  json["comparisons"] = comparisons_json(results);
   return json;
 }
+
+namespace {
+
+std::string interval_text(const CellSummary& summary) {
+  if (!summary.success_interval_95) return "none";
+  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * summary.success_interval_95->low,
+                     100 * summary.success_interval_95->high);
+}
+
+}  // namespace
 
 std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept = !study.file.sweep_keys.empty();
   std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
                                  swept ? "cell" : "", "trials", "success", "95 % interval",
                                  "covered", "ceiling", "median m", "cpu ms", "p95 ms");
+  std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
+    if (!s.success_interval_95) missing.insert(s.why_no_interval);
     text += fmt::format(
-        "{:<24} {:>6} {:>6.2f} % [{:>5.2f}, {:>6.2f}] {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} "
-        "{:>9.1f}\n",
+        "{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} {:>9.1f}\n",
         swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        100 * s.success, 100 * s.success_interval_95.low, 100 * s.success_interval_95.high,
-        100 * s.coverage, 100 * cell.ceiling, s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
+        100 * s.success, interval_text(s), 100 * s.coverage, 100 * cell.ceiling, s.median_error_m,
+        s.cpu_ms_mean, s.cpu_ms_p95);
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
+  const std::string covariance =
+      study.rig.covariance ? fmt::format("its covariance, which drives psi_c, is of kind {}",
+                                         name(study.rig.covariance->kind))
+                           : "without a covariance";
+  text += fmt::format("rig {}: {}\n", study.file.rig, covariance);
   text +=
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
+  for (const std::string& why : missing) text += fmt::format("no interval: it {}\n", why);
   if (results.blocks_done < results.blocks_total) {
     text += fmt::format("{} of {} blocks are there: run the study again to finish it\n",
                         results.blocks_done, results.blocks_total);

@@ -77,10 +77,10 @@ bool say_doubts(const MeasuredSources& sources, Session& session) {
   bool any = false;
   for (const SourceEntry& entry : source_entries(sources)) any = any || entry.written;
   if (!any) {
-    session.doubt("nothing could be measured: fewer than 30 samples of everything");
+    session.add_trust_warning("nothing could be measured: fewer than 30 samples of everything");
   } else if (sources.edge_loss.share.value > hardly_a_pair) {
     any = false;
-    session.doubt(fmt::format(
+    session.add_trust_warning(fmt::format(
         "{:.0f} % of the left image's edges are not where the truth puts them: look whether left "
         "and right are exchanged, and at truth_scale",
         100 * sources.edge_loss.share.value));

@@ -213,41 +213,13 @@ DrawOptions draw_options(const EvaluateArguments& options) {
   return draws;
 }
 
-/// The call as it would be typed, but for where it writes.
-std::string command_of(const EvaluateArguments& o) {
-  std::string command = "vernier evaluate";
-  const auto add = [&](const char* option, const std::string& value) {
-    if (!value.empty()) command += fmt::format(" {} '{}'", option, value);
-  };
-  const StereoSceneFile& one = o.scenes.one;
-  add("--scenes", o.scenes.scenes);
-  add("--left", one.left.string());
-  add("--right", one.right.string());
-  add("--truth", one.truth.string());
-  add("--right-truth", one.right_truth.string());
-  if (o.scenes.scenes.empty()) {
-    command += fmt::format(" --truth-scale {:g} --min-disparity {} --max-disparity {}",
-                           one.truth_scale, one.range.min_px, one.range.max_px);
-  }
-  add("--rig", one.rig.string());
-  add("--matcher", o.matchers.names);
-  for (const std::string& program : o.matchers.commands) add("--command", program);
-  add("--outline", o.outline);
-  command += o.repair ? " --repair" : "";
-  command += o.equal_density ? " --equal-density" : "";
-  add("--psi-c", o.psi_c);
-  if (!o.psi_c.empty()) {
-    command += fmt::format(" --draws {} --seed {}", o.draws.draws, o.draws.seed);
-  }
-  add("--rows-moved-px", o.rows_px);
-  return command;
-}
-
 /// What the figures depend on beside the pairs, which stand with their scores.
-Json settings_json(const EvaluateArguments& options, const std::vector<Matcher>& matchers) {
+Json settings_json(const EvaluateArguments& options,
+                   const std::vector<Matcher>& matchers,
+                   const Session& session) {
   Json names = Json::array();
   for (const Matcher& matcher : matchers) names.push_back(matcher.name);
-  return {{"command", command_of(options)},
+  return {{"command", session.command},
           {"list", options.scenes.scenes.empty() ? Json() : Json(options.scenes.scenes)},
           {"matchers", names},
           {"commands", options.matchers.commands},
@@ -260,13 +232,13 @@ void judge(const Scene& scene, const std::vector<Run>& runs, Session& session) {
   constexpr double hardly_any = 0.05, some = 0.3, mostly_wrong = 1.0 / 3;
   const auto all = [&](const auto& of) { return std::all_of(runs.begin(), runs.end(), of); };
   if (all([](const Run& run) { return run.score.all.density < hardly_any; })) {
-    session.doubt(scene.file.name +
-                  ": no matcher finds anything; look at both images and at the "
-                  "range of disparities");
+    session.add_trust_warning(scene.file.name +
+                              ": no matcher finds anything; look at both images and at the "
+                              "range of disparities");
   } else if (all([](const Run& run) {
                return run.score.all.density < some || run.score.all.bad_1 > mostly_wrong;
              })) {
-    session.doubt(
+    session.add_trust_warning(
         fmt::format("{}: {:.0f} % of what matchers find is wrong by more than a pixel: "
                     "see that the truth is of this left image, and at its scale ({:g} "
                     "values a pixel)",
@@ -301,7 +273,7 @@ void run(const EvaluateArguments& options, Session& session) {
     progress.update(++done, static_cast<int>(files.size()));
   }
   Json json = concluded(options, matchers, report);
-  json["settings"] = settings_json(options, matchers);
+  json["settings"] = settings_json(options, matchers, session);
   if (options.equal_density) {
     json["equal_density"] = equal_density.json();
     json["curves"] = equal_density.curves();

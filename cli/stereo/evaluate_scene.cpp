@@ -59,8 +59,8 @@ void repair(Scene& scene, bool wanted, Session& session) {
   if (!field.significant && !field.unrectified && !wanted) return;
   session.say(scene.file.name + ": " + describe(field));
   if (field.unrectified) {
-    session.doubt(scene.file.name +
-                  ": its rows do not agree; rectify the pair first (vernier rectify)");
+    session.add_trust_warning(scene.file.name +
+                              ": its rows do not agree; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
     scene.pair.right = corrected_right(scene.pair.right, field);
   } else if (field.significant) {
@@ -89,7 +89,7 @@ void check_range(const Scene& scene, Session& session) {
       "reaches from {:.0f} to {:.0f}",
       scene.file.name, 100 * share, range.min_px, range.max_px, least, most);
   if (share > much) {
-    session.doubt(words);
+    session.add_trust_warning(words);
   } else {
     session.warn(words);
   }

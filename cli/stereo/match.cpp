@@ -15,6 +15,7 @@
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/statistics/quantile.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -41,12 +42,9 @@ struct MatchArguments {
 };
 
 double median_sigma(const std::vector<CornerMatch>& matches) {
-  if (matches.empty()) return 0;
   std::vector<double> sigma;
   for (const CornerMatch& match : matches) sigma.push_back(match.sigma_px);
-  const auto middle = sigma.begin() + static_cast<long>(sigma.size() / 2);
-  std::nth_element(sigma.begin(), middle, sigma.end());
-  return *middle;
+  return median_or_zero(std::move(sigma));
 }
 
 std::vector<ImageMatching> match_all(const std::vector<ImageFiles>& files,
@@ -80,11 +78,11 @@ Totals totals(const std::vector<ImageMatching>& all) {
 
 /// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
 /// matches; warns where it gives nearly as many.
-void check_not_swapped(const std::vector<ImageMatching>& all,
-                       const RigEstimate& prior,
-                       const MatchArguments& options,
-                       std::size_t tried,
-                       Session& session) {
+void check_matches_not_swapped(const std::vector<ImageMatching>& all,
+                               const RigEstimate& prior,
+                               const MatchArguments& options,
+                               std::size_t tried,
+                               Session& session) {
   if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
   std::size_t given = 0, exchanged = 0;
   for (std::size_t i = 0; i < std::min(tried, all.size()); ++i) {
@@ -136,7 +134,7 @@ void judge(const std::vector<ImageMatching>& all,
     session.warn(blank.string() + ": " + fault + "; its pair is left out");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
-  check_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
+  check_matches_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
   if (share >= suspicious) return;
   if (share >= few) return;
   const std::string fault =
@@ -145,7 +143,7 @@ void judge(const std::vector<ImageMatching>& all,
       "see that the prior is of these cameras, its covariance not too narrow, the images "
       "simultaneous, and the scene beyond --nearest-m";
   if (sum.matches == 0) throw Error("match", fault, remedy);
-  session.doubt(fault + "; " + remedy);
+  session.add_trust_warning(fault + "; " + remedy);
 }
 
 std::vector<std::filesystem::path> inputs(const std::filesystem::path& prior,

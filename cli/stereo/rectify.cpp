@@ -113,7 +113,7 @@ void judge(const Rectified& rectified,
   const double blank = std::max(rectified.images.left_valid.blank_share(),
                                 rectified.images.right_valid.blank_share());
   if (blank > nearly_all) {
-    session.doubt(
+    session.add_trust_warning(
         fmt::format("{:.0f} % of a rectified image is blank; see --f-px and --size", 100 * blank));
     return;
   }
@@ -121,7 +121,7 @@ void judge(const Rectified& rectified,
     const std::string words =
         "the rows of the rectified images could not be checked: " + describe(field);
     if (field.corners == 0) {
-      session.doubt(words);
+      session.add_trust_warning(words);
     } else {
       session.warn(words);
     }
@@ -130,16 +130,17 @@ void judge(const Rectified& rectified,
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
     const VerticalField exchanged = rectify(rig, right, left, options).field;
     if (exchanged.known && !exchanged.unrectified) {
-      session.doubt(fmt::format(
+      session.add_trust_warning(fmt::format(
           "left and right seem exchanged: {} corners match as given, {} the other way round; "
           "exchange --left and --right, or the cameras of the rig",
           field.matched, exchanged.matched));
       return;
     }
   }
-  session.doubt("the rows of the rectified images do not agree: " + describe(field) +
-                "; see that the rig is of these cameras as they stand, the images simultaneous "
-                "and --max-disparity large enough");
+  session.add_trust_warning(
+      "the rows of the rectified images do not agree: " + describe(field) +
+      "; see that the rig is of these cameras as they stand, the images simultaneous "
+      "and --max-disparity large enough");
 }
 
 std::string png(const GreyLevels& image) {

@@ -13,7 +13,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
@@ -69,11 +69,11 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
     share.push_back(common / (own + common));
     relative.push_back(s.relative_sigma);
   }
-  f.depth_m = median(depth);
-  f.matching_m = median(matching);
-  f.calibration_m = median(calibration);
-  f.calibration_share = median(share);
-  f.relative = median(relative);
+  f.depth_m = median_or_zero(depth);
+  f.matching_m = median_or_zero(matching);
+  f.calibration_m = median_or_zero(calibration);
+  f.calibration_share = median_or_zero(share);
+  f.relative = median_or_zero(relative);
   return f;
 }
 
@@ -136,23 +136,24 @@ void judge(const StereoArguments& options,
            const DepthFigures& depth,
            Session& session) {
   if (input.field.unrectified) {
-    session.doubt("the rows of both images do not agree: " + describe(input.field) +
-                  (options.input.rectified
-                       ? "; rectify the pair first (give --rig and leave out --rectified)"
-                       : "; see that the rig is of these cameras as they stand and the images "
-                         "simultaneous"));
+    session.add_trust_warning(
+        "the rows of both images do not agree: " + describe(input.field) +
+        (options.input.rectified
+             ? "; rectify the pair first (give --rig and leave out --rectified)"
+             : "; see that the rig is of these cameras as they stand and the images "
+               "simultaneous"));
   }
   if (edges.share() < hardly_any) {
-    session.doubt(fmt::format(
+    session.add_trust_warning(fmt::format(
         "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
         "time, the rows agree and disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
-    session.doubt("no segment has a place in space; segments.json says why of each");
+    session.add_trust_warning("no segment has a place in space; segments.json says why of each");
   } else if (depth.linear < (1 - max_doubtful) * depth.placed) {
-    session.doubt(fmt::format(
+    session.add_trust_warning(fmt::format(
         "the depth of {} of {} segments is not known to a tenth: {}; {}",
         depth.placed - depth.linear, depth.placed, sigma_words(depth),
         depth.calibration_share > 0.5

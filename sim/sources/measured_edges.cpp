@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "sim/sources/clustered_samples.h"
 #include "sim/sources/measured_figures.h"
 #include "sim/sources/measured_sources.h"
@@ -74,7 +74,7 @@ Eigen::Vector3d displacement_of(const std::vector<SegmentShift>& shifts) {
       return Eigen::Vector3d(s.normal.x(), s.normal.y(), 1);
     };
     for (const SegmentShift& s : shifts) sizes.push_back(std::abs(s.shift_px - row(s).dot(b)));
-    const double huber = 1.345 * std::max(0.02, 1.4826 * median(sizes));
+    const double huber = 1.345 * std::max(0.02, 1.4826 * median_or_zero(sizes));
     Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < shifts.size(); ++i) {
@@ -106,7 +106,7 @@ ClusteredSamples<Shift> shifts_of(const PairList& pairs, const ClusterOf& cluste
 double beyond_px(const std::vector<Shift>& shifts) {
   std::vector<double> sizes;
   for (const Shift& s : shifts) sizes.push_back(std::abs(s.towards_px));
-  return std::max(0.3, 4 * 1.4826 * median(sizes));
+  return std::max(0.3, 4 * 1.4826 * median_or_zero(sizes));
 }
 
 VarianceLine shift_variance(const std::vector<Shift>& shifts) {
@@ -192,7 +192,7 @@ MeasuredLateralShift measured_lateral_shift(const PairList& pairs,
   result.towards_px = measured(shifts, options, [](const std::vector<Shift>& all) {
     std::vector<double> towards;
     for (const Shift& s : all) towards.push_back(s.towards_px);
-    return median(std::move(towards));
+    return median_or_zero(std::move(towards));
   });
   if (!result.relative_px.known()) return result;
   const std::vector<Shift> all = shifts.all();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "calib/interval.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "sim/sources.h"
 #include "sim/sources/clustered_samples.h"
 #include "sim/sources/measured_figures.h"
@@ -47,7 +47,7 @@ struct MismatchModel {
   /// Reach of which those seen have their median error; not a number for fewer than `least`.
   double reach_px(const std::vector<double>& wrong_px, int least) const {
     if (static_cast<int>(wrong_px.size()) < least) return std::numeric_limits<double>::quiet_NaN();
-    const double middle = median(wrong_px);
+    const double middle = median_or_zero(wrong_px);
     return line ? 2 * middle - seen_from_px
                 : std::sqrt(2 * middle * middle - seen_from_px * seen_from_px);
   }

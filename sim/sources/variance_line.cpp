@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/sources/variance_line.h"
 
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 double median_square(const std::vector<SquareSample>& samples) {
   std::vector<double> squares;
   for (const SquareSample& sample : samples) squares.push_back(std::abs(sample.square));
-  return median(std::move(squares));
+  return median_or_zero(std::move(squares));
 }
 
 /// Share of the variance of a standard normal that lies within ± cut of it, per sample kept.

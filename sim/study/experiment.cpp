@@ -49,13 +49,17 @@ NoiseFreeViewOptions look_options(const ExperimentSettings& settings) {
 PlaceView interpret(const Rig& told,
                     const StereoObservation& sighting,
                     const ExperimentSettings& settings) {
-  const TriangulationOptions options{.endpoint_sigma_px =
-                                         std::max(0.1, settings.sources.endpoint_sigma_px)};
+  const TriangulationOptions options{.endpoint_sigma_px = told_endpoint_sigma_px(settings)};
   return select_lines(triangulate(told, sighting.segments, options), sighting.segments,
                       settings.mount);
 }
 
 }  // namespace
+
+double told_endpoint_sigma_px(const ExperimentSettings& settings) {
+  return settings.knows_endpoint_sigma ? std::max(0.1, settings.sources.endpoint_sigma_px)
+                                       : TriangulationOptions().endpoint_sigma_px;
+}
 
 MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,

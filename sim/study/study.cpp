@@ -3,8 +3,9 @@
 #include "sim/study/study.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -16,22 +17,27 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <optional>
 #include <utility>
 
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/interval.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/quantile.h"
+#include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/query_protocol.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
+#include "sim/study/success_interval.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
+using namespace vernier::internal;
 using namespace localise;
 
 namespace {
@@ -39,12 +45,27 @@ namespace {
 /// Changes when the meaning of stored results does.
 constexpr int results_version = 1;
 
-/// All that a cell's results depend on, as text: the key under which they are stored.
+/// Size of a block that is no part of a cell's key: all stores had it before sizes differed.
+constexpr int usual_block = 50;
+
+/// All that a cell's results depend on, as text: the key under which they are stored. Blocks of
+/// another size record their maps for other trials, and so are kept under another key.
 std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
                              {"rig", study.rig_fingerprint}};
-  for (const auto& [name, value] : cell.settings) key[name] = value;
+  for (const auto& [name, value] : cell.settings) {
+    if (name != "localiser.knows_endpoint_sigma") key[name] = value;
+  }
+  // Before there was a choice the estimator was told this; results that it still holds for are
+  // kept.
+  const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
+  if (const double told = told_endpoint_sigma_px(cell.experiment); told != once_told) {
+    key["localiser.told_endpoint_sigma_px"] = told;
+  }
+  if (study.file.trials_per_block != usual_block) {
+    key["study.trials_per_block"] = study.file.trials_per_block;
+  }
   return key.dump();
 }
 
@@ -73,9 +94,9 @@ std::vector<Job> all_jobs(const Study& study) {
   std::vector<Job> jobs;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = cell_key(study, cell);
-    for (int first = 0, block = 0; first < study.file.trials; first += trials_per_block, ++block) {
-      jobs.push_back(
-          {&cell, key, block, first, std::min(trials_per_block, study.file.trials - first)});
+    const int size = study.file.trials_per_block;
+    for (int first = 0, block = 0; first < study.file.trials; first += size, ++block) {
+      jobs.push_back({&cell, key, block, first, std::min(size, study.file.trials - first)});
     }
   }
   return jobs;
@@ -102,22 +123,67 @@ std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
   return missing;
 }
 
-/// The world's ceiling on the first queries of a cell.
+/// Calls work(0) … work(count - 1) on the threads of an arena.
+template <class Work>
+void in_parallel(tbb::task_arena& arena, int count, Work work) {
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, count, 1),
+        [&](const tbb::blocked_range<int>& range) {
+          for (int i = range.begin(); i < range.end(); ++i) work(i);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+/// The world's ceiling on the first queries of a cell; calls `one_done` after each of them. The
+/// sum is in the order of the queries, whichever was done first.
 double compute_ceiling(const Study& study,
                        const Visibility& visibility,
-                       const ExperimentSettings& settings) {
+                       const ExperimentSettings& settings,
+                       tbb::task_arena& arena,
+                       const std::function<void()>& one_done) {
   NoiseFreeViewOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
-  const int queries = ceiling_queries(study);
+  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
+  in_parallel(arena, static_cast<int>(of_query.size()), [&](int i) {
+    of_query[i] = finder
+                      .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
+                                          settings.seed, static_cast<std::uint32_t>(i)))
+                      .ceiling();
+    one_done();
+  });
   double sum = 0;
-  for (int i = 0; i < queries; ++i) {
-    sum += finder
-               .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
-                                   settings.seed, static_cast<std::uint32_t>(i)))
-               .ceiling();
+  for (const double ceiling : of_query) sum += ceiling;
+  return sum / static_cast<double>(of_query.size());
+}
+
+/// Writes the ceilings that the store lacks into it, each as soon as it is known.
+void add_ceilings(const Study& study,
+                  const Visibility& visibility,
+                  const StudyRun& run,
+                  tbb::task_arena& arena,
+                  StudyStore& store) {
+  std::map<std::string, const ExperimentSettings*> missing;
+  for (const StudyCell& cell : study.file.cells) {
+    const std::string key = ceiling_key(study, cell.experiment);
+    if (store.note(key).empty()) missing.emplace(key, &cell.experiment);
   }
-  return sum / queries;
+  if (missing.empty()) return;
+  std::mutex mutex;
+  int done = 0;
+  const int total = static_cast<int>(missing.size()) * ceiling_queries(study);
+  if (run.ceiling_progress) run.ceiling_progress(0, total);
+  const auto one_done = [&] {
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (run.ceiling_progress) run.ceiling_progress(done, total);
+  };
+  for (const auto& [key, settings] : missing) {
+    store.set_metadata(
+        key, fmt::format("{}", compute_ceiling(study, visibility, *settings, arena, one_done)));
+  }
 }
 
 std::string store_name(const Shard& shard) {
@@ -125,16 +191,28 @@ std::string store_name(const Shard& shard) {
                           : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count);
 }
 
-double median(std::vector<double> values, double quantile = 0.5) {
+/// Not a number of none.
+double quantile_or_nan(std::vector<double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double at = quantile * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+  return quantile(std::move(values), p, QuantileKind::linear);
+}
+
+std::map<std::uint32_t, const TrialResult*> by_number(const CellResult& cell) {
+  std::map<std::uint32_t, const TrialResult*> trials;
+  for (const TrialResult& trial : cell.trials) trials[trial.trial] = &trial;
+  return trials;
+}
+
+/// McNemar's exact p-value: the smaller count under Binomial(both counts, 1/2), both tails.
+double exact_mcnemar(int only_a, int only_b) {
+  const int discordant = only_a + only_b;
+  if (discordant == 0) return 1;
+  return std::min(1.0, 2 * binomial_cdf(std::min(only_a, only_b), discordant, 0.5));
 }
 
 }  // namespace
+
+std::string command_key(const std::string& command) { return "command " + command; }
 
 void run_study(const Study& study, const StudyRun& run) {
   if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
@@ -145,18 +223,17 @@ void run_study(const Study& study, const StudyRun& run) {
   const Visibility visibility(study.world);
   const std::vector<Job> jobs = missing_jobs(study, run);
   StudyStore store(run.folder / store_name(run.shard));
+  if (!run.command.empty() && !jobs.empty())
+    store.set_metadata(command_key(run.command), run.command);
+
+  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::task_arena::automatic);
+  add_ceilings(study, visibility, run, arena, store);
 
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
-  std::set<std::string> ceilings;
   for (const StudyCell& cell : study.file.cells) {
     auto& shared = looks[looks_key(cell.experiment)];
     if (!shared && !jobs.empty()) {
       shared = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, cell.experiment));
-    }
-    const std::string key = ceiling_key(study, cell.experiment);
-    if (ceilings.insert(key).second && store.note(key).empty()) {
-      store.set_metadata(key,
-                         fmt::format("{}", compute_ceiling(study, visibility, cell.experiment)));
     }
   }
 
@@ -176,25 +253,13 @@ void run_study(const Study& study, const StudyRun& run) {
     store.put(block);
     if (run.progress) run.progress(++done, total);
   };
-  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::task_arena::automatic);
-  const tbb::global_control limit(
-      tbb::global_control::max_allowed_parallelism,
-      run.threads > 0
-          ? run.threads
-          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  arena.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, total, 1),
-        [&](const tbb::blocked_range<int>& range) {
-          for (int i = range.begin(); i < range.end(); ++i) do_job(i);
-        },
-        tbb::simple_partitioner());
-  });
+  in_parallel(arena, total, do_job);
 }
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
   std::map<std::pair<std::string, int>, StoredBlock> blocks;
   std::map<std::string, std::string> ceilings;
+  std::set<std::string> commands;
   for (const auto& file : store_files(folder)) {
     const StudyStore store(file);
     for (StoredBlock& block : store.blocks()) {
@@ -205,11 +270,16 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
       const std::string key = ceiling_key(study, cell.experiment);
       if (const std::string value = store.note(key); !value.empty()) ceilings[key] = value;
     }
+    for (const auto& [key, value] : store.notes()) {
+      if (key == command_key(value)) commands.insert(value);
+    }
   }
   StudyResults results;
+  results.commands.assign(commands.begin(), commands.end());
   for (const StudyCell& cell : study.file.cells) {
     CellResult result;
     result.cell = cell;
+    result.trials_per_block = study.file.trials_per_block;
     const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
     result.ceiling = std::numeric_limits<double>::quiet_NaN();
     if (ceiling != ceilings.end()) {
@@ -240,6 +310,7 @@ CellSummary summarise(const CellResult& cell) {
   constexpr double degree = 0.017453292519943295;
   CellSummary s;
   s.trials = static_cast<int>(cell.trials.size());
+  s.maps = static_cast<int>(cell.maps.size());
   int successes = 0, answered = 0, node = 0, close = 0, closer = 0;
   std::vector<double> errors, headings, cpu;
   double wall = 0;
@@ -259,41 +330,77 @@ CellSummary summarise(const CellResult& cell) {
   const double n = std::max(1, s.trials);
   s.success = successes / n;
   s.success_interval_binomial_95 = wilson_interval(successes, s.trials);
-  const double effective = s.trials / design_effect(cell.maps);
-  s.success_interval_95 = wilson_interval(s.success * effective, effective);
+  s.success_interval_95 = clustered_interval_95(cell.maps);
+  if (!s.success_interval_95) {
+    s.why_no_interval = fmt::format("needs {} maps, has {}", fewest_maps, s.maps);
+  }
   s.coverage = answered / n;
   s.success_when_answered = answered > 0 ? static_cast<double>(successes) / answered : 0;
   s.node_success = node / n;
   s.recall_05 = close / n;
   s.recall_025 = closer / n;
-  s.median_error_m = median(errors);
-  s.median_heading_error_rad = median(headings);
+  s.median_error_m = quantile_or_nan(errors, 0.5);
+  s.median_heading_error_rad = quantile_or_nan(headings, 0.5);
   for (const double ms : cpu) s.cpu_ms_mean += ms / n;
-  s.cpu_ms_median = median(cpu);
-  s.cpu_ms_p95 = median(cpu, 0.95);
+  s.cpu_ms_median = quantile_or_nan(cpu, 0.5);
+  s.cpu_ms_p95 = quantile_or_nan(cpu, 0.95);
   s.wall_ms_mean = wall / n;
   return s;
 }
 
-PairedComparison compare(const CellResult& a, const CellResult& b) {
-  std::map<std::uint32_t, bool> success_of_a;
-  for (const TrialResult& trial : a.trials) success_of_a[trial.trial] = trial.success();
-  PairedComparison c;
+bool share_queries(const CellResult& a, const CellResult& b) {
+  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
+  bool shared = false;
   for (const TrialResult& trial : b.trials) {
-    const auto found = success_of_a.find(trial.trial);
-    if (found == success_of_a.end()) continue;
-    const bool in_a = found->second, in_b = trial.success();
+    const auto found = trials_of_a.find(trial.trial);
+    if (found == trials_of_a.end()) continue;
+    const Pose2D &p = found->second->truth, &q = trial.truth;
+    if (p.x_m != q.x_m || p.y_m != q.y_m || p.heading_rad != q.heading_rad) return false;
+    shared = true;
+  }
+  return shared;
+}
+
+PairedComparison compare(const CellResult& a, const CellResult& b) {
+  if (!share_queries(a, b)) {
+    throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",
+                "the cells have no queries in common, or asked in different places",
+                "compare cells of one protocol and seed");
+  }
+  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
+  PairedComparison c;
+  std::map<std::uint32_t, MapDifference> by_map;
+  for (const TrialResult& trial : b.trials) {
+    const auto found = trials_of_a.find(trial.trial);
+    if (found == trials_of_a.end()) continue;
+    const bool in_a = found->second->success(), in_b = trial.success();
     (in_a ? (in_b ? c.both : c.only_a) : (in_b ? c.only_b : c.neither))++;
+    MapDifference& map = by_map[trial.trial / static_cast<std::uint32_t>(a.trials_per_block)];
+    map.difference += in_a - in_b;
+    map.discordant += in_a != in_b;
+    ++map.trials;
   }
-  // Exact: the smaller count under Binomial(discordant, 1/2), both tails.
-  const int discordant = c.only_a + c.only_b, fewer = std::min(c.only_a, c.only_b);
-  double log_term = -discordant * std::log(2.0), tail = 0;
-  for (int k = 0; k <= fewer; ++k) {
-    tail += std::exp(log_term);
-    log_term += std::log(static_cast<double>(discordant - k)) - std::log(k + 1.0);
+  std::vector<MapDifference> maps;
+  for (const auto& [block, map] : by_map) maps.push_back(map);
+  c.maps = static_cast<int>(maps.size());
+  if (const std::optional<double> p = paired_p_value(maps)) {
+    c.p_value = *p;
+    c.mcnemar_p = exact_mcnemar(c.only_a, c.only_b);
   }
-  c.mcnemar_p = discordant > 0 ? std::min(1.0, 2 * tail) : 1;
   return c;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
+    const std::vector<CellResult>& cells) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t b = 1; b < cells.size(); ++b) {
+    for (std::size_t a = b; a-- > 0;) {
+      if (!share_queries(cells[a], cells[b])) continue;
+      pairs.emplace_back(a, b);
+      break;
+    }
+  }
+  return pairs;
 }
 
 }  // namespace vernier::sim::internal

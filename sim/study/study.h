@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/interval.h"
@@ -32,14 +36,15 @@ struct StudyRun {
   std::filesystem::path folder;  ///< results are kept, and resumed from, here
   int threads = 0;               ///< 0: as many as there are
   Shard shard;
+  std::string command;                                ///< that this run is; kept beside its results
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
+  /// The same of the queries whose world ceiling is worked out before the first block.
+  std::function<void(int done, int total)> ceiling_progress;
 };
 
-/// Trials of a block: they share one recorded map.
-inline constexpr int trials_per_block = 50;
-
-/// Runs what is missing of this shard. Blocks run in parallel, each on one thread, so results do
-/// not depend on the number of threads; a killed run goes on where it was.
+/// Runs what is missing of this shard. Blocks run in parallel, each on one thread, and so do the
+/// queries of a ceiling, so results do not depend on the number of threads; a killed run goes on
+/// where it was. The caller's own parallel work is not limited.
 void run_study(const Study& study, const StudyRun& run);
 
 /// A cell's results.
@@ -47,6 +52,7 @@ struct CellResult {
   StudyCell cell;
   std::vector<TrialResult> trials;  ///< ascending
   std::vector<ClusterCount> maps;   ///< by block
+  int trials_per_block = 50;        ///< trial t is of block t / trials_per_block
   double ceiling = 1;               ///< the world's, for this cell's protocol and mount
 };
 
@@ -54,7 +60,11 @@ struct CellResult {
 struct StudyResults {
   std::vector<CellResult> cells;
   int blocks_done = 0, blocks_total = 0;
+  std::vector<std::string> commands;  ///< that made them; ascending, none of old results
 };
+
+/// The key under which a store's notes hold a command.
+std::string command_key(const std::string& command);
 
 /// Reads all stores of the folder. Throws Error where two shards disagree on a block.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
@@ -62,10 +72,12 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
 /// Figures of a cell.
 struct CellSummary {
   int trials = 0;
+  int maps = 0;  ///< recorded for them
   double success = 0;
-  Interval success_interval_95;           ///< Wilson with the effective number: clusters by map
-  Interval success_interval_binomial_95;  ///< Wilson as if trials were independent
-  double coverage = 0;                    ///< share answered
+  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
+  std::string why_no_interval;                  ///< "needs 6 maps, has 1"; empty where there is one
+  Interval success_interval_binomial_95;        ///< Wilson as if trials were independent
+  double coverage = 0;                          ///< share answered
   double success_when_answered = 0;
   double node_success = 0;               ///< of the map's node instead of the refined pose
   double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
@@ -75,11 +87,24 @@ struct CellSummary {
 };
 CellSummary summarise(const CellResult& cell);
 
-/// Two cells on the same trials: successes of one, of the other, McNemar's exact p-value.
+/// Whether two cells asked in the same places: every trial that both have begins at the same pose,
+/// and there is one. Not so where the seed or the protocol of the queries is swept.
+bool share_queries(const CellResult& a, const CellResult& b);
+
+/// Two cells on the same trials: in how many both succeeded, one alone, neither. The p-values are
+/// those of "neither is better", not a number for fewer than six maps.
 struct PairedComparison {
   int both = 0, only_a = 0, only_b = 0, neither = 0;
-  double mcnemar_p = 1;
+  int maps = 0;
+  double p_value = std::numeric_limits<double>::quiet_NaN();    ///< paired t over maps
+  double mcnemar_p = std::numeric_limits<double>::quiet_NaN();  ///< exact, as if independent
 };
+
+/// Throws Error where the cells do not share their queries.
 PairedComparison compare(const CellResult& a, const CellResult& b);
+
+/// Pairs of cells worth a comparison: each with the nearest one before it that shares its queries.
+std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
+    const std::vector<CellResult>& cells);
 
 }  // namespace vernier::sim::internal

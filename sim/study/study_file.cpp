@@ -19,6 +19,7 @@
 #include "sim/experiment.h"
 #include "sim/query_protocol.h"
 #include "sim/sources.h"
+#include "sim/study/success_interval.h"
 
 namespace vernier::sim::internal {
 
@@ -105,6 +106,7 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
       fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "give 1 to 10000000");
     }
   }
+  study.trials_per_block = block_size(study.trials);
 }
 
 void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
@@ -221,7 +223,7 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
     }
   }
   if (const auto* localiser = section(root, "localiser")) {
-    check_keys(*localiser, {"method", "looks"}, "[localiser]");
+    check_keys(*localiser, {"method", "looks", "knows_endpoint_sigma"}, "[localiser]");
     if (const auto* method = localiser->get("method")) {
       settings.method = text(*method, "localiser.method");
       const std::vector<std::string> known = localiser_names();
@@ -229,6 +231,12 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
         fail(*method, fmt::format("there is no localiser \"{}\"", settings.method),
              "use pgh or pgh_baseline");
       }
+    }
+    if (const auto* knows = localiser->get("knows_endpoint_sigma")) {
+      if (!knows->is_boolean()) {
+        fail(*knows, "localiser.knows_endpoint_sigma is neither true nor false", "");
+      }
+      settings.knows_endpoint_sigma = knows->as_boolean()->get();
     }
     if (const auto* looks = localiser->get("looks")) {
       if (integer(*looks, "localiser.looks") != 1) {
@@ -294,6 +302,7 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   all["map.headings"] = s.map_headings == 0 ? "path" : fmt::format("{}", s.map_headings);
   all["map.rig"] = s.map_rig == MapRig::same ? "same" : "recalibrated";
   all["localiser.method"] = s.method;
+  all["localiser.knows_endpoint_sigma"] = s.knows_endpoint_sigma ? "true" : "false";
   all["study.protocol"] = name(s.protocol);
   all["study.seed"] = fmt::format("{}", s.seed);
   return all;
@@ -337,6 +346,8 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
 }
 
 }  // namespace
+
+int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
 
 StudyFile parse_study(const std::string& text,
                       const std::string& place,

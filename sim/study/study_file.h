@@ -18,9 +18,14 @@ struct StudyCell {
   ExperimentSettings experiment;
 };
 
+/// Trials of a block, which share one recorded map: 50, or so few that `trials` make six maps or
+/// more, the fewest that an interval is stated for.
+int block_size(int trials);
+
 /// What a study file says (docs/file-formats.md).
 struct StudyFile {
-  int trials = 900;  ///< a cell
+  int trials = 900;           ///< a cell
+  int trials_per_block = 50;  ///< block_size(trials)
   std::string world = "workshop";
   std::string rig = "nominal";
   std::filesystem::path sources;        ///< file that [sources] begins with; empty: none

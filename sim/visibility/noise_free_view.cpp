@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "calib/camera.h"
@@ -46,6 +47,18 @@ void for_common_stretches(const std::vector<VisibleInterval>& left,
 
 }  // namespace
 
+std::uint32_t stretch_feature(int segment, int run, std::size_t segments) {
+  const std::uint64_t page = static_cast<std::uint64_t>(run) / 32;
+  const std::uint64_t feature =
+      32 * (page * segments + static_cast<std::uint64_t>(segment)) + run % 32;
+  if (feature >> 31 != 0) {  // one bit more says which piece of the stretch
+    throw Error("segment " + std::to_string(segment),
+                "its visible stretch " + std::to_string(run) + " has no number of 31 bits",
+                "use a smaller world, or one with fewer things in front of one edge");
+  }
+  return static_cast<std::uint32_t>(feature);
+}
+
 Pose T_left_world(const Pose2D& pose, const CameraMount& mount) {
   const Pose T_world_robot{rotation_from_vector({0, 0, pose.heading_rad}), {pose.x_m, pose.y_m, 0}};
   return (T_world_robot * T_robot_camera(mount)).inverse();
@@ -76,7 +89,7 @@ NoiseFreeView look(const Visibility& visibility,
     const Eigen::Vector3d b = T_left * (segment.a_m + run.t1 * d);
     const double length = (project(rig.cameras[0], a) - project(rig.cameras[0], b)).norm();
     if (length < options.visibility.min_length_px) return;
-    const auto feature = static_cast<std::uint32_t>(run.segment * 32 + std::min(run.run, 31));
+    const std::uint32_t feature = stretch_feature(run.segment, run.run, world.segments.size());
     seen.edges.push_back({a, b, run.segment, feature, segment.object,
                           T_left * world.objects.at(segment.object).centre_m});
   });

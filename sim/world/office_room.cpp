@@ -43,7 +43,9 @@ struct Style {
   std::array<double, 8> weights;
 };
 
-enum Furniture { desk, table, shelf, cupboard, sideboard, filing, locker, nothing };
+namespace furniture {
+enum Kind { desk, table, shelf, cupboard, sideboard, filing, locker, nothing };
+}  // namespace furniture
 
 constexpr std::array<const char*, 7> furniture_names{
     "desk", "table", "bookshelf", "cupboard", "sideboard", "filing_cabinet", "locker"};
@@ -59,11 +61,11 @@ int draw_furniture(const Style& style, RandomStream& draws) {
   double total = 0;
   for (const double weight : style.weights) total += weight;
   double rest = draws.uniform(0, total);
-  for (int kind = 0; kind < nothing; ++kind) {
+  for (int kind = 0; kind < furniture::nothing; ++kind) {
     rest -= style.weights[kind];
     if (rest < 0) return kind;
   }
-  return nothing;
+  return furniture::nothing;
 }
 
 // A chair turns within its circle; it may reach below the board it stands before.
@@ -124,18 +126,18 @@ void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, RandomSt
 
 void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, RandomStream& draws) {
   switch (kind) {
-    case desk:
+    case furniture::desk:
       return equip_desk(site, frame, x, draws);
-    case table:
+    case furniture::table:
       return equip_table(site, frame, x, draws);
-    case shelf:
+    case furniture::shelf:
       fill_bookshelf(site, frame, x, draws);
       return stack_cartons(site, frame, {x, 0.04, 2.0}, {0.9, 0.26}, draws);
-    case cupboard:
+    case furniture::cupboard:
       return stack_cartons(site, frame, {x, 0.04, 1.8}, {1.0, 0.4}, draws);
-    case sideboard:
+    case furniture::sideboard:
       return litter_top(site, frame, {x + 0.02, 0.05, 0.78}, {1.16, 0.38}, 3, draws);
-    case filing:
+    case furniture::filing:
       return litter_top(site, frame, {x + 0.02, 0.05, 1.32}, {0.42, 0.54}, 2, draws);
     default:
       return;
@@ -150,7 +152,7 @@ void furnish_wall(OfficeSite& site, int side, const Style& style) {
     RandomStream draws = site.draws(++item);
     const int kind = draw_furniture(style, draws);
     const double gap = draws.uniform() < 0.4 ? draws.uniform(0.02, 0.06) : draws.uniform(0.2, 1.3);
-    if (kind == nothing) {
+    if (kind == furniture::nothing) {
       x += 0.3 + gap;
       continue;
     }

@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "calib/error.h"
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/edges/image_edges.h"
 #include "stereo/matcher.h"
@@ -46,11 +46,11 @@ std::vector<LineMatch> line_matches(const ImageEdges& left,
     if (known == 0 || known < options.min_share * all) continue;
     LineMatch line;
     line.left_px = 0.5 * (segment.segment.a_px + segment.segment.b_px);
-    line.disparity_px = median(disparities);
+    line.disparity_px = median_or_zero(disparities);
     line.occluded = 2 * occluded > known;
     line.matched =
         !errors.empty() && static_cast<double>(errors.size()) >= options.min_share * known;
-    if (line.matched) line.error_px = median(errors);
+    if (line.matched) line.error_px = median_or_zero(errors);
     lines.push_back(line);
   }
   return lines;

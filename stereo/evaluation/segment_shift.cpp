@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/evaluation/segment_shift.h"
 
-#include "calib/statistics/median.h"
+#include "calib/statistics/quantile.h"
 #include "stereo/edges/image_edges.h"
 #include "stereo/evaluation/warped_segments.h"
 
@@ -30,7 +30,7 @@ struct Beside {
 double median_across(const std::vector<Beside>& points) {
   std::vector<double> across;
   for (const Beside& point : points) across.push_back(point.across_px);
-  return median(std::move(across));
+  return median_or_zero(std::move(across));
 }
 
 double mean_across(const std::vector<Beside>& points, double from_px, double to_px, int& count) {

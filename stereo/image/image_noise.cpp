@@ -7,7 +7,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "calib/statistics/quantile.h"
+
 namespace vernier::stereo::internal {
+
+using namespace vernier::internal;
+
 namespace {
 
 constexpr int block = 16;
@@ -15,10 +20,8 @@ constexpr double min_noise = 0.2886751345948129;  // 1/√12
 
 /// The lower quintile. For the spread of a block's own estimate, 8.6 % (256 values of n that are
 /// correlated with their neighbours), it is 8 % below the mean where all blocks are plain.
-double lower_quintile(std::vector<double>& values) {
-  const auto at = values.begin() + static_cast<long>(values.size() / 5);
-  std::nth_element(values.begin(), at, values.end());
-  return 1.08 * *at;
+double lower_quintile(const std::vector<double>& values) {
+  return 1.08 * quantile(values, 0.2, QuantileKind::upper);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace vernier::stereo::internal {
 
 struct ExternalMatcherOptions {
-  std::string name;         ///< empty: that of the program
+  std::string name = {};    ///< empty: that of the program
   double time_limit_s = 0;  ///< for each pair; 0: none. With one, the terminal's interrupt does not
                             ///< reach the program
   double scale = 0;         ///< values a pixel of its map; 0: 256 in a 16-bit PNG, 1 in the rest

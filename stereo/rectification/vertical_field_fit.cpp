@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
 #include "calib/statistics/random.h"
 #include "stereo/rectification/vertical_field.h"
 
@@ -70,10 +71,8 @@ Problem problem_of(const std::vector<VerticalOffset>& offsets, const Eigen::Vect
   return problem;
 }
 
-double median(Eigen::VectorXd values) {
-  const auto middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
+double median(const Eigen::VectorXd& values) {
+  return quantile(std::vector<double>(values.begin(), values.end()), 0.5, QuantileKind::upper);
 }
 
 /// The field through three matches that most others are near.

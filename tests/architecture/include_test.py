@@ -3,12 +3,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the include lines of the five modules against rooms.toml.
 
-    include_test.py [--graph]
+    include_test.py [--graph] [--update]
 
 Fails on an include of a room that is not among those a room may include, on an arrow that runs back
 (an include of a room further down the file), on a file that belongs to no room, on a permission
 that nothing uses, on a public header that includes an internal one, and on a file that uses a name
-of the project without including the header that declares it. --graph prints the arrows.
+of the project without including the header that declares it; and where docs/architecture.md does
+not show the rooms as rooms.toml has them, or names a function in a file that lacks it. --graph
+prints the arrows, --update writes the rooms into that page.
 """
 import argparse
 import re
@@ -86,9 +88,78 @@ def faults(rooms):
     return found, arrows
 
 
+def diagram(rooms):
+    """The rooms by module, the lowest at the bottom: each includes only what stands below it."""
+    levels, lines = {}, []
+    for room in rooms:
+        module = room["name"].split("/")[0]
+        below = [levels[other] for other in room["may_include"] if other.split("/")[0] == module]
+        levels[room["name"]] = max(below, default=-1) + 1
+    for module in reversed(MODULES):
+        lines.append("+" + "-" * 78 + "+")
+        names = [name for name in levels if name.split("/")[0] == module]
+        title = module
+        for level in sorted({levels[name] for name in names}, reverse=True):
+            here = [name.partition("/")[2] or "(the module's own folder)"
+                    for name in names if levels[name] == level]
+            lines.append(f"| {title:<10}{'   '.join(here):<67}|")
+            title = ""
+    return "\n".join(lines + ["+" + "-" * 78 + "+"]) + "\n"
+
+
+def table(rooms):
+    """The rooms as a table in Markdown, the lowest first."""
+    lines = ["| room | purpose | may include |", "| --- | --- | --- |"]
+    for room in rooms:
+        lines.append(f"| `{room['name']}` | {room['purpose']} | "
+                     f"{', '.join(room['may_include']) or 'nothing'} |")
+    return "\n".join(lines) + "\n"
+
+
+PAGE_PARTS = re.compile(r"(^```text rooms\n)(.*?)(^```$)(.*?)(^\| room \|.*?\n)(?=\n)", re.M | re.S)
+
+
+def step_faults(page):
+    """Rows "| step | sources | functions |" of a page whose sources lack the file or the name."""
+    found = []
+    for row in re.findall(r"^\| .* \|$", page.read_text(encoding="utf-8"), re.M):
+        cells = row.strip("| ").split(" | ")
+        names = re.findall(r"`([\w/]+\.(?:cpp|h|js))`", cells[1]) if len(cells) == 3 else []
+        if not names or "/" not in names[0]:
+            continue
+        text, folder = "", ""
+        for name in names:  # a name without a folder is in the one before
+            folder = name.rpartition("/")[0] or folder
+            file = ROOT / folder / name.rpartition("/")[2]
+            if not file.is_file():
+                found.append(f"{page.name}: names {folder}/{file.name}, which is not there")
+                continue
+            text += file.read_text(encoding="utf-8")
+        for function in re.findall(r"`([\w:]+)`", cells[2]):
+            if not re.search(rf"\b{function.split('::')[-1]}\b", text):
+                found.append(f"{page.name}: {function} is not in {', '.join(names)}")
+    return found
+
+
+def page_faults(rooms, page, update):
+    """Where the page does not show the rooms as they are; written there if `update`."""
+    text = page.read_text(encoding="utf-8")
+    found = PAGE_PARTS.search(text)
+    if not found:
+        return [f"{page.name}: has no diagram or no table of the rooms"]
+    right = found[1] + diagram(rooms) + found[3] + found[4] + table(rooms)
+    if found[0] == right:
+        return []
+    if update:
+        page.write_text(text.replace(found[0], right), encoding="utf-8")
+        return []
+    return [f"{page.name}: its rooms are not those of rooms.toml; run include_test.py --update"]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--graph", action="store_true", help="print the arrows and their number")
+    parser.add_argument("--update", action="store_true", help="write the rooms into the page")
     options = parser.parse_args()
     rooms = read_rooms(Path(__file__).with_name("rooms.toml"))
     found, arrows = faults(rooms)
@@ -98,6 +169,8 @@ def main():
     files = list(sources())
     missing = declared_names.uses_without_include(ROOT, files)
     found += [f"{path}: uses {name} but does not include {header}" for path, name, header in missing]
+    page = ROOT / "docs/architecture.md"
+    found += page_faults(rooms, page, options.update) + step_faults(page)
     for line in found:
         print(line, file=sys.stderr)
     print(f"{len(files)} files in {len(rooms)} rooms, {len(arrows)} arrows, {len(found)} faults")

@@ -1016,11 +1016,49 @@ class Study(Case):
                     'cpu_ms_p95', 'wall_ms_mean', 'protocol', 'world_ceiling'):
             self.assertIn(key, cell)
         self.assertEqual(cell['settings']['sources.calibration'], 10)
+        comparison, = json.loads(one.stdout)['comparisons']
+        self.assertEqual(comparison['test'], 'paired t over maps')
+        self.assertEqual(comparison['maps'], 6)
+        self.assertTrue(0 <= comparison['p_value'] <= 1)
+        self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
+        self.assertEqual(sum(comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')), 60)
         for i in range(2):
             self.works('study', file, '-o', self.folder / f'part{i}', '--shard', f'{i}/2', '-q')
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
+
+    def test_a_study_names_the_covariance_that_drives_psi_c(self):
+        for rig, kind in (('nominal', 'mvb'), ('renamed.json', 'jackknife')):
+            if rig != 'nominal':
+                data = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+                data['covariance']['kind'] = kind
+                (self.folder / rig).write_text(json.dumps(data))
+            file = self.folder / 'kind.toml'
+            file.write_text(f'[study]\ntrials = 1\n[map]\nspacing_m = 4\n[rig]\nfile = "{rig}"\n')
+            out = self.folder / f'of_{kind}'
+            said = json.loads(self.works('study', file, '-o', out, '--json', '-q').stdout)
+            self.assertEqual(said['rig'], {'file': rig, 'covariance_kind': kind})
+            table = self.works('study', 'status', out).stdout
+            self.assertIn(f'rig {rig}: its covariance, which drives psi_c, is of kind {kind}', table)
+
+    def test_an_interval_needs_six_maps(self):
+        file = self.study(5)
+        done = self.works('study', file, '-o', self.folder / 'few', '--json', '-q')
+        for cell in json.loads(done.stdout)['cells']:
+            self.assertIsNone(cell['success_interval_95'])
+            self.assertEqual(cell['success_interval_95_missing'], 'needs 6 maps, has 5')
+            self.assertEqual(cell['maps'], 5)
+        comparison, = json.loads(done.stdout)['comparisons']
+        self.assertIsNone(comparison['p_value'])
+        self.assertIsNone(comparison['mcnemar_p'])
+        table = self.works('study', 'status', self.folder / 'few').stdout
+        self.assertIn('no interval: it needs 6 maps, has 5', table)
+        done = self.works('study', self.study(20), '-o', self.folder / 'more', '--json', '-q')
+        for cell in json.loads(done.stdout)['cells']:
+            self.assertEqual(cell['maps'], 7)
+            self.assertLess(cell['success_interval_95'][0], cell['success'])
+            self.assertIsNone(cell['success_interval_95_missing'])
 
     def test_a_merge_with_a_missing_shard_is_doubtful(self):
         self.works('study', self.study(), '-o', self.folder / 'part0', '--shard', '0/2', '-q')
@@ -1039,7 +1077,7 @@ class Study(Case):
         running.wait()
         running.stderr.close()
         resumed = self.works('study', file, '-o', self.folder / 'killed', '--json')
-        self.assertRegex(resumed.stderr, r'0 of [1-7],')  # at least one block was kept
+        self.assertRegex(resumed.stderr, r': 0 of ([1-9]|1[0-3]),')  # of 14; one or more were kept
         whole = self.works('study', file, '-o', self.folder / 'whole', '--json')
         self.assertEqual(self.untimed(resumed.stdout), self.untimed(whole.stdout))
 

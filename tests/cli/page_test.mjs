@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// node page_test.mjs [--screenshots DIR] [PAGE.html ...]
+// node page_test.mjs [--screenshots DIR] PAGE.html ...
 //
 // Opens report pages in Chromium as a reader would, from a file, and fails for any error on the
 // console, any request, a missing section, a plot without traces, text such as NaN, or a page
-// wider than its window. Always checks pages of the sample data (with plots, without plotly, with
-// hardly any data) and then the pages given. Needs `npm ci` in cli/page; exit code 77 without.
+// wider than its window. Checks the pages given, which the program wrote, and the first of them with
+// other data put in: samples with plots, without plotly, with hardly any data, with gaps. Needs
+// `npm ci` in tests/cli; exit code 77 without.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import os from "node:os";
@@ -14,25 +15,17 @@ import path from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
-const page_folder = path.join(here, "../../cli/page");
-const require = createRequire(path.join(page_folder, "package.json"));
+const require = createRequire(path.join(here, "package.json"));
 
-/** The page that the program would write for `report` (JSON text). */
-function assemble(report, { plotly }) {
-  const read = (...parts) => fs.readFileSync(path.join(page_folder, ...parts), "utf8");
-  const scripts = fs.readdirSync(path.join(page_folder, "js")).filter((f) => f.endsWith(".js"));
-  const parts = {
-    CSS: read("report.css"),
-    PLOTLY: plotly ? `<script>${fs.readFileSync(
-      require.resolve("plotly.js-cartesian-dist-min"), "utf8")}</script>` : "",
-    DATA: `<script type="application/json" id="data">${report.replaceAll("<", "\\u003c")}</script>`,
-    JS: scripts.sort().map((file) => read("js", file)).join("\n"),
-  };
-  return read("report.html").replace(/<!--VERNIER:([A-Z]+)-->/g, (_, name) => parts[name]);
+/** A page that the program wrote, with other data (JSON text), or without plotly's script. */
+function with_data(page, report, { plotly }) {
+  const data = report.replaceAll("<", "\\u003c");
+  const other = page.replace(/(<script [^>]*id="data">)[^<]*/, (_, tag) => tag + data);
+  return plotly ? other : other.replace(/<script id="plotly">[^]*?<\/script>/, "");
 }
 
 /** Pages to check: file, and whether it must have plots. */
-function sample_pages(folder) {
+function sample_pages(folder, page) {
   const sample = fs.readFileSync(path.join(here, "report_sample.json"), "utf8");
   const full = JSON.parse(sample);
   const study = full.study;
@@ -47,11 +40,13 @@ function sample_pages(folder) {
       sweep: null, world_ceiling: null, comparisons: [],
       cells: [bare_cell(study.cells[2])] } }), true],
     "no-sweep": [JSON.stringify({ title: "Methods", study: { ...study, sweep: null } }), true],
+    ...gap_samples(study),
+    "true-bound": [JSON.stringify({ title: "Bound", rigs: [true_bound(full.rigs[0])] }), true],
     "sweep-with-zero": [JSON.stringify({ title: "Zero", study: with_zero(study) }), true],
   };
   return Object.entries(made).map(([name, [report, plotly]]) => {
     const file = path.join(folder, `${name}.html`);
-    fs.writeFileSync(file, assemble(report, { plotly }));
+    fs.writeFileSync(file, with_data(page, report, { plotly }));
     return { file, plotly };
   });
 }
@@ -84,6 +79,44 @@ function odd_rigs(rig) {
 const bare_cell = (cell) => ({ ...cell, success_interval_95: null, median_error_m: null,
   cpu_ms_p95: null, world_ceiling: null });
 
+/** As of the shipped rig: its views scatter as the white noise does that the bound speaks of. */
+const true_bound = (rig) => ({ ...rig, kind: "mvb", true_bound: true, sigma_mvb: rig.sigma });
+
+/** Pages with null where there is nothing to tell: a gap of a plot and a dash of a table, not 0. */
+function gap_samples(study) {
+  const cells = study.cells.map((cell, i) => i !== 1 ? cell : { ...cell, success: null,
+    success_interval_95: null, success_interval_binomial_95: null, median_error_m: null });
+  return {
+    "gap-in-study": [JSON.stringify({ title: "Gap", study: { ...study, cells } }), true],
+    "gap-in-evaluation": [JSON.stringify({ title: "Gap", evaluation: evaluation_with_gaps() }), true],
+  };
+}
+
+/** Two matchers on two pairs; "none" finds nothing where "some" does. */
+function evaluation_with_gaps() {
+  const figures = (bad) => ({ density: bad === null ? 0 : 0.9, bad_0_5: bad, bad_1: bad, bad_2: bad,
+    mismatch: bad, rms_inlier_px: bad, bias_inlier_px: bad, bad_1_discontinuity: bad,
+    coverage_95: null, time_ms: 12 });
+  const by_angle = (bad) => Array.from({ length: 9 }, (_, i) => ({ from_deg: 10 * i,
+    to_deg: 10 * i + 10, edges: i ? 100 : 0, density: i ? 0.9 : null,
+    bad_1: i === 4 ? null : bad, rms_inlier_px: i === 5 ? null : 0.2 }));
+  const matchers = { some: figures(0.05), none: figures(null) };
+  const scene = (name) => ({ name, left: `${name}.png`, matchers: {
+    some: { ...matchers.some, by_angle: by_angle(0.05) },
+    none: { ...matchers.none, by_angle: by_angle(0.1) } } });
+  const cell = (psi_c, mismatch) => ({ psi_c, rows_moved_px: 0, repair: false, repaired: 0, pairs: 2,
+    rows_rms_px: psi_c, geometric_bias_rms_px: null, matchers: {
+      some: { density: 0.9, bad_1: 0.1, mismatch, mismatch_interval_95: mismatch && [0.01, 0.2],
+        disparity_error_rms_px: 1 },
+      none: { density: 0, bad_1: null, mismatch: 0.5, mismatch_interval_95: null,
+        disparity_error_rms_px: null } } });
+  return { matchers, scenes: [scene("one"), scene("two")], outline: "either", doubts: [],
+    settings: { command: "vernier evaluate --scenes 'two pairs.toml'", repair: false },
+    curves: { some: [[0.5, 0.01], [0.7, null], [0.9, 0.05]], none: [[0.4, 0.1], [0.6, 0.2]] },
+    calibration_error: { draws: 2, seed: 1, rigs: ["nominal"],
+      cells: [cell(0.1, 0.02), cell(1, null), cell(10, 0.1)] } };
+}
+
 function with_zero(study) {
   const cells = study.cells.map((cell, i) => i ? cell
     : { ...cell, label: "ψ_c = 0", settings: { ...cell.settings, "sources.calibration": 0 } });
@@ -108,7 +141,7 @@ function inspect() {
     [report.world || cells.some((cell) => cell.trial_list?.length), "plan"],
     [report.view, "view"], [report.rigs?.length > 1, "calibrations"],
     ...(report.rigs ?? []).flatMap((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig")),
-    [report.program || report.study, "making"],
+    [report.program || report.study || evaluation, "making"],
   ].filter(([needed]) => needed).map(([, id]) => id);
   const drawn = (place) => {
     const traces = [...place.querySelectorAll(".scatterlayer .trace, .heatmaplayer .hm,"
@@ -116,7 +149,7 @@ function inspect() {
     return traces.length >= place.data.length && place.data.length > 0
       && traces.every((trace) => trace.querySelector("path[d], image"));
   };
-  const plots = [...document.querySelectorAll(".plot")];
+  const plots = [...document.querySelectorAll("div.plot")];
   document.querySelectorAll("details").forEach((closed) => { closed.open = true; });
   const svg_text = [...document.querySelectorAll("svg text")].map((text) => text.textContent);
   return {
@@ -129,7 +162,13 @@ function inspect() {
     unnamed: plots.filter((place) => !place.getAttribute("aria-label")).length,
     text: [document.title, document.body.innerText, ...svg_text].join("\n"),
     too_wide: document.documentElement.scrollWidth - window.innerWidth,
-    notice: document.body.innerText.includes("plotly was not installed"),
+    notice: document.body.innerText.includes("This page has no plots"),
+    nulls: plots.map((place) => (place.data ?? []).map((trace) =>
+      (trace.y ?? []).filter((y) => y === null).length)),
+    zero_shares: [...document.querySelectorAll("td")]
+      .filter((cell) => /^0\.0+\s%/.test(cell.innerText)).length,
+    heads: [...document.querySelectorAll("#rig thead th, #rig-proof td.text")]
+      .map((head) => head.innerText),
   };
 }
 
@@ -143,7 +182,7 @@ async function check_page(browser, { file, plotly }, width, screenshots) {
     const url = request.url();
     if (url !== address && !/^(data|blob):/.test(url)) faults.push(`request of ${url}`);
   });
-  await page.goto(address, { waitUntil: "load" });
+  await page.goto(address, { waitUntil: "load", timeout: 120_000 });
   await page.waitForTimeout(300);
   const seen = await page.evaluate(inspect);
   faults.push(...seen.missing.map((id) => `section ${id} has no heading`));
@@ -156,21 +195,41 @@ async function check_page(browser, { file, plotly }, width, screenshots) {
   for (const match of seen.text.matchAll(/^.*\b(NaN|undefined|null|Infinity|\[object)\b.*$/gm)) {
     faults.push(`text "${match[0].trim().slice(0, 100)}"`);
   }
+  const name = path.basename(file, ".html");
+  faults.push(...(SPECIAL[name]?.(seen) ?? []).filter(Boolean));
   if (plotly) faults.push(...await choose_another_cell(page));
   if (screenshots) {
-    const name = `${path.basename(file, ".html")}-${width}.png`;
-    await page.screenshot({ path: path.join(screenshots, name), fullPage: true });
+    const picture = path.join(screenshots, `${name}-${width}.png`);
+    await page.screenshot({ path: picture, fullPage: true });
   }
   await page.close();
   return { faults, plots: seen.plots };
 }
+
+/** What only one of the samples shows. */
+const SPECIAL = {
+  "gap-in-study": ({ nulls }) => [nulls[0]?.[0] !== 1 && "null success is no gap",
+    nulls[1]?.[0] !== 1 && "null error is no gap"],
+  "gap-in-evaluation": ({ nulls, zero_shares, text }) => [
+    JSON.stringify(nulls[0]) !== "[1,0]" && "null error at a density is no gap",
+    JSON.stringify(nulls[1]) !== "[2,2]" && "null errors at an angle are no gap",
+    JSON.stringify(nulls[2]) !== "[3,3]" && "null precision at an angle is no gap",
+    nulls[3]?.[0] !== 1 && "null mismatch is no gap",
+    zero_shares !== 6 && `${zero_shares} shares of 0 in tables, where 6 densities are`,
+    !text.includes("vernier evaluate --scenes 'two pairs.toml'") && "the command is not said"],
+  "true-bound": ({ heads, text }) => [
+    heads.some((head) => head.includes("of the bound")) && "the bound stands twice in the table",
+    heads.includes("honest") && "boards left out are counted twice",
+    /too small|too sure/.test(text) && "a bound that holds is called too small",
+    !text.includes("here it holds") && "a bound that holds is not called so"],
+};
 
 /** Another cell must change the plan. */
 async function choose_another_cell(page) {
   const button = page.locator("#plan .chooser button[aria-pressed=false]").last();
   if (!await button.count()) return [];
   const points = () => page.evaluate(() =>
-    JSON.stringify(document.querySelector("#plan .plot").data.map((trace) => trace.x)));
+    JSON.stringify(document.querySelector("#plan div.plot").data.map((trace) => trace.x)));
   const before = await points();
   const chosen = page.locator("#plan .chooser button[aria-pressed=true]");
   const name = await chosen.textContent();
@@ -188,19 +247,19 @@ function arguments_of(words) {
 
 /** Pages from the program have plots where they carry plotly. */
 function given_page(file) {
-  return { file, plotly: fs.readFileSync(file, "utf8").includes("plotly.js") };
+  return { file, plotly: fs.readFileSync(file, "utf8").includes('<script id="plotly">') };
 }
 
 async function main() {
   let chromium;
   try {
     ({ chromium } = require("playwright-core"));
-    require.resolve("plotly.js-cartesian-dist-min");
   } catch {
-    console.log("skipped: run npm ci in cli/page");
+    console.log("skipped: run npm ci in tests/cli");
     return 77;
   }
   const { screenshots, files } = arguments_of(process.argv.slice(2));
+  if (!files.length) throw new Error("give a page that vernier report wrote");
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "vernier-page-"));
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -209,8 +268,8 @@ async function main() {
   });
   let failed = 0;
   try {
-    for (const one of [...sample_pages(folder), ...files.map(given_page)]) {
-      for (const width of [1200, 700]) {
+    for (const one of [...sample_pages(folder, fs.readFileSync(files[0], "utf8")), ...files.map(given_page)]) {
+      for (const width of [1280, 400]) {
         const { faults, plots } = await check_page(browser, one, width, screenshots);
         console.log(`${faults.length ? "FAIL" : "ok"} ${path.basename(one.file)} at ${width} px, `
           + `${plots} plots`);

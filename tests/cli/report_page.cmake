@@ -19,7 +19,7 @@ execute_process(COMMAND ${VERNIER} report nominal -o ${FOLDER}/rig.html
 execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html ${FOLDER}/rig.html
                 RESULT_VARIABLE status)
 if(status EQUAL 77)
-  message("report page: skipped: no playwright-core (npm ci in cli/page) or no Chromium")
+  message("report page: skipped: no playwright-core (npm ci in tests/cli) or no Chromium")
 elseif(NOT status EQUAL 0)
   message(FATAL_ERROR "the page's test failed")
 endif()

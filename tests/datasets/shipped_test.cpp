@@ -14,8 +14,8 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim;
+using namespace vernier::internal;
+using namespace vernier::sim;
 
 namespace {
 

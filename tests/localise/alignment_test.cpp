@@ -4,13 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
+#include "calib/error.h"
 #include "localise/place.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {
 
-using namespace localise;
-using namespace localise::internal;
+using namespace vernier::localise;
+using namespace vernier::localise::internal;
 
 namespace {
 
@@ -42,6 +46,23 @@ TEST(Align, FragmentsOfOneLineCountOnce) {
 TEST(Align, NothingInViewScoresZero) {
   EXPECT_EQ(align({}, {test::random_room(1), {}}).score, 0);
   EXPECT_EQ(align({}, {}).score, 0);
+}
+
+TEST(Align, BadStepsAreRefused) {
+  const auto room = test::random_room(12);
+  const auto with = [&](auto... changes) {
+    AlignmentOptions options;
+    (changes(options), ...);
+    return align({room, {}}, {room, {}}, options);
+  };
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.turn_step_rad = 0; }), Error);
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.turn_step_rad = -0.1; }), Error);
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.shift_step_m = 0; }), Error);
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.shift_step_m = -1; }), Error);
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.shift_step_m = 1e-9; }), Error);  // too many
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.max_turn_rad = std::nan(""); }), Error);
+  EXPECT_THROW(with([](AlignmentOptions& o) { o.position_sigma_m = 0; }), Error);
+  EXPECT_NO_THROW(with([](AlignmentOptions& o) { o.max_turn_rad = o.max_shift_m = 0; }));
 }
 
 }  // namespace

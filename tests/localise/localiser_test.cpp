@@ -14,9 +14,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace localise;
-using namespace localise::internal;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::localise::internal;
 
 namespace {
 

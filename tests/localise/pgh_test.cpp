@@ -15,9 +15,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace localise;
-using namespace stereo;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::stereo;
 
 namespace {
 
@@ -131,9 +131,37 @@ TEST(Pgh, KeepsTheLongestLines) {
   EXPECT_EQ(spatial_histograms({}, options).rows.rows(), 0);
 }
 
+TEST(Pgh, LinesWithoutALengthAreIgnored) {
+  const auto room = test::random_room(9);
+  const Pgh whole = spatial_histograms(room);
+  auto with_points = room;
+  const PlaceLine point{room[0].a_m, room[0].a_m, LineKind::vertical, 0.1};
+  PlaceLine lost = room[1];
+  lost.b_m.x() = std::nan("");
+  with_points.insert(with_points.begin() + 3, point);
+  with_points.push_back(lost);
+  const Pgh kept = spatial_histograms(with_points);
+  ASSERT_EQ(kept.rows.rows(), whole.rows.rows());
+  EXPECT_EQ(kept.rows, whole.rows);
+  EXPECT_EQ(kept.weights, whole.weights);
+
+  std::vector<ImageSegment> lines;
+  for (const double x : {10.0, 60.0, 200.0}) lines.push_back({{x, 20}, {x + 30, 200}});
+  const PghOptions options = image_pgh_options();
+  const Pgh three = image_histograms(lines, options);
+  ASSERT_EQ(three.rows.rows(), 3);
+  lines.insert(lines.begin(), {{50, 50}, {50, 50}});
+  const Pgh again = image_histograms(lines, options);
+  ASSERT_EQ(again.rows.rows(), 3);
+  EXPECT_EQ(again.rows, three.rows);
+}
+
 TEST(Pgh, BadOptionsAreRefused) {
   PghOptions options;
   options.distance_sigma = 0;
+  EXPECT_THROW(spatial_histograms(test::random_room(9), options), Error);
+  options = {};
+  options.band_height_m = 0;
   EXPECT_THROW(spatial_histograms(test::random_room(9), options), Error);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "calib/pose.h"
@@ -11,8 +12,8 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace stereo;
+using namespace vernier::localise;
+using namespace vernier::stereo;
 
 namespace {
 
@@ -22,6 +23,32 @@ TEST(PlanePoses, DifferencesAndComposition) {
   const Pose2D c = compose({1, 0, std::numbers::pi / 2}, {2, 0, 0.1});
   EXPECT_NEAR(c.x_m, 1, 1e-12);
   EXPECT_NEAR(c.y_m, 2, 1e-12);
+}
+
+TEST(PlanePoses, HeadingDifferencesLieAboveMinusPiAndUpToPi) {
+  constexpr double pi = std::numbers::pi;
+  const auto difference = [](double a, double b) {
+    return heading_difference_rad({0, 0, a}, {0, 0, b});
+  };
+  EXPECT_EQ(difference(0, pi), pi);
+  EXPECT_EQ(difference(pi, 0), pi);
+  EXPECT_EQ(difference(0, -pi), pi);
+  EXPECT_EQ(difference(-pi, 0), pi);
+  EXPECT_EQ(difference(pi, -pi), 0);
+  EXPECT_EQ(difference(0, 0), 0);
+  EXPECT_NEAR(difference(0.5 * pi, 0), 0.5 * pi, 1e-15);  // counter-clockwise is positive
+  EXPECT_NEAR(difference(0, 0.5 * pi), -0.5 * pi, 1e-15);
+  const double below = std::nextafter(pi, 0);
+  EXPECT_EQ(difference(below, 0), below);
+  EXPECT_EQ(difference(0, below), -below);
+  EXPECT_NEAR(difference(0, pi + 0.1), pi - 0.1, 1e-12);
+  EXPECT_NEAR(difference(7 * pi + 0.1, 0), -pi + 0.1, 1e-12);
+  EXPECT_TRUE(std::isnan(difference(std::nan(""), 0)));
+  for (int turns = -9; turns <= 9; ++turns) {
+    const double found = difference(turns * pi, 0);
+    EXPECT_GT(found, -pi);
+    EXPECT_LE(found, pi);
+  }
 }
 
 TEST(CameraMounts, AxesAndPitch) {

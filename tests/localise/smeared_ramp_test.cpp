@@ -9,7 +9,7 @@
 
 namespace vernier {
 
-using namespace localise::internal;
+using namespace vernier::localise::internal;
 
 namespace {
 

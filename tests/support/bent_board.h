@@ -10,7 +10,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// The same views of a board that is bent by `warp_m`, with the same noise.
 inline BoardObservations bent(const SimulatedBoard& board, const Eigen::Vector2d& warp_m) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/covariance.h"
+#include "calib/rig.h"
 
 namespace vernier::test {
 

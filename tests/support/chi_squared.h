@@ -8,7 +8,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// Quantile of the chi-squared distribution by Wilson and Hilferty's cube (error below 0.1 % for
 /// ten degrees of freedom and more).

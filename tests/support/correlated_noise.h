@@ -7,7 +7,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// Adds to every view of a 9 x 6 board an error that is smooth over the board, as an unflat board,
 /// blur or a wrong lens model make it: a random quadratic of standard deviation near `sigma_px`,

@@ -23,10 +23,10 @@
 
 namespace vernier::test {
 
-using namespace internal;
-using namespace sim;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::sim;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 /// A rectified pair of pinholes before a slanted plane: the truth of its disparities is exact.
 struct PlaneBeforePair {

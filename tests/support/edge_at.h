@@ -8,7 +8,7 @@
 
 namespace vernier::test {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 /// An upright edge that crosses row y at row_x.
 inline EdgePoint edge_at(float row_x, int y) {

@@ -14,8 +14,8 @@
 
 namespace vernier::test {
 
-using namespace internal;
-using namespace stereo;
+using namespace vernier::internal;
+using namespace vernier::stereo;
 
 /// A straight edge from dark to bright: brighter where nᵀ(x − centre) > offset, n at `angle` from
 /// the x axis.

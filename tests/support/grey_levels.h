@@ -8,7 +8,7 @@
 
 namespace vernier::test {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 /// An image of one channel as grey levels.
 inline GreyLevels grey_levels(const cv::Mat& image) {

@@ -13,8 +13,8 @@
 
 namespace vernier::test {
 
-using namespace internal;
-using namespace stereo;
+using namespace vernier::internal;
+using namespace vernier::stereo;
 
 /// A plane covered with leaves of two grey levels, one above the other: every edge has the whole
 /// contrast.

@@ -10,7 +10,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// What a datasheet might say of a `radial1` pair: standard deviations of its 16 parameters, which
 /// leave a vertical disparity of 15 px.

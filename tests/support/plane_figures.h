@@ -11,7 +11,7 @@
 
 namespace vernier::test {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 /// Edges well inside the right image: the share of them matched, and of these more than 3 px wrong.
 struct PlaneFigures {

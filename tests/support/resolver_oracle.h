@@ -10,6 +10,7 @@
 #include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
 #include "calib/held_parameters.h"
@@ -18,12 +19,13 @@
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/solver/resolve.h"
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 inline constexpr double sigma_px = 0.2;
 

@@ -9,8 +9,8 @@
 
 namespace vernier::test {
 
-using namespace internal;
-using namespace localise;
+using namespace vernier::internal;
+using namespace vernier::localise;
 
 /// A random room as seen from its middle: upright, level and oblique lines within 5 m.
 inline std::vector<PlaceLine> random_room(std::uint64_t seed, int lines = 40) {

@@ -11,8 +11,8 @@
 
 namespace vernier::test {
 
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 /// A scene's files; a compressed archive is written anew, into `folder`, as what the library reads.
 inline StereoSceneFile files_of(const StereoScene& scene, const std::filesystem::path& folder) {

@@ -18,8 +18,8 @@
 
 namespace vernier::test {
 
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 /// The scenes of the eleven on which limits of matchers were chosen.
 inline const std::set<std::string> tuned_scenes = {"barn2", "teddy", "Art", "motorcycle"};

@@ -12,8 +12,8 @@
 
 namespace vernier::test {
 
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 /// An office of a few rooms, made once: small enough for unit tests, of another seed than any
 /// world that judges a method.

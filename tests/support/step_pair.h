@@ -7,7 +7,7 @@
 
 namespace vernier::test {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 /// A straight edge that both images of a rectified pair show, with a disparity linear in the row:
 /// d(y) = disparity_px + by_y (y − centre's y). No noise, not rounded.

@@ -12,7 +12,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// A plane n·X = 1 of the first camera's frame, covered with squares of random grey and random
 /// size.

@@ -16,8 +16,8 @@
 
 namespace vernier::test {
 
-using namespace internal;
-using namespace sim;
+using namespace vernier::internal;
+using namespace vernier::sim;
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;

@@ -10,7 +10,7 @@
 
 namespace vernier::test {
 
-using namespace internal;
+using namespace vernier::internal;
 
 /// A corner of known place: a bright wedge with its tip at `tip`, opening by `opening` radians
 /// about the direction `towards`.

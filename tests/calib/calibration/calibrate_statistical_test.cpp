@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "calib/calibrate.h"
+#include "calib/calibration/small_sample_covariance.h"
 #include "calib/covariance.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -14,6 +15,9 @@
 #include "tests/support/scenes.h"
 
 namespace vernier {
+
+using namespace vernier::internal;
+
 namespace {
 
 // 150 calibrations of the same 15 views with fresh noise, seed 21. The normalised estimation error

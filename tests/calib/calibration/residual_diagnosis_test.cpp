@@ -16,13 +16,14 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "tests/support/board_defects.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -20,6 +20,7 @@
 #include "calib/rig_file.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/normal_equations.h"
 #include "tests/support/bent_board.h"
 #include "tests/support/error_message.h"
 #include "tests/support/rig_distance.h"
@@ -27,7 +28,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

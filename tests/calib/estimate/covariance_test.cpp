@@ -8,11 +8,13 @@
 
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/statistics/scaled_root.h"
 #include "calib/uncertainty/joint_information.h"
 #include "tests/support/error_message.h"
@@ -21,7 +23,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

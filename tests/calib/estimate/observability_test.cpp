@@ -17,7 +17,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

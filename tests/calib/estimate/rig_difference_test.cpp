@@ -18,13 +18,13 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
-#include "calib/statistics/chi_squared.h"
+#include "calib/statistics/distributions.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

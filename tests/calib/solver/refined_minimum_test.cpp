@@ -8,18 +8,20 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/opencv_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
 #include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/solver/square_root_system.h"
 #include "calib/statistics/random.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/solver/resolve.h"
 #include "tests/support/resolver_oracle.h"
@@ -14,7 +15,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

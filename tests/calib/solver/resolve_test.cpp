@@ -13,13 +13,14 @@
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/initial_rig.h"
 #include "calib/solver/reprojection_problem.h"
 #include "tests/support/resolver_oracle.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
@@ -25,16 +26,19 @@
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/minimise_reprojection.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/joint_information.h"
+#include "calib/uncertainty/pose_covariance.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

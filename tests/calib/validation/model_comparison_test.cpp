@@ -9,6 +9,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/calibration_problem.h"
 #include "calib/covariance.h"
 #include "calib/held_parameters.h"
 #include "calib/opencv_models.h"
@@ -16,11 +17,12 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/minimise_reprojection.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -6,12 +6,14 @@
 
 #include <Eigen/Dense>
 
+#include "calib/calibration/covariance_estimators.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/held_parameters.h"
 #include "calib/radial1.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
+#include "calib/solver/normal_equations.h"
 #include "calib/solver/reprojection_problem.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
@@ -20,7 +22,7 @@
 
 namespace vernier {
 
-using namespace internal;
+using namespace vernier::internal;
 
 namespace {
 

@@ -12,8 +12,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim;
+using namespace vernier::sim::internal;
+using namespace vernier::internal;
+using namespace vernier::sim;
 
 namespace {
 

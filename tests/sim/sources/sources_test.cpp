@@ -25,10 +25,11 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace localise;
-using namespace sim;
-using namespace stereo;
+using namespace vernier::sim::internal;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::stereo;
 
 namespace {
 

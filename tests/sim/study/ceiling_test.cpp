@@ -12,9 +12,9 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 

@@ -15,8 +15,8 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
+using namespace vernier::localise;
+using namespace vernier::sim;
 
 namespace {
 

@@ -15,9 +15,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 
@@ -39,6 +39,33 @@ TEST(StudyFile, DefaultsAreTheMemos) {
   EXPECT_EQ(e.sources.calibration, 1);
   EXPECT_EQ(e.mount.height_m, 1.2);
   EXPECT_EQ(e.method, "pgh");
+}
+
+TEST(StudyFile, FewTrialsStillRecordSixMaps) {
+  EXPECT_EQ(parse_study("[study]\ntrials = 20\n", "s.toml").trials_per_block, 3);
+  EXPECT_EQ(parse_study("[study]\n", "s.toml").trials_per_block, 50);
+  for (int trials = 6; trials < 1000; ++trials) {
+    const int size = block_size(trials);
+    EXPECT_GE((trials + size - 1) / size, 6) << trials;
+    EXPECT_EQ(size == 50, trials >= 300) << trials;
+  }
+  EXPECT_EQ(block_size(1), 1);
+}
+
+TEST(StudyFile, TheEstimatorIsToldTheEndpointErrorOnlyWhereAskedFor) {
+  const StudyFile study = parse_study(
+      "[study]\n[sources]\nendpoint_sigma_px = 0.5\n[sweep]\n"
+      "\"localiser.knows_endpoint_sigma\" = [false, true]\n",
+      "s.toml");
+  ASSERT_EQ(study.cells.size(), 2u);
+  EXPECT_EQ(study.cells[1].label, "localiser.knows_endpoint_sigma = true");
+  EXPECT_EQ(told_endpoint_sigma_px(study.cells[0].experiment), 0.15);
+  EXPECT_EQ(told_endpoint_sigma_px(study.cells[1].experiment), 0.5);
+  EXPECT_NE(study.cells[0].settings, study.cells[1].settings);
+  EXPECT_EQ(told_endpoint_sigma_px(ExperimentSettings()), 0.15);
+  EXPECT_NE(complaint_of("[study]\n[localiser]\nknows_endpoint_sigma = 1\n")
+                .find("s.toml:3: localiser.knows_endpoint_sigma is neither true nor false"),
+            std::string::npos);
 }
 
 TEST(StudyFile, SweepsFormAGridTheFirstKeySlowest) {

@@ -14,10 +14,10 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace localise;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 

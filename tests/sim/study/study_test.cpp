@@ -3,8 +3,16 @@
 #include "sim/study/study.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "calib/error.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/study_file.h"
@@ -12,9 +20,9 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 
@@ -57,7 +65,7 @@ class StudyRuns : public testing::Test {
   }
 
   StudyResults run(const Study& s, const std::string& name, int threads, Shard shard = {}) {
-    run_study(s, {folder_ / name, threads, shard, {}});
+    run_study(s, {folder_ / name, threads, shard, {}, {}});
     return study_results(s, folder_ / name);
   }
 
@@ -71,8 +79,42 @@ TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
   EXPECT_EQ(one, two);
 }
 
+// A limit for the whole process would slow down whoever uses the library beside its own threads.
+TEST_F(StudyRuns, TheProcessKeepsItsThreads) {
+  const auto allowed = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = allowed();
+  for (const int threads : {1, 3}) {
+    const std::string name = "threads" + std::to_string(threads);
+    int calls = 0;
+    const auto look_at = [&](int, int) {
+      ++calls;
+      EXPECT_EQ(allowed(), before);
+    };
+    run_study(study(6), {folder_ / name, threads, {}, look_at, look_at});
+    EXPECT_GT(calls, 12);
+  }
+}
+
+TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
+  Study s = study(7, "[0.1]");
+  std::vector<int> reported;
+  s.file.cells.push_back(s.file.cells[0]);  // shares the first one's ceiling
+  StudyRun job{folder_ / "ceilings", 2, {}, {}, [&](int done, int total) {
+                 EXPECT_EQ(total, 7);
+                 reported.push_back(done);
+               }};
+  run_study(s, job);
+  EXPECT_EQ(reported, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+  job.ceiling_progress = [](int, int) { FAIL() << "it is in the store"; };
+  run_study(s, job);
+  EXPECT_GT(study_results(s, folder_ / "ceilings").cells[0].ceiling, 0);
+}
+
 TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
-  const Study s = study(120);
+  Study s = study(120), half = study(60);
+  s.file.trials_per_block = half.file.trials_per_block = 50;
   const std::string whole = words(run(s, "whole", 2));
   run(s, "sharded", 1, {0, 3});
   run(s, "sharded", 1, {2, 3});
@@ -80,12 +122,16 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
   EXPECT_EQ(words(run(s, "sharded", 1, {1, 3})), whole);
 
   // half the trials first, then all of them in the same folder
-  run(study(60), "resumed", 2);
+  run(half, "resumed", 2);
   int blocks_run = 0;
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int done, int) { blocks_run = done; }});
+  run_study(s, {.folder = folder_ / "resumed", .threads = 2, .progress = [&](int done, int) {
+                  blocks_run = done;
+                }});
   EXPECT_EQ(blocks_run, 4);  // the first block of each cell was whole already
   EXPECT_EQ(words(study_results(s, folder_ / "resumed")), whole);
-  run_study(s, {folder_ / "resumed", 2, {}, [&](int, int total) { EXPECT_EQ(total, 0); }});
+  run_study(s, {.folder = folder_ / "resumed", .threads = 2, .progress = [&](int, int total) {
+                  EXPECT_EQ(total, 0);
+                }});
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
@@ -100,14 +146,107 @@ TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {
   const double middle = summarise(results.cells[1]).median_error_m;
   EXPECT_LT(small.median_error_m, middle);  // psi_c 0.1, 1, 10
   EXPECT_LT(middle, large.median_error_m);
-  EXPECT_GE(small.success_interval_95.high, small.success);
-  EXPECT_LE(small.success_interval_95.low, small.success_interval_binomial_95.low + 1e-12);
+  ASSERT_TRUE(small.success_interval_95);
+  EXPECT_GE(small.success_interval_95->high, small.success);
+  EXPECT_LE(small.success_interval_95->low, small.success_interval_binomial_95.low + 1e-12);
   EXPECT_EQ(small.trials, 100);
   EXPECT_GT(small.cpu_ms_mean, 0);
 }
 
+// A block of another size records its map for other trials, so that its results are others too.
+TEST_F(StudyRuns, BlocksOfAnotherSizeAreNotTakenOver) {
+  Study pairs = study(12, "[10]"), whole = study(12, "[10]");
+  EXPECT_EQ(pairs.file.trials_per_block, 2);
+  whole.file.trials_per_block = 12;
+  const std::string alone = words(run(whole, "alone", 2));
+  const StudyResults in_pairs = run(pairs, "shared", 2);
+  EXPECT_EQ(in_pairs.blocks_done, 6);
+  EXPECT_EQ(study_results(whole, folder_ / "shared").blocks_done, 0);
+  EXPECT_EQ(words(run(whole, "shared", 2)), alone);
+  EXPECT_EQ(words(study_results(pairs, folder_ / "shared")), words(in_pairs));
+  EXPECT_NE(words(in_pairs), alone);
+}
+
+TEST_F(StudyRuns, ASweptEndpointErrorIsToldOnlyWhereAskedFor) {
+  const auto lines = [&](const std::string& sources, const std::string& knows) {
+    Study s = study(6);
+    s.file = parse_study("[study]\ntrials = 6\n[map]\nspacing_m = 4\n[sources]\n" + sources +
+                             "[localiser]\nknows_endpoint_sigma = " + knows + "\n",
+                         "s.toml");
+    const StudyResults results = run(s, (sources.empty() ? "default_" : "swept_") + knows, 2);
+    int sum = 0;
+    for (const TrialResult& trial : results.cells[0].trials) sum += trial.lines;
+    return std::pair(sum, words(results));
+  };
+  EXPECT_EQ(lines("", "false").second, lines("", "true").second);
+  // told 2 px, the estimator finds depths worse than 0.45 m and leaves more lines out
+  EXPECT_GT(lines("endpoint_sigma_px = 2\n", "false").first,
+            lines("endpoint_sigma_px = 2\n", "true").first);
+}
+
+CellResult one_cell(int maps, int trials_per_map) {
+  CellResult cell;
+  cell.trials_per_block = trials_per_map;
+  for (int i = 0; i < maps * trials_per_map; ++i) {
+    TrialResult trial;
+    trial.trial = static_cast<std::uint32_t>(i);
+    trial.status = LocalisationStatus::answered;
+    cell.trials.push_back(trial);
+  }
+  cell.maps.assign(maps, {trials_per_map, trials_per_map});
+  return cell;
+}
+
+TEST(Summary, SaysWhyThereIsNoInterval) {
+  const CellSummary one = summarise(one_cell(1, 50)), six = summarise(one_cell(6, 3));
+  EXPECT_FALSE(one.success_interval_95);
+  EXPECT_EQ(one.why_no_interval, "needs 6 maps, has 1");
+  EXPECT_TRUE(six.success_interval_95);
+  EXPECT_EQ(six.why_no_interval, "");
+  EXPECT_EQ(six.maps, 6);
+}
+
+// The seed and the protocol decide where queries stand; a sweep over psi_c does not.
+TEST_F(StudyRuns, CellsWithOtherQueriesAreNotCompared) {
+  Study s = study(6, "[0.1, 10]");
+  s.file = parse_study(
+      "[study]\ntrials = 6\n[map]\nspacing_m = 4\n[sweep]\n"
+      "\"sources.calibration\" = [0.1, 10]\n\"study.protocol\" = [\"near_path\", \"path\"]\n",
+      "s.toml");
+  const StudyResults results = run(s, "protocols", 2);
+  ASSERT_EQ(results.cells.size(), 4u);
+  EXPECT_FALSE(share_queries(results.cells[0], results.cells[1]));
+  EXPECT_TRUE(share_queries(results.cells[0], results.cells[2]));
+  EXPECT_THROW(compare(results.cells[0], results.cells[1]), Error);
+  const std::vector<std::pair<std::size_t, std::size_t>> expected{{0, 2}, {1, 3}};
+  EXPECT_EQ(comparable_pairs(results.cells), expected);
+
+  s.file = parse_study(
+      "[study]\ntrials = 2\n[map]\nspacing_m = 4\n[sweep]\n\"study.seed\" = [1, 2]\n", "s.toml");
+  EXPECT_TRUE(comparable_pairs(run(s, "seeds", 2).cells).empty());
+}
+
+TEST(Comparison, CountsMapsAndNotTrials) {
+  // all of four maps in favour of a, all of two in favour of b: 80 trials against 40
+  CellResult a = one_cell(6, 20), b = one_cell(6, 20);
+  for (std::size_t i = 0; i < 120; ++i) {
+    (i < 80 ? b : a).trials[i].status = LocalisationStatus::no_match;
+  }
+  const PairedComparison c = compare(a, b);
+  EXPECT_EQ(c.only_a, 80);
+  EXPECT_EQ(c.maps, 6);
+  EXPECT_LT(c.mcnemar_p, 1e-3);
+  EXPECT_GT(c.p_value, 0.3);
+  // the same trials on fewer maps have no p-value
+  a.trials_per_block = b.trials_per_block = 40;
+  EXPECT_TRUE(std::isnan(compare(a, b).p_value));
+  EXPECT_TRUE(std::isnan(compare(a, b).mcnemar_p));
+  EXPECT_EQ(compare(a, b).only_a, 80);
+}
+
 TEST(McNemar, IsTheExactBinomialTail) {
   CellResult a, b;
+  a.trials_per_block = b.trials_per_block = 1;
   for (std::uint32_t i = 0; i < 10; ++i) {
     TrialResult good, bad;
     good.trial = bad.trial = i;

@@ -4,13 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <set>
+
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/visibility.h"
 #include "sim/world.h"
 #include "stereo/reconstruction/triangulate.h"
 #include "stereo/rectification.h"
@@ -19,10 +24,11 @@
 
 namespace vernier {
 
-using namespace localise;
-using namespace sim;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::sim::internal;
+using namespace vernier::localise;
+using namespace vernier::sim;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 
@@ -68,6 +74,45 @@ TEST(NoiseFreeView, EdgesAreWhatBothEyesSee) {
       EXPECT_TRUE(test::small_office_visibility().sees(centre, middle));
       EXPECT_TRUE(in_image(rig.cameras[eye], project(rig.cameras[eye], T_eye * middle)));
     }
+  }
+}
+
+TEST(NoiseFreeView, StretchesKeepTheirNumbersAndShareNone) {
+  EXPECT_EQ(stretch_feature(0, 0, 7), 0u);
+  EXPECT_EQ(stretch_feature(6, 31, 7), 6 * 32 + 31u);
+  std::set<std::uint32_t> numbers;
+  for (int segment = 0; segment < 7; ++segment) {
+    for (int run = 0; run < 100; ++run) {
+      EXPECT_TRUE(numbers.insert(stretch_feature(segment, run, 7)).second) << segment << " " << run;
+    }
+  }
+  EXPECT_EQ(stretch_feature(67108863, 31, 67108864), 0x7fffffffu);
+  EXPECT_THROW(stretch_feature(0, 32, 67108864), Error);
+}
+
+/// An edge 4 m ahead behind 44 posts.
+World fence() {
+  WorldDescription description;
+  description.loose.segments_m.push_back({{4, 2.4, 1.2}, {4, -2.4, 1.2}});
+  for (int post = 0; post < 44; ++post) {
+    const double y = 2.2 - 0.1 * post;
+    description.loose.surfaces_m.push_back(
+        {{3.9, y, 1}, {3.9, y - 0.02, 1}, {3.9, y - 0.02, 1.4}, {3.9, y, 1.4}});
+  }
+  return build_world(description);
+}
+
+TEST(NoiseFreeView, AnEdgeBehindAFenceHasAFeatureForEveryGap) {
+  const World world = fence();
+  const Visibility visibility(world);
+  NoiseFreeViewOptions options;
+  options.visibility.min_length_px = 2;
+  const NoiseFreeView seen = look(visibility, test::nominal_rig().rig, {0, 0, 0}, options);
+  ASSERT_GT(seen.edges.size(), 35u);
+  std::set<std::uint32_t> numbers;
+  for (const VisibleEdge& edge : seen.edges) {
+    EXPECT_EQ(edge.segment, 0);
+    EXPECT_TRUE(numbers.insert(edge.feature).second) << edge.feature;
   }
 }
 

@@ -16,8 +16,8 @@
 
 namespace vernier {
 
-using namespace sim;
-using namespace sim::internal;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 

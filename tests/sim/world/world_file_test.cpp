@@ -14,7 +14,7 @@
 
 namespace vernier {
 
-using namespace sim;
+using namespace vernier::sim;
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-using namespace sim;
+using namespace vernier::sim;
 
 namespace {
 

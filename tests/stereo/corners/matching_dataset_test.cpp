@@ -22,8 +22,8 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::stereo::internal;
 
 namespace {
 

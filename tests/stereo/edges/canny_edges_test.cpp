@@ -18,8 +18,8 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace stereo;
+using namespace vernier::internal;
+using namespace vernier::stereo;
 
 namespace {
 

@@ -19,9 +19,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 namespace vernier {
 
-using namespace stereo::internal;
+using namespace vernier::stereo::internal;
 
 namespace {
 

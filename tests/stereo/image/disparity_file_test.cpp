@@ -15,7 +15,7 @@
 
 namespace vernier {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 namespace {
 

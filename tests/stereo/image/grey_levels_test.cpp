@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 namespace {
 

@@ -17,7 +17,7 @@
 
 namespace vernier {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 namespace {
 

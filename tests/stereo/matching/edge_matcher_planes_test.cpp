@@ -18,7 +18,7 @@
 
 namespace vernier {
 
-using namespace stereo;
+using namespace vernier::stereo;
 
 namespace {
 

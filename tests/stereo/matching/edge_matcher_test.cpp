@@ -27,9 +27,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 
@@ -189,8 +189,9 @@ TEST_F(Support, WinnersAreThoseOfTheRecursion) {
       }
     }
   }
-  const std::vector<Winner> winners = semi_global_disparities(
-      {points, left, mirror, first, Facing::opposite, disparities}, vernier::Support::all, options);
+  const std::vector<Winner> winners =
+      semi_global_disparities({points, left, mirror, first, Facing::opposite, disparities},
+                              stereo::internal::Support::all, options);
   int same = 0;
   for (std::size_t p = 0; p < n; ++p) {
     const auto best = std::min_element(sums[p].begin(), sums[p].end()) - sums[p].begin();

@@ -24,8 +24,8 @@
 
 namespace vernier {
 
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 

@@ -14,7 +14,7 @@
 
 namespace vernier {
 
-using namespace stereo::internal;
+using namespace vernier::stereo::internal;
 
 namespace {
 

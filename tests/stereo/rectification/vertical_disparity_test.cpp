@@ -20,7 +20,7 @@
 
 namespace vernier {
 
-using namespace stereo::internal;
+using namespace vernier::stereo::internal;
 
 namespace {
 

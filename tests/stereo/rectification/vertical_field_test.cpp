@@ -23,9 +23,9 @@
 
 namespace vernier {
 
-using namespace internal;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace vernier::internal;
+using namespace vernier::stereo;
+using namespace vernier::stereo::internal;
 
 namespace {
 
@@ -184,7 +184,7 @@ TEST(VerticalField, TooLittleToTellIsSaid) {
   GreyLevels blank{200, 100, std::vector<float>(20000, 77)};
   GreyLevels tiny{9, 7, std::vector<float>(63, 1)};
   for (const GreyLevels& image : {blank, tiny, GreyLevels{}}) {
-    const VerticalField field = vertical_field({image, image}, {0, 20});
+    const VerticalField field = vertical_field(RectifiedPair{image, image}, {0, 20});
     EXPECT_FALSE(field.known || field.unrectified || field.significant);
     EXPECT_NE(describe(field).find("too few corners"), std::string::npos);
     EXPECT_EQ(corrected_right(image, field).values, image.values);

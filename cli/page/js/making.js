@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+import { element, paragraph, section, table } from "./elements.js";
+import { DASH, count, setting } from "./format.js";
+import { is_number } from "./numbers.js";
+import { cell_key } from "./study.js";
+import { varying_settings } from "./sweep.js";
+
+/** How the page was made: program, study file and the settings of every cell. */
+export function making_section(report) {
+  const { program, study, evaluation } = report;
+  if (!program && !study && !evaluation) return;
+  const rows = [
+    ["Program", program?.version && `vernier ${program.version}`],
+    ["Processor's instruction set", program?.instruction_set],
+    ["Study file", study?.file], ["Method", study?.method],
+    ["Trials a cell", study && count(study.trials)],
+    ["Seed", is_number(study?.seed) ? String(study.seed) : null],
+    ["Pairs", evaluation?.settings?.list ?? evaluation?.scenes.map((scene) => scene.left).join(", ")],
+    ["Rows repaired before", evaluation?.settings && (evaluation.settings.repair ? "yes" : "no")],
+    ["Programs as matchers", evaluation?.settings?.commands?.join("; ")],
+    ["Rigs drawn of each pair", evaluation?.calibration_error
+      && `${evaluation.calibration_error.draws}, seed ${evaluation.calibration_error.seed}`],
+    ["Rig", report.rigs?.map((rig) => rig.file).filter(Boolean).join(", ")],
+  ].filter(([, value]) => value).map(([name, value]) => ({ name, value }));
+  const made = section("making", "How this was made", paragraph("The same program, files and seed"
+    + " give the same results on a processor of the same class, timings apart, however many"
+    + " threads or machines share the work."));
+  made.append(table("Program and inputs", [
+    { head: "What", text: true, cell: (row) => row.name },
+    { head: "Used", text: true, cell: (row) => row.value },
+  ], rows, { wide: false }));
+  const commands = [...study?.commands ?? [], evaluation?.settings?.command, program?.command]
+    .filter(Boolean);
+  if (commands.length) made.append(element("pre", {}, element("code", {}, commands.join("\n"))));
+  if (study?.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells));
+}
+
+function settings_details(cells) {
+  const varying = varying_settings(cells);
+  const common = Object.entries(cells[0].settings || {}).filter(([key]) => !varying.includes(key));
+  const details = element("details", {}, element("summary", {}, "Settings of every cell"));
+  if (varying.length) {
+    details.append(table("Settings that differ between cells", [
+      { head: "Cell", text: true, cell: (cell) => cell.label ?? DASH },
+      ...varying.map((key) => ({ head: element("code", {}, key), text: true,
+        cell: (cell) => setting(cell_key(cell, key)) })),
+    ], cells, { wide: false }));
+  }
+  details.append(table(varying.length ? "Settings that all cells share" : "Settings", [
+    { head: "Setting", text: true, cell: ([key]) => element("code", {}, key) },
+    { head: "Value", text: true, cell: ([, value]) => setting(value) },
+  ], common, { wide: false }));
+  return details;
+}

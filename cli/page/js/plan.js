@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+import { chooser, element, nodes_of, paragraph, section } from "./elements.js";
+import { count, metres, percent } from "./format.js";
+import { is_number } from "./numbers.js";
+import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
+import { headline_cell } from "./study.js";
+
+const PLAN_CUT_M = 2.3;       // edges that reach above a door's head clutter the plan
+const SHOWN_ERROR_M = 0.1;    // shorter errors would vanish under the dots
+const MARKS = {
+  success: { name: "within 1 m", color: COLOUR.blue, symbol: "circle", size: 6 },
+  failure: { name: "failed: answer over 1 m off", color: COLOUR.red, symbol: "x", size: 8 },
+  silent: { name: "failed: no answer", color: COLOUR.amber, symbol: "diamond-open", size: 9 },
+};
+
+/** A row of a cell's trial_list by names. */
+function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
+  const outcome = success ? "success" : is_number(answer_x) ? "failure" : "silent";
+  return { trial, x, y, answer_x, answer_y, error_m, outcome };
+}
+
+export function plan_section(report) {
+  const made = section("plan", "Where it works and where it fails", world_words(report.world));
+  const cells = (report.study?.cells ?? []).filter((cell) => cell.trial_list?.length);
+  if (!have_plots()) {
+    made.append(...cells.map((cell) => paragraph(plan_words(cell))));
+    return;
+  }
+  if (!cells.length) {
+    made.append(figure("", "The plan of the world with the route, along which the map is recorded.",
+      "Plan of the world", plan_height(report), () => plan_plot(report, null)));
+    return;
+  }
+  const first = Math.max(0, cells.indexOf(headline_cell(report.study)));
+  const note = element("p", { "aria-live": "polite" }, plan_words(cells[first]));
+  const drawn = figure("", "A dot is where a query was asked. From failures, and from errors above"
+    + " 0.1 m, a line leads to the position that was answered. Look for failures that gather: they"
+    + " point to places that resemble each other or show too little structure. Point at a dot for"
+    + " its trial number and error; a click on an entry of the legend hides it.",
+    "Plan of the world with the queries, coloured by success, and lines to wrong answers.",
+    plan_height(report), () => plan_plot(report, cells[first]));
+  const choose = (i) => {
+    note.replaceChildren(...nodes_of(plan_words(cells[i])));
+    draw_plot(drawn.querySelector("div.plot"), plan_height(report), plan_plot(report, cells[i]));
+  };
+  if (cells.length > 1) {
+    made.append(chooser("Cell shown:", cells.map((cell) => cell.label), first, choose));
+  }
+  made.append(note, drawn);
+}
+
+function world_words(world) {
+  const counts = world?.counts;
+  if (!counts) return null;
+  const parts = [["segments", "straight edges"], ["corners", "corners"], ["surfaces", "surfaces"],
+    ["objects", "objects"]].filter(([key]) => is_number(counts[key]))
+    .map(([key, noun]) => `${count(counts[key])} ${noun}`);
+  const repeated = is_number(counts.repeated_share)
+    ? ` ${percent(counts.repeated_share, 0)} of the edges belong to things that stand in it more`
+      + " than once (doors, windows, desks), which is what makes places alike." : "";
+  return paragraph(`The world${world.name ? ` “${world.name}”` : ""} has ${parts.join(", ")}.`
+    + repeated);
+}
+
+function plan_words(cell) {
+  const trials = cell.trial_list.map(trial_of);
+  const number = (outcome) => trials.filter((t) => t.outcome === outcome).length;
+  return `${cell.label ? `${cell.label}: of` : "Of"} ${count(trials.length)} queries shown,`
+    + ` ${count(number("success"))} answered within 1 m, ${count(number("failure"))} answered`
+    + ` wrongly and ${count(number("silent"))} left unanswered.`;
+}
+
+/** Box around the world, or around the trials where there is no world. */
+function plan_extent(report) {
+  const points = (report.world?.segments ?? []).flatMap((s) => [[s[0], s[1]], [s[3], s[4]]]);
+  for (const cell of report.study?.cells ?? []) {
+    for (const row of cell.trial_list ?? []) points.push([row[1], row[2]]);
+  }
+  for (const leg of report.world?.route ?? []) points.push(...leg);
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of points) {
+    box[0] = Math.min(box[0], x);
+    box[1] = Math.min(box[1], y);
+    box[2] = Math.max(box[2], x);
+    box[3] = Math.max(box[3], y);
+  }
+  const [x0, y0, x1, y1] = points.length ? box : [0, 0, 1, 1];
+  const edge = 0.03 * Math.max(x1 - x0, y1 - y0, 1);
+  return { x: [x0 - edge, x1 + edge], y: [y0 - edge, y1 + edge] };
+}
+
+function plan_height(report) {
+  const { x, y } = plan_extent(report);
+  const width = room_px() - 80;
+  const legend = width < 500 ? 130 : 0;  // an entry a line there
+  const height = 110 + width * (y[1] - y[0]) / (x[1] - x[0]);
+  return Math.round(Math.max(320, Math.min(860, height + legend)));
+}
+
+function plan_plot(report, cell) {
+  const { x, y } = plan_extent(report);
+  const low = (report.world?.segments ?? [])
+    .filter((s) => Math.max(s[2], s[5]) < PLAN_CUT_M);
+  const data = [
+    segments_trace(low.map((s) => [s[0], s[1], s[3], s[4]]),
+      { name: "edges of the world", line: { color: COLOUR.light, width: 1 } }),
+    route_trace(report.world?.route ?? []),
+    ...(cell ? trial_traces(cell.trial_list.map(trial_of)) : []),
+  ];
+  const layout = {
+    xaxis: axis("x, m", { range: x, showgrid: false, showline: false, constrain: "domain" }),
+    yaxis: axis("y, m", { range: y, showgrid: false, showline: false, scaleanchor: "x",
+      constrain: "domain" }),
+    hovermode: "closest",
+  };
+  return { data: data.filter((trace) => trace.x.length), layout };
+}
+
+function route_trace(legs) {
+  const x = legs.flatMap((leg) => [...leg.map((p) => p[0]), null]);
+  const y = legs.flatMap((leg) => [...leg.map((p) => p[1]), null]);
+  return { type: "scatter", mode: "lines", name: "recorded route", x, y, hoverinfo: "skip",
+    line: { color: COLOUR.green, width: 2, dash: "dot" } };
+}
+
+function trial_traces(trials) {
+  const answered = trials.filter((t) => is_number(t.answer_x));
+  const lines = (chosen, name, color, width) => segments_trace(
+    chosen.map((t) => [t.x, t.y, t.answer_x, t.answer_y]),
+    { name, line: { color, width }, opacity: 0.65 });
+  return [
+    lines(answered.filter((t) => t.outcome === "failure"), "to the wrong answer", COLOUR.red, 1),
+    lines(answered.filter((t) => t.outcome === "success" && t.error_m > SHOWN_ERROR_M),
+      "error above 0.1 m", COLOUR.blue, 1.5),
+    ...Object.keys(MARKS).map((outcome) =>
+      dots_trace(trials.filter((t) => t.outcome === outcome), MARKS[outcome])),
+  ];
+}
+
+function dots_trace(trials, { name, color, symbol, size }) {
+  return {
+    type: "scatter", mode: "markers", name, x: trials.map((t) => t.x), y: trials.map((t) => t.y),
+    marker: { color, symbol, size, line: { color: symbol === "circle" ? "#fff" : color,
+      width: symbol.endsWith("open") ? 2 : 0.6 } },
+    text: trials.map((t) => `trial ${t.trial}<br>`
+      + (is_number(t.error_m) ? `error ${metres(t.error_m)}` : "no answer")),
+    hovertemplate: "%{text}<extra></extra>",
+  };
+}

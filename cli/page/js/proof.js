@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+import { element, table } from "./elements.js";
+import { DASH, count, counted, fixed, percent, significant } from "./format.js";
+import { in_percent, is_number, times } from "./numbers.js";
+import { is_bound } from "./parameters.js";
+import { COLOUR, axis, figure } from "./plot.js";
+
+/** Whether the lens model and the covariance hold on views that took no part. */
+export function proof_content(rig) {
+  const { proof } = rig;
+  return [
+    ...(proof.notes ?? []).map((words) => element("p", { class: "notice" }, words)),
+    proof.models && models_table(proof.models),
+    ...(proof.left_out ? left_out_content(proof.left_out, covariances(rig)) : []),
+  ];
+}
+
+function models_table({ frames, rows }) {
+  const caption = `Lens models on views left out: each of ${count(frames)} frames is predicted by a`
+    + " calibration without it (its board's pose alone is fitted). Only a clearly smaller residual"
+    + " there speaks for the richer model; the gain is its mean over its scatter between views."
+    + " Largest move: how far a parameter goes when the model changes, in honest σ of the model in"
+    + " use. Beyond 3, no covariance on this page covers it.";
+  return element("div", {}, element("h3", {}, "Is the lens model rich enough?"), table(caption, [
+    { head: "Model", text: true, cell: (row) => row.in_use ? `${row.model} (in use)` : row.model },
+    { head: "Left out", small: "RMS, px", cell: (row) => significant(row.held_out_rms_px, 4) },
+    { head: "Fitted", small: "RMS, px", cell: (row) => significant(row.fitted_rms_px, 4) },
+    { head: "Better views", cell: (row) => is_number(row.better_views)
+      ? `${count(row.better_views)} of ${count(frames)}` : DASH },
+    { head: "Gain", small: "standard deviations", cell: (row) => fixed(row.gain_sigmas, 1) },
+    { head: "Largest move", text: true, cell: (row) => row.largest_move
+      ? `${row.largest_move} by ${fixed(row.largest_move_sigmas, 1)} σ` : DASH },
+  ], rows, { chosen: (row) => row.in_use, wide: false }));
+}
+
+const COVARIANCES = [
+  { by: "honest", name: "honest covariance", suffix: "honest", color: COLOUR.blue },
+  { by: "bound", name: "minimum variance bound", suffix: "mvb", color: COLOUR.red },
+];
+
+/** Those that a rig has: one where its covariance is the bound. */
+const covariances = (rig) => is_bound(rig) ? COVARIANCES.slice(1) : COVARIANCES;
+
+function left_out_content(left_out, by) {
+  const [edges] = left_out.rows;
+  const failed = left_out.failed ? ` ${counted(left_out.failed, "split")} could not be calibrated.`
+    : "";
+  return [
+    element("h3", {}, "Are the intervals true?"),
+    element("p", {}, `The rig was calibrated ${count(left_out.splits)} times from`
+      + ` ${count(left_out.training_frames)} of ${count(left_out.frames)} frames, and the boards of`
+      + " the other frames were measured with it: rows, columns and diagonals by triangulation,"
+      + " against what they are on the board. A true covariance puts 95 % of the errors inside"
+      + " their 95 % interval and makes error over stated σ one, root mean square. Of"
+      + ` ${count(edges.lengths)} lengths there lie inside: ` + by.map(({ name, suffix }) =>
+        `${percent(edges[`coverage_${suffix}`])} by the ${name}`).join(", ") + `.${failed}`),
+    element("div", { class: "pair table-first" }, left_out_table(left_out, by),
+      coverage_bars(left_out.rows, by)),
+    element("p", { class: "reading" }, "Splits share frames, so these shares have no simple"
+      + " interval of their own. A single length carries its corners' noise as well"
+      + `${by.length > 1 ? ", alike under both covariances" : ""}; in the size of a board, the mean of its lengths, the noise averages out`
+      + " and the rig's error stays. Lengths test the rig only where the boards stood."),
+  ];
+}
+
+function left_out_table({ rows, boards }, by) {
+  const length = (row, value) => row.unit === "m" ? `${significant(times(1e3, value), 2)} mm`
+    : percent(value, 3);
+  const lines = rows.flatMap((row) => by.map(({ by: name, suffix }) => ({ row, by: name,
+    covered: row[`coverage_${suffix}`], z: row[`z_rms_${suffix}`],
+    sigma: row[`sigma_${suffix}`] })));
+  return table(`Lengths on ${count(boards)} boards left out`, [
+    { head: "What", text: true, cell: (l) => l.row.what },
+    { head: "Covariance", text: true, cell: (l) => l.by },
+    { head: "Inside 95 %", cell: (l) => percent(l.covered) },
+    { head: "Error over σ", small: "rms; 1 is true", cell: (l) => significant(l.z, 3) },
+    { head: "Error", small: "rms", cell: (l) => length(l.row, l.row.error_rms) },
+    { head: "Stated σ", small: "rms", cell: (l) => length(l.row, l.sigma) },
+  ], lines, { wide: false });
+}
+
+function coverage_bars(rows, by) {
+  const bars = ({ name, suffix, color }) => ({ type: "bar", name, x: rows.map((row) => row.what),
+    y: rows.map((row) => in_percent(row[`coverage_${suffix}`])), marker: { color },
+    text: rows.map((row) => percent(row[`coverage_${suffix}`], 0)), textposition: "inside",
+    insidetextfont: { color: "#fff" }, hovertemplate: `${name}: %{y:.1f} %<extra></extra>` });
+  return figure("", "Share of lengths inside their 95 % interval. The line is at 95 %: bars below"
+    + " it are intervals too narrow, above it too wide.",
+    "Coverage of 95 % intervals, as in the table.", 300,
+    () => ({
+      data: by.map(bars),
+      layout: { bargap: 0.35, xaxis: axis("", { showgrid: false, ticks: "" }),
+        yaxis: axis("inside, %", { range: [0, 100], dtick: 20 }),
+        shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 95, y1: 95,
+          line: { color: COLOUR.ink, width: 1.6, dash: "dot" } }] },
+    }));
+}

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+import { corners_content } from "./corners.js";
+import { correlation_part } from "./correlations.js";
+import { element, paragraph, section, section_named, table } from "./elements.js";
+import { DASH, count, counted, percent, significant } from "./format.js";
+import { is_number, ratio } from "./numbers.js";
+import { directions_list, is_bound, parameter_table } from "./parameters.js";
+import { projection_content } from "./projection.js";
+import { proof_content } from "./proof.js";
+import { tile } from "./study.js";
+import { views_content } from "./view_influence.js";
+
+const KIND_REASON = {
+  jackknife: (frames, free) => "the small-sample form of the sandwich (kind jackknife), because"
+    + ` ${frames} frames for ${free} parameters are fewer than three a parameter`,
+  clustered: (frames, free) => "the sandwich clustered by frame, because"
+    + ` ${frames} frames for ${free} parameters are three a parameter or more`,
+  mvb: (frames, free, rig) => "the minimum variance bound itself: the corners' noise was taken to be"
+    + ` white${rig.true_bound ? ", and the views scatter as such noise does" : ""}`,
+  prior: () => "as the rig file states it: assumed, not measured",
+  combined: () => "of several calibrations or batches combined",
+};
+
+/** The sections of every rig; with several, a table of all before them. */
+export function rigs_sections(report) {
+  const rigs = report.rigs ?? [];
+  if (rigs.length > 1) calibrations_section(rigs);
+  rigs.forEach((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig", rigs.length > 1));
+}
+
+/** The sections that a rig has: [name of the part, heading, words in the contents, builder]. */
+function rig_parts(rig) {
+  return [
+    [rig.corners?.length, "corners", "Corners and residuals", corners_content],
+    [rig.projection || rig.depth?.length, "projection", "Uncertainty in pixels and in depth",
+      projection_content],
+    [rig.view_influence?.length, "views", "Influence of single views", views_content],
+    [rig.proof, "proof", "Proof on views left out", proof_content],
+  ].filter(([there]) => there).map(([, ...part]) => part);
+}
+
+function rig_sections(rig, id, several) {
+  const of_rig = several ? ` · ${rig.file ?? id}` : "";
+  const parts = rig_parts(rig);
+  const first = section_named(id, `The stereo rig and how well it is known${of_rig}`,
+    several ? rig.file ?? id : "The rig");
+  if (several && parts.length) {
+    first.append(element("ul", { class: "parts" }, parts.map(([name, heading]) =>
+      element("li", {}, element("a", { href: `#${id}-${name}` }, heading)))));
+  }
+  first.append(...rig_content(rig));
+  for (const [name, heading, build] of parts) {
+    const made = section_named(`${id}-${name}`, heading + of_rig, several ? null : heading);
+    made.append(...build(rig).filter(Boolean));
+  }
+}
+
+function rig_content(rig) {
+  return [
+    cameras_words(rig),
+    rig.missing && element("p", { class: "notice" }, rig.missing),
+    findings("Doubts", rig.calibration?.doubts),
+    findings("Warnings of the calibration", rig.calibration?.warnings),
+    calibration_tiles(rig.calibration), summary_table(rig),
+    element("div", { class: "pair table-first" }, parameter_table(rig), directions_list(rig)),
+    correlation_part(rig),
+  ].filter(Boolean);
+}
+
+function findings(heading, list) {
+  if (!list?.length) return null;
+  return element("div", { class: "warning", role: "note" }, element("strong", {}, heading),
+    element("ul", {}, list.map((words) => element("li", {}, words))));
+}
+
+/** How the calibration was made, in words. */
+function summary_table(rig) {
+  const { calibration } = rig;
+  if (!calibration) return null;
+  const all = calibration.corners_used + calibration.corners_left_out;
+  const reason = KIND_REASON[rig.kind]?.(calibration.views, rig.free_parameters, rig);
+  const inflation = typical_inflation(rig);
+  const warp = calibration.warp_m;
+  const rows = [
+    ["Views", `${counted(calibration.views, "frame")}${is_number(calibration.images)
+      ? `, ${counted(calibration.images, "image")} with corners` : ""}`],
+    ["Corners", is_number(calibration.corners_used) ? `${count(calibration.corners_used)} used,`
+      + ` ${count(calibration.corners_left_out)} left out as outliers`
+      + ` (${percent(ratio(calibration.corners_left_out, all))})` : DASH],
+    ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
+      + (calibration.held?.length ? `held: ${calibration.held.join(", ")}` : "none held")],
+    ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates less parameters and six a`
+      + " frame for the board's pose"],
+    ["Prior", calibration.prior_dof > 0 ? `knows ${counted(calibration.prior_dof, "parameter")};`
+      + ` the solution is χ² = ${significant(calibration.prior_chi2, 3)} from it` : "none"],
+    ["Board", warp ? `bent by ${significant(1e3 * warp[0], 2)} mm along its rows and`
+      + ` ${significant(1e3 * warp[1], 2)} mm along its columns, estimated too`
+      : "taken as its file says, no warp estimated"],
+    ["Covariance", reason ? reason + (inflation ? `. It is ${significant(inflation, 2)} times the`
+      + " bound in standard deviation, on average" : "") : "none"],
+  ];
+  return table("How it was calibrated", [
+    { head: "What", text: true, cell: ([name]) => name },
+    { head: "Here", text: true, cell: ([, words]) => words },
+  ], rows, { wide: false });
+}
+
+/** Geometric mean of σ over the bound's σ; nothing where the two are the same. */
+function typical_inflation(rig) {
+  if (is_bound(rig)) return null;
+  const ratios = (rig.sigma ?? []).map((s, i) => ratio(s, rig.sigma_mvb?.[i]))
+    .filter((r) => is_number(r) && r > 0);
+  if (!ratios.length) return null;
+  return Math.exp(ratios.reduce((sum, r) => sum + Math.log(r), 0) / ratios.length);
+}
+
+function cameras_words(rig) {
+  const cameras = (rig.cameras ?? []).map((camera) => `${camera.name} (${camera.model}`
+    + `${camera.size_px ? `, ${camera.size_px[0]} × ${camera.size_px[1]} px` : ""})`);
+  return paragraph(rig.file && [element("code", {}, rig.file), ": "], "cameras ",
+    cameras.join(" and "), ".");
+}
+
+function calibration_tiles(calibration) {
+  if (!calibration) return null;
+  const { rms_px, pixel_sigma_px, chi2, dof, views } = calibration;
+  return element("dl", { class: "tiles" },
+    tile("Residual, RMS", is_number(rms_px) ? `${significant(rms_px, 3)} px` : null,
+      "a coordinate of a corner"),
+    tile("Corner noise", is_number(pixel_sigma_px) ? `${significant(pixel_sigma_px, 2)} px` : null,
+      "standard deviation used as weight"),
+    tile("χ² a degree of freedom", dof > 0 ? significant(ratio(chi2, dof), 3) : null,
+      `χ² = ${significant(chi2, 4)}, ${count(dof)} degrees; 1 is expected if the noise is as`
+      + " stated"),
+    tile("Views", count(views), "frames used"));
+}
+
+function calibrations_section(rigs) {
+  const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
+  const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
+  const beside = (rig) => is_bound(rig) ? null : covered(rig, "coverage_mvb");
+  section("calibrations", "Calibrations side by side", table(
+    "A smaller residual alone does not make a model right: a richer one always fits its own views"
+    + " better, so views left out are the judge. And no covariance covers what a model cannot"
+    + " follow.", [
+      { head: "Calibration", text: true, cell: (rig) => rig.name ?? rig.file ?? DASH },
+      { head: "Views", cell: (rig) => count(rig.calibration?.views) },
+      { head: "Residual RMS", small: "px",
+        cell: (rig) => significant(rig.calibration?.rms_px, 3) },
+      { head: "Corner noise", small: "px",
+        cell: (rig) => significant(rig.calibration?.pixel_sigma_px, 3) },
+      { head: "Views left out", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
+      { head: "σ over bound", small: "on average",
+        cell: (rig) => significant(typical_inflation(rig), 2) },
+      { head: "Boards left out", small: "inside 95 %",
+        cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
+      { head: "Boards left out", small: "inside 95 %, bound",
+        cell: (rig) => percent(beside(rig), 0) },
+    ], rigs, { wide: false }));
+}

@@ -1,0 +1,159 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# clang-tidy 14 with .clang-tidy, over C++ files; each finding once; exit code 1 if there is one.
+set -euo pipefail
+
+usage() {
+  cat <<'USAGE'
+usage: scripts/lint.sh [--since REVISION] [--build FOLDER] [--jobs N] [FILE...]
+Prints what clang-tidy finds in the files given; without any, in all sources that FOLDER builds and
+in the headers that they include.
+  --since REVISION   only files that differ from REVISION in git, changes not committed included
+  --build FOLDER     configured before, not necessarily built (build/release)
+  --jobs N           this many at a time (all processors); a source takes 10 to 30 s
+USAGE
+}
+
+wrong_usage() {
+  usage >&2
+  exit 2
+}
+
+refuse() {
+  echo "lint.sh: $*" >&2
+  exit 2
+}
+
+started_in=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+since=''
+build=build/release
+jobs=$(nproc)
+files=()
+while (($# > 0)); do
+  case "$1" in
+    -h | --help)
+      usage
+      exit 0
+      ;;
+    --since | --build | --jobs)
+      if (($# < 2)); then wrong_usage; fi
+      case "$1" in
+        --since) since=$2 ;;
+        --build) build=$(realpath --relative-base=. "$started_in/$2") ;;
+        --jobs) jobs=$2 ;;
+      esac
+      shift
+      ;;
+    -*) wrong_usage ;;
+    *)
+      files+=("$(cd "$started_in" && realpath "$1")")
+      if [[ ! -f ${files[-1]} ]]; then refuse "there is no file $1"; fi
+      ;;
+  esac
+  shift
+done
+if [[ ! $jobs =~ ^[1-9][0-9]*$ ]]; then wrong_usage; fi
+if [[ -n $since ]] && ((${#files[@]} > 0)); then wrong_usage; fi
+
+tidy=$(command -v clang-tidy-14 || command -v clang-tidy || true)
+if [[ -z $tidy || $("$tidy" --version) != *"version 14."* ]]; then
+  refuse "clang-tidy 14 is not here; as root: apt-get install clang-tidy"
+fi
+if ! command -v python3 >/dev/null; then refuse "python3 is not here"; fi
+if [[ ! -f $build/compile_commands.json ]]; then
+  refuse "no $build/compile_commands.json; run cmake --preset release first"
+fi
+if [[ -n $since ]] && ! git rev-parse --quiet --verify "$since^{commit}" >/dev/null; then
+  refuse "git knows no revision $since"
+fi
+
+results=$(mktemp --directory)
+trap 'rm --recursive --force "$results"' EXIT
+
+# The build's command lines as clang takes them: without GCC's precompiled headers, which clang
+# cannot read, and in silence about warnings that GCC alone has. Prints the sources, without what the
+# build folder makes for itself.
+python3 - "$build/compile_commands.json" "$results/compile_commands.json" >"$results/sources" <<'PY'
+import json, os, shlex, sys
+
+root = os.getcwd() + "/"
+entries = []
+sources = set()
+with open(sys.argv[1], encoding="utf-8") as file:
+    for entry in json.load(file):
+        name = entry["file"]
+        if not name.startswith(root) or name.startswith(entry["directory"] + "/"):
+            continue
+        words = shlex.split(entry["command"])
+        kept = []
+        skip = False
+        for i, word in enumerate(words):
+            if skip:
+                skip = False
+            elif word == "-include" and words[i + 1].endswith("/cmake_pch.hxx"):
+                skip = True
+            elif word not in ("-Winvalid-pch", "-fpch-preprocess"):
+                kept.append(word)
+        kept.insert(1, "-Wno-unknown-warning-option")
+        entries.append({"directory": entry["directory"], "file": name, "arguments": kept})
+        sources.add(name)
+with open(sys.argv[2], "w", encoding="utf-8") as file:
+    json.dump(entries, file)
+print("\n".join(sorted(sources)))
+PY
+
+if [[ -n $since ]]; then
+  while IFS= read -r -d '' file; do
+    # A source that is in no target here cannot be compiled; a header takes its neighbour's flags.
+    if [[ $file == *.h ]] || grep --quiet --line-regexp --fixed-strings "$PWD/$file" \
+      "$results/sources"; then
+      files+=("$PWD/$file")
+    fi
+  done < <(
+    git diff --name-only --diff-filter=d -z "$since" -- '*.cpp' '*.h'
+    git ls-files --others --exclude-standard -z -- '*.cpp' '*.h'
+  )
+  if ((${#files[@]} == 0)); then
+    echo "lint: no C++ file differs from $since"
+    exit 0
+  fi
+elif ((${#files[@]} == 0)); then
+  mapfile -t files <"$results/sources"
+fi
+
+lint_one() {
+  local found=$results/${1//\//_}.found said=$results/${1//\//_}.said
+  if "$tidy" --quiet -p "$results" "$1" >"$found" 2>"$said"; then return; fi
+  # It fails on findings too; if there is none, then by itself.
+  if ! grep --quiet --extended-regexp ':[0-9]+:[0-9]+: (warning|error): ' "$found"; then
+    echo "$1:1:1: error: $(tail --lines=1 "$said") [clang-tidy-failed]" >"$found"
+  fi
+}
+export -f lint_one
+export tidy results
+# shellcheck disable=SC2016 # $1 is for the inner bash
+printf '%s\0' "${files[@]}" |
+  xargs --null --max-args=1 --max-procs="$jobs" bash -c 'lint_one "$1"' bash
+
+# A header's finding comes once for each source that includes it: the first stays, with its notes.
+find "$results" -name '*.found' -print0 | sort --zero-terminated | xargs --null cat |
+  awk -v root="$PWD/" '
+    /^[^ ].*:[0-9]+:[0-9]+: (warning|error): / { show = !seen[$0]++ }
+    show { if (index($0, root) == 1) $0 = substr($0, length(root) + 1); print }
+  ' >"$results/all"
+cat "$results/all"
+
+findings=$(grep --count --extended-regexp '^[^ ].*:[0-9]+:[0-9]+: (warning|error): ' \
+  "$results/all" || true)
+if ((findings > 0)); then
+  echo
+  # by check
+  sed --quiet --regexp-extended \
+    's/^[^ ].*:[0-9]+:[0-9]+: (warning|error): .*\[([^],]+).*\]$/\2/p' "$results/all" |
+    sort | uniq --count | sort --numeric-sort --reverse
+fi
+echo "lint: ${#files[@]} files, $findings findings"
+((findings == 0))

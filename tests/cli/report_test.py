@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the report's page says of itself: report_test.py PROGRAM."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = None
+STUDY = '''[study]
+trials = 2
+protocol = "near_path"
+[map]
+spacing_m = 2
+'''
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def works(self, *words, **more):
+        done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=self.folder,
+                              **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def data(self):
+        text = (self.folder / 'report.html').read_text()
+        found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)
+        return json.loads(found[1])
+
+    def page_with_plots(self):
+        built = pathlib.Path(PROGRAM).parent / 'share/vernier/page'
+        if not (built / 'plotly.js').exists():
+            self.skipTest('this build has no plots')
+        return built
+
+    def test_commands_are_those_that_were_typed(self):
+        (self.folder / 'small.toml').write_text(STUDY)
+        for shard in ('0/2', '1/2'):
+            self.works('study', 'small.toml', '-o', 'my results', '-q', '--shard', shard)
+        self.works('report', 'my results', '--no-proof', '--title', "it's", '-o', 'report.html')
+        data = self.data()
+        self.assertEqual(data['program']['command'], "vernier report 'my results' --no-proof --title"
+                         " 'it'\\''s' -o report.html")
+        self.assertIn("vernier study small.toml -o 'my results' -q --shard 0/2",
+                      data['study']['commands'])
+        self.works('study', 'merge', 'my results', '-o', 'all')
+        self.works('report', 'all', '--no-proof', '-o', 'report.html')
+        self.assertIn("vernier study merge 'my results' -o all", self.data()['study']['commands'])
+
+    def test_results_without_a_command_say_none(self):
+        self.works('report', 'nominal', '--no-proof', '-o', 'report.html')
+        self.assertEqual(self.data()['program']['command'],
+                         'vernier report nominal --no-proof -o report.html')
+        self.assertNotIn('study', self.data())
+
+    def test_a_bound_that_holds_is_not_called_too_small(self):
+        done = self.works('report', 'nominal', '-o', 'report.html')
+        rig, = self.data()['rigs']
+        self.assertTrue(rig['true_bound'])
+        self.assertEqual(rig['calibration']['warnings'], [])
+        self.assertNotIn('too small', done.stderr)
+
+    def test_a_page_without_plots_is_said(self):
+        built = self.page_with_plots()
+        page = self.folder / 'share/page'
+        page.mkdir(parents=True)
+        for name in ('report.html', 'report.css', 'report.js'):
+            (page / name).symlink_to(built / name)
+        call = ('report', 'nominal', '--no-proof', '-o', 'report.html', '--json')
+        done = self.works(*call)
+        self.assertTrue(json.loads(done.stdout)['plots'])
+        self.assertNotIn('plots', done.stderr)
+        without = dict(os.environ, VERNIER_SHARE=str(self.folder / 'share'))
+        done = self.works(*call, env=without)
+        self.assertFalse(json.loads(done.stdout)['plots'])
+        self.assertIn('no plots', done.stderr)
+        self.assertIn('pages hold tables only', self.works('doctor', env=without).stdout)
+
+    def test_the_page_holds_the_licence_of_plotly(self):
+        self.page_with_plots()
+        self.works('report', 'nominal', '--no-proof', '-o', 'report.html')
+        self.assertIn('Permission is hereby granted', (self.folder / 'report.html').read_text())
+
+
+if __name__ == '__main__':
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

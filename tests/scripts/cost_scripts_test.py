@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""The scripts that measure what building, testing and the demo cost, and check it."""
+import contextlib
+import importlib.util
+import io
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SCRIPTS = ROOT / "scripts"
+
+
+def load_check():
+    """scripts/check_build_cost.py as a module."""
+    spec = importlib.util.spec_from_file_location("check", SCRIPTS / "check_build_cost.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+class InFolder(unittest.TestCase):
+    """Tests with a folder of their own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name).resolve()
+
+    def bash(self, text, *arguments):
+        """Runs bash in the folder."""
+        return subprocess.run(["bash", "-euo", "pipefail", "-c", text, "bash", *arguments],
+                              cwd=self.folder, capture_output=True, text=True, check=False)
+
+
+class MeasuredCompile(InFolder):
+    """The compiler launcher, before commands that act as compilers."""
+
+    def launch(self, *command):
+        """Runs the launcher; returns the exit code and the log's lines as fields."""
+        log = self.folder / "log.tsv"
+        run = subprocess.run([SCRIPTS / "measured_compile.sh", log, *command], cwd=self.folder,
+                             check=False)
+        lines = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
+        return run.returncode, [line.split("\t") for line in lines]
+
+    def test_says_what_a_unit_cost(self):
+        busy = "i=0; while [ $i -lt 200000 ]; do i=$((i + 1)); done"
+        code, lines = self.launch("sh", "-c", busy, "-o", "a b.o", "-c", "a b.cpp")
+        self.assertEqual(code, 0)
+        self.assertEqual(lines[0][1:], ["compiled", "a b.o", "a b.cpp"])
+        self.assertRegex(lines[0][0], r"^\d+\.\d\d$")
+        self.assertGreater(float(lines[0][0]), 0.02)
+
+    def test_tells_hits_of_the_cache(self):
+        for word, outcome in (("direct_cache_hit", "cached"), ("preprocessed_cache_hit", "cached"),
+                              ("cache_miss", "compiled")):
+            cache = f"printf '# a.cpp\\n{word}\\n' >>\"$CCACHE_STATSLOG\""
+            _, lines = self.launch("sh", "-c", cache, "-o", "a.o", "-c", "a.cpp")
+            self.assertEqual(lines[-1][1], outcome)
+
+    def test_keeps_the_exit_code(self):
+        code, lines = self.launch("sh", "-c", "exit 3", "-o", "a.o", "-c", "a.cpp")
+        self.assertEqual((code, lines[0][1]), (3, "failed"))
+
+    def test_leaves_other_calls_alone(self):
+        self.assertEqual(self.launch("sh", "-c", "exit 4"), (4, []))
+
+    def test_parallel_units_do_not_mix_their_lines(self):
+        run = self.bash('for i in $(seq 40); do "$0" log true -o "object$i" -c source & done; wait'
+                        .replace("$0", str(SCRIPTS / "measured_compile.sh")))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        lines = (self.folder / "log").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(sorted(line.split("\t")[2] for line in lines),
+                         sorted(f"object{i}" for i in range(1, 41)))
+
+
+class BuildCost(InFolder):
+    """The check of what the log holds."""
+
+    def check(self, costs, exceptions="", top=0):
+        """The exit code of the check and what it printed; calib/rig.cpp is one unit of two."""
+        build = self.folder / "build"
+        build.mkdir(exist_ok=True)
+        (build / "compile_costs.tsv").write_text("".join(
+            f"{seconds}\t{outcome}\t{unit}\t{source}\n"
+            for seconds, outcome, unit, source in costs), encoding="utf-8")
+        (build / "compile_commands.json").write_text(json.dumps(
+            [{"command": f"c++ -o {unit} -c x"} for unit in ("rig.o", "pose.o", "unity.o")]),
+            encoding="utf-8")
+        check = load_check()
+        check.EXCEPTIONS = self.folder / "exceptions.txt"
+        check.EXCEPTIONS.write_text(exceptions, encoding="utf-8")
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+            try:
+                code = check.check(build, top)
+            except check.Unusable as problem:
+                return 2, str(problem)
+        return code, printed.getvalue()
+
+    RIG = str(ROOT / "calib/rig.cpp")
+    POSE = str(ROOT / "calib/pose.cpp")
+
+    def test_names_the_dear_unit(self):
+        code, said = self.check([(12.01, "compiled", "rig.o", self.RIG),
+                                 (11.99, "compiled", "pose.o", self.POSE)])
+        self.assertEqual(code, 1)
+        self.assertIn("too dear to compile: calib/rig.cpp", said)
+        self.assertNotIn("compile: calib/pose.cpp", said)
+        self.assertIn("2 of 3 units measured", said)
+
+    def test_the_last_compilation_in_earnest_counts(self):
+        code, said = self.check([(30, "compiled", "rig.o", self.RIG),
+                                 (2, "compiled", "rig.o", self.RIG),
+                                 (40, "failed", "rig.o", self.RIG),
+                                 (0.01, "cached", "rig.o", self.RIG),
+                                 (0.01, "cached", "pose.o", self.POSE)])
+        self.assertEqual(code, 0, said)
+        self.assertIn("1 of 3 units measured, 2 CPU s together; 1 known from the compiler", said)
+
+    def test_removed_units_and_batches_do_not_count(self):
+        code, said = self.check([
+            (30, "compiled", "gone.o", self.RIG),
+            (30, "compiled", "unity.o", str(self.folder / "build/Unity/unity_0_cxx.cxx"))])
+        self.assertEqual(code, 0, said)
+        self.assertIn("0 of 3 units measured", said)
+        self.assertIn("batches of a unity build left out: 1", said)
+
+    def test_exceptions(self):
+        dear = [(15, "compiled", "rig.o", self.RIG)]
+        self.assertEqual(self.check(dear, "calib/rig.cpp 16 kernels\n")[0], 0)
+        self.assertEqual(self.check(dear, "calib/rig.cpp 14 kernels\n")[0], 1)
+        code, said = self.check([(3, "compiled", "rig.o", self.RIG)], "calib/rig.cpp 16 kernels\n")
+        self.assertEqual(code, 0)
+        self.assertIn("warning: exceptions.txt: calib/rig.cpp costs 3.0 s", said)
+        code, said = self.check(dear, "calib/rig.cpp 16 kernels\ncalib/none.cpp 16 kernels\n")
+        self.assertEqual(code, 1)
+        self.assertIn("there is no calib/none.cpp", said)
+        for bad in ("calib/rig.cpp 16", "calib/rig.cpp much of it", "calib/rig.cpp 11 is within",
+                    "calib/rig.cpp 16 one\ncalib/rig.cpp 17 two"):
+            self.assertEqual(self.check(dear, bad)[0], 2, bad)
+
+    def test_the_exceptions_of_this_checkout_can_be_read(self):
+        check = load_check()
+        for source in check.read_exceptions(check.EXCEPTIONS):
+            self.assertTrue((ROOT / source).is_file(), source)
+
+
+class Parts(InFolder):
+    """Times of a script's parts, and the demo's budget."""
+
+    def test_pieces_add_up(self):
+        run = self.bash('''. "$1"
+            begin_part packages
+            begin_part "run: first"; sleep 0.1
+            begin_part "run: second"; for ((i = 0; i < 100000; i++)); do :; done | cat
+            end_parts
+            write_part_times >times.txt
+            print_part_times''', str(SCRIPTS / "part_times.sh"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rows = [line.split("\t")
+                for line in (self.folder / "times.txt").read_text(encoding="utf-8").splitlines()]
+        self.assertEqual([row[0] for row in rows],
+                         ["packages", "run", "run: first", "run: second", "total"])
+        wall = {name: float(seconds) for name, seconds, _ in rows}
+        cpu = {name: float(seconds) for name, _, seconds in rows}
+        self.assertGreaterEqual(wall["run: first"], 0.09)
+        self.assertAlmostEqual(wall["run"], wall["run: first"] + wall["run: second"], places=6)
+        self.assertGreaterEqual(wall["total"], wall["run"])
+        self.assertGreater(cpu["run: second"], 0.02)  # of a process that it waited for
+        self.assertGreaterEqual(cpu["total"], cpu["run"])
+
+    def budget(self, packages, build, total):
+        """The exit code of the check of such times."""
+        times = self.folder / "times.txt"
+        times.write_text(f"packages\t{packages}\t1.00\nbuild\t{build}\t1.00\n"
+                         f"total\t{total}\t2.00\n", encoding="utf-8")
+        return subprocess.run([SCRIPTS / "check_demo_cost.sh", times], capture_output=True,
+                              check=False).returncode
+
+    def test_the_demo_has_a_budget(self):
+        self.assertEqual(self.budget("0.08", "1.00", "9.09"), 0)
+        self.assertEqual(self.budget("9999.00", "1.00", "9.00"), 1)
+        self.assertEqual(self.budget("1.00", "1.00", "9999.00"), 1)
+        self.assertEqual(self.budget("1.00", "", "9.00"), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/sampler.h"
 
 namespace vernier {
 
@@ -40,8 +40,6 @@ std::optional<double> try_triangulated_depth_m(const Rig& rig,
 /// Throws Error unless ranges are above 0 and finite, and samples at least 2.
 std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
                                                 const std::vector<double>& ranges_m,
-                                                double psi_c = 1,
-                                                int samples = 2000,
-                                                std::uint64_t seed = 1);
+                                                const SamplingOptions& options = {});
 
 }  // namespace vernier

@@ -11,6 +11,13 @@
 
 namespace vernier {
 
+/// How to sample. Draw i of a seed is one rig and, given it, one pose of the board a frame.
+struct SamplingOptions {
+  double psi_c = 1;  ///< factor on all standard deviations of the calibration
+  int samples = 2000;
+  std::uint64_t seed = 1;
+};
+
 /// RandomStream rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
 ///
 ///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ

@@ -69,9 +69,8 @@ std::optional<double> try_triangulated_depth_m(const Rig& rig,
 
 std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
                                                 const std::vector<double>& ranges_m,
-                                                double psi_c,
-                                                int samples,
-                                                std::uint64_t seed) {
+                                                const SamplingOptions& options) {
+  const auto [psi_c, samples, seed] = options;
   check_pair(estimate.rig);
   check_ranges(ranges_m, samples);
   const RigSampler sampler(estimate);

@@ -17,13 +17,6 @@
 
 namespace vernier::internal {
 
-/// How to sample. Draw i of a seed is one rig and, given it, one pose of the board a frame.
-struct SamplingOptions {
-  double psi_c = 1;  ///< factor on all standard deviations of the calibration
-  int samples = 2000;
-  std::uint64_t seed = 1;
-};
-
 /// A point of a camera's frame, m, or a direction where it is at infinity.
 struct FixedPoint {
   Eigen::Vector3d x_camera;

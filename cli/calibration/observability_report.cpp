@@ -28,7 +28,7 @@ Downstream downstream(const Rig& rig, const Eigen::MatrixXd& covariance) {
   estimate.rig = rig;
   estimate.covariance = Covariance{CovarianceKind::prior, parameter_names(rig), covariance};
   return {vertical_disparity_map(rig, covariance, 20, 15, range_m).rms_px,
-          depth_uncertainty(estimate, {range_m}, 1, 2).front().sigma_linear_m};
+          depth_uncertainty(estimate, {range_m}, {.samples = 2}).front().sigma_linear_m};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "calib/covariance.h"
 #include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/sampler.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "cli/program/session.h"
 #include "cli/uncertainty/uncertainty_report.h"

@@ -218,9 +218,8 @@ void add_depth(const Input& in, int other, UncertaintyReport& out) {
     const auto q = pixel_pair(pair.rig, {0, 0, range});
     if (q && triangulate_point(pair.rig, *q)) seen.push_back(range);
   }
-  const SamplingOptions& s = out.request.sampling;
   out.depth.push_back(
-      {pair.rig.cameras[1].name, depth_uncertainty(pair, seen, s.psi_c, s.samples, s.seed)});
+      {pair.rig.cameras[1].name, depth_uncertainty(pair, seen, out.request.sampling)});
 }
 
 }  // namespace

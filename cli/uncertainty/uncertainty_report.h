@@ -10,6 +10,7 @@
 #include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_estimate.h"
+#include "calib/sampler.h"
 #include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 #include "calib/uncertainty/sampled_propagation.h"

@@ -61,11 +61,10 @@ struct SampledDisparity {
   double sd_px = 0;               ///< about the mean, over the draws that rectify the pair
   double non_physical_share = 0;  ///< draws that do not
 };
-std::vector<SampledDisparity> sampled_vertical_disparity(
-    const RigSampler& sampler,
-    std::span<const PixelPair> pairs,
-    double rectified_f_px,
-    const vernier::internal::SamplingOptions& options = {});
+std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampler,
+                                                         std::span<const PixelPair> pairs,
+                                                         double rectified_f_px,
+                                                         const SamplingOptions& options = {});
 
 /// The pair of pixels at which a point on the left pixel's ray stands: at `distance_m` along it, or
 /// infinity. Nothing where the ray is missing or the point is not in the right image.

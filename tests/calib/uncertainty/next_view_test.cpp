@@ -91,8 +91,9 @@ TEST(NextView, PredictsTheBoundWithinAFewPerCentUnderNoise) {
                    target_quantity(before.rig, "depth", 5), {.more = 1});
   const RigEstimate after = calibrated(
       with_view(board.observations, board.truth.rig, advice.views[0].placement.T_first_board));
-  EXPECT_NEAR(depth_uncertainty(after, {5}, 1, 2)[0].sigma_linear_m / advice.views[0].sd_after, 1,
-              0.03);
+  EXPECT_NEAR(
+      depth_uncertainty(after, {5}, {.samples = 2})[0].sigma_linear_m / advice.views[0].sd_after, 1,
+      0.03);
 }
 
 TEST(NextView, UpdateIsTheSumOfInformations) {
@@ -208,7 +209,8 @@ TEST(TargetQuantity, DepthIsThatOfDepthUncertainty) {
   for (const double range : {1.0, 5.0, 20.0}) {
     const double sd = sd_of(target_quantity(estimate.rig, "depth", range),
                             ScaledDecomposition(*estimate.covariance).factor());
-    EXPECT_NEAR(sd / depth_uncertainty(estimate, {range}, 1, 2)[0].sigma_linear_m, 1, 1e-4);
+    EXPECT_NEAR(sd / depth_uncertainty(estimate, {range}, {.samples = 2})[0].sigma_linear_m, 1,
+                1e-4);
   }
 }
 

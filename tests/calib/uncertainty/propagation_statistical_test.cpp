@@ -101,7 +101,8 @@ TEST(SampledPropagation, PixelNoiseOfThePairIsTheLinearOneWhereTheRigIsExact) {
 }
 
 TEST(SampledPropagation, DepthIntervalIsTheLinearOneAtSmallPsi) {
-  const auto u = depth_uncertainty(estimate(), {2}, psi_c, samples, 24)[0];
+  const auto u =
+      depth_uncertainty(estimate(), {2}, {.psi_c = psi_c, .samples = samples, .seed = 24})[0];
   // The standard error of a 2.5 % quantile of n normal draws is sqrt(p(1-p)/n)/phi(z) = 2.67/√n
   // standard deviations; two ends, two-sided.
   const double band = normal_quantile(1 - alarm / 4) * 2.67 / std::sqrt(samples);

@@ -507,18 +507,19 @@ TEST(RigPair, KeepsThePartOfTheCovarianceThatIsItsOwn) {
 }
 
 TEST(DepthUncertainty, IntervalHoldsTheRangeAndReachesInfinityWhereRaysPart) {
-  const auto near = depth_uncertainty(estimate(), {1, 5}, 1, 500, 3);
+  const auto near = depth_uncertainty(estimate(), {1, 5}, {.samples = 500, .seed = 3});
   for (const auto& u : near) {
     EXPECT_LT(u.interval_95_m.low, u.range_m);
     EXPECT_GT(u.interval_95_m.high, u.range_m);
     EXPECT_EQ(u.non_physical_share, 0);
   }
-  const auto wild = depth_uncertainty(estimate(), {20}, 100, 500, 3)[0];
+  const auto wild =
+      depth_uncertainty(estimate(), {20}, {.psi_c = 100, .samples = 500, .seed = 3})[0];
   EXPECT_GT(wild.non_physical_share, 0.025);
   EXPECT_EQ(wild.interval_95_m.high, infinity);
   EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {infinity}); }),
                "a range of inf m");
-  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {1}, 1, 1); }),
+  EXPECT_PRED2(says, error_output([] { depth_uncertainty(estimate(), {1}, {.samples = 1}); }),
                "fewer than 2 samples");
 }
 

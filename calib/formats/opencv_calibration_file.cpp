@@ -216,7 +216,7 @@ std::vector<ExportedFile> opencv_intrinsics_and_extrinsics(const Rig& rig) {
     intrinsics += camera_text(rig.cameras[i - 1], i);
     if (i == 1) continue;
     const Pose& T = rig.T_camera_first[i - 1];
-    const std::string end = count == 2 ? "" : "1" + std::to_string(i);
+    const std::string end = count == 2 ? "" : fmt::format("1{}", i);
     extrinsics += matrix_text("R" + end, T.R) + matrix_text("T" + end, T.t);
   }
   return {{"intrinsics.yml", intrinsics}, {"extrinsics.yml", extrinsics}};

@@ -42,8 +42,9 @@ bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>&
     x.row(static_cast<Eigen::Index>(i)) = target_m[ids[i]].head<2>().transpose();
   }
   x.rowwise() -= x.colwise().mean().eval();
-  const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::MatrixXd>(x).singularValues();
-  return s[1] > 0.1 * s[0];
+  const Eigen::Matrix2d scatter = x.transpose() * x;
+  const Eigen::Vector2d s = Eigen::JacobiSVD<Eigen::Matrix2d>(scatter).singularValues();
+  return s[1] > 0.01 * s[0];  // of squares
 }
 
 /// Takes all corners back where they are too few to use.

@@ -31,7 +31,7 @@ int main(int, char** argv) {
               1e3 * std::sqrt(point.calibration(2, 2)), 1e3 * std::sqrt(point.observation(2, 2)));
 
   for (const double psi_c : {1.0, 10.0}) {
-    const DepthUncertainty far = depth_uncertainty(estimate, {5}, psi_c)[0];
+    const DepthUncertainty far = depth_uncertainty(estimate, {5}, {.psi_c = psi_c})[0];
     std::printf("psi_c = %2.0f at 5 m: %.3f m linear, %.3f m sampled\n", psi_c, far.sigma_linear_m,
                 far.sigma_sampled_m);
   }

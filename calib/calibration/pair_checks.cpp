@@ -190,7 +190,7 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
   }
   ObservationDiagnosis diagnosis;
   if (judged > 0 && flat == judged) {
-    diagnosis.trust_warnings.push_back(
+    diagnosis.trust_warnings.emplace_back(
         "the corners of every image pair lie on one plane, or too far away for parallax: they "
         "leave more of the rig to the prior; take images of a scene with depth");
   } else if (2 * flat > judged) {

@@ -65,8 +65,8 @@ std::string number(double value) {
   std::string digits = std::to_string(size % 10000);
   digits.insert(0, 4 - digits.size(), '0');
   digits.erase(digits.find_last_not_of('0') + 1);
-  return (steps < 0 ? "-" : "") + std::to_string(size / 10000) +
-         (digits.empty() ? "" : "." + digits);
+  if (!digits.empty()) digits.insert(0, 1, '.');
+  return (steps < 0 ? "-" : "") + std::to_string(size / 10000) + digits;
 }
 
 template <typename Vector>

@@ -13,6 +13,7 @@
 #include "calib/camera.h"
 #include "calib/interval.h"
 #include "calib/statistics/cluster_interval.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"

@@ -92,7 +92,10 @@ TEST_F(StudyRuns, TheProcessKeepsItsThreads) {
       ++calls;
       EXPECT_EQ(allowed(), before);
     };
-    run_study(study(6), {folder_ / name, threads, {}, look_at, look_at});
+    run_study(study(6), {.folder = folder_ / name,
+                         .threads = threads,
+                         .progress = look_at,
+                         .ceiling_progress = look_at});
     EXPECT_GT(calls, 12);
   }
 }

@@ -18,6 +18,7 @@
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
+#include "stereo/segment.h"
 
 namespace vernier::sim {
 
@@ -42,6 +43,11 @@ struct ExperimentSettings {
 /// The end-point error that the estimator reckons with: 0.15 px, or max(0.1 px, psi_g) where it
 /// knows psi_g.
 double told_endpoint_sigma_px(const ExperimentSettings& settings);
+
+/// The sensed segments in space, in the left camera's frame of the rig that the estimator is told.
+std::vector<stereo::SpaceSegment> reconstruct(const Rig& told,
+                                              const StereoObservation& sighting,
+                                              const ExperimentSettings& settings);
 
 /// One localisation trial: where the robot was, what was answered, and what that cost.
 struct TrialResult {
@@ -74,8 +80,8 @@ MapViews map_views(const Visibility& visibility,
 /// another. The true rig is the estimate's; what an estimator is told is drawn around it.
 class LocalisationExperiment {
  public:
-  /// Keeps references to `visibility` and `looks`. Throws Error for bad settings or a rig without
-  /// covariance where sources.calibration > 0.
+  /// Keeps a reference to `visibility`; `looks` is needed for maps and blocks only. Throws Error
+  /// for bad settings or a rig without covariance where sources.calibration > 0.
   LocalisationExperiment(const Visibility& visibility,
                          const RigEstimate& rig,
                          std::shared_ptr<const MapViews> looks,

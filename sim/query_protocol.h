@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "localise/place.h"
@@ -32,6 +33,14 @@ ProtocolSpan span(QueryProtocol protocol);
 /// Whether a robot of the given radius can stand at a point: no surface lower than `height_m` comes
 /// nearer than the radius.
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m);
+
+/// Why a robot's camera cannot be at a pose, as the rest of a sentence that the pose begins; empty
+/// where it can. It cannot outside the box of the world, where a robot of 0.12 m radius that rises
+/// 0.2 m above its camera could not stand, and, in a world with a route, in a space that surfaces
+/// at the camera's height close off from the route (the inside of a wall or of a cupboard).
+std::string standing_fault(const Visibility& visibility,
+                           const localise::Pose2D& pose,
+                           double eye_height_m);
 
 /// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
 /// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/observation_json.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <numbers>
 
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_file.h"
 #include "cli/program/session.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
@@ -18,7 +23,50 @@ Json segment_json(const ImageSegment& s) {
   return {s.a_px.x(), s.a_px.y(), s.b_px.x(), s.b_px.y()};
 }
 
+Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
+
+/// Which edges were in view, and which of them every sensed segment is a piece of.
+void add_identities(const NoiseFreeView& seen, const StereoObservation& sighting, Json& json) {
+  Json &truth = json["true"], &sensed = json["sensed"];
+  for (const char* key : {"feature", "segment", "object", "a_m", "b_m"}) truth[key] = Json::array();
+  std::map<std::uint32_t, std::size_t> place;
+  for (const VisibleEdge& edge : seen.edges) {
+    place[edge.feature] = place.size();
+    truth["feature"].push_back(edge.feature);
+    truth["segment"].push_back(edge.segment);
+    truth["object"].push_back(edge.object);
+    truth["a_m"].push_back(point_json(edge.a_m));
+    truth["b_m"].push_back(point_json(edge.b_m));
+  }
+  for (const char* key : {"feature", "edge", "segment"}) sensed[key] = Json::array();
+  for (const StereoSegment& s : sighting.segments) sensed["feature"].push_back(s.feature);
+  for (const VisibleEdge& edge : sighting.true_edges) {
+    sensed["edge"].push_back(place.at(edge.feature));
+    sensed["segment"].push_back(edge.segment);
+  }
+}
+
 }  // namespace
+
+Json cameras_json(const Rig& rig) {
+  RigEstimate estimate;
+  estimate.rig = rig;
+  return Json::parse(format_rig(estimate))["cameras"];
+}
+
+Json space_json(const std::vector<SpaceSegment>& lines) {
+  Json json{{"a_m", Json::array()},
+            {"b_m", Json::array()},
+            {"depth_sigma_m", Json::array()},
+            {"reliable", Json::array()}};
+  for (const SpaceSegment& line : lines) {
+    json["a_m"].push_back(point_json(line.a_m));
+    json["b_m"].push_back(point_json(line.b_m));
+    json["depth_sigma_m"].push_back(json_number(line.depth_sigma_m));
+    json["reliable"].push_back(line.reliable);
+  }
+  return json;
+}
 
 Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting) {
   Json json;
@@ -41,10 +89,10 @@ Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObserv
       corners.push_back({corner.pixel_px[eye].x(), corner.pixel_px[eye].y()});
     }
   }
-  json["sensed"]["feature"] = Json::array();
-  for (const StereoSegment& s : sighting.segments) json["sensed"]["feature"].push_back(s.feature);
-  json["corners"]["mismatched"] = Json::array();
+  add_identities(seen, sighting, json);
+  for (const char* key : {"corner", "mismatched"}) json["corners"][key] = Json::array();
   for (const SensedCorner& c : sighting.corners) {
+    json["corners"]["corner"].push_back(c.truth.feature);
     json["corners"]["mismatched"].push_back(c.mismatched);
   }
   return json;

@@ -4,17 +4,23 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/observation_json.h"
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/noise_free_view.h"
+#include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
@@ -32,53 +38,94 @@ struct SimulateArguments {
   std::vector<std::string> sources;
 };
 
-/// "edge_loss=0.2" settings over the defaults, "none" for all off.
+const SourceParameter& source_named(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  std::string known = "none";
+  for (const SourceParameter& parameter : source_parameters()) {
+    if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
+    known += ", " + std::string(parameter.name) + "=…";
+  }
+  throw Error("--source " + word, "is no setting of a source", "use " + known);
+}
+
+/// Refuses settings that change nothing: the reach of a source that is off.
+void check_effect(const SourceSettings& settings, const std::set<std::string_view>& given) {
+  const auto refuse = [&](std::string_view reach, std::string_view of, double share) {
+    if (share > 0 || given.count(reach) == 0) return;
+    throw Error("--source " + std::string(reach),
+                "has no effect where " + std::string(of) + " is 0",
+                "give --source " + std::string(of) + "=… too, or leave it out");
+  };
+  refuse("stereo_mismatch_px", "stereo_mismatch", settings.stereo_mismatch);
+  refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
+}
+
+/// "edge_loss=0.2" settings over the defaults, "none" for all off. The rig's error is drawn only
+/// where it is asked for.
 SourceSettings sources_of(const std::vector<std::string>& words) {
   SourceSettings settings;
+  settings.calibration = 0;
+  std::set<std::string_view> given;
   for (const std::string& word : words) {
     if (word == "none") {
+      if (&word != &words.front()) {
+        throw Error("--source none", "would undo the sources before it", "give it first");
+      }
       settings = no_sources();
       continue;
     }
-    const std::size_t equals = word.find('=');
-    const SourceParameter* chosen = nullptr;
-    for (const SourceParameter& parameter : source_parameters()) {
-      if (parameter.name == word.substr(0, equals)) chosen = &parameter;
+    const SourceParameter& chosen = source_named(word);
+    if (!given.insert(chosen.name).second) {
+      throw Error("--source " + word, "is the second value of this source", "give one");
     }
-    if (!chosen || equals == std::string::npos) {
-      std::string known = "none";
-      for (const SourceParameter& parameter : source_parameters()) {
-        known += ", " + std::string(parameter.name) + "=…";
-      }
-      throw Error("--source " + word, "is no setting of a source", "use " + known);
-    }
-    settings.*chosen->value = parse_numbers(word.substr(equals + 1), 1, "--source " + word)[0];
+    settings.*chosen.value =
+        parse_numbers(word.substr(word.find('=') + 1), 1, "--source " + word)[0];
   }
   check(settings, "--source");
+  check_effect(settings, given);
   return settings;
 }
 
 void run(const SimulateArguments& options, Session& session) {
+  const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
+  const SourceSettings sources = sources_of(options.sources);
   const World world = build_world(read_world(find_world(options.world)));
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);
-  const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   constexpr double degree = std::numbers::pi / 180;
   const Pose2D pose{at[0], at[1], at[2] * degree};
 
   const Visibility visibility(world);
+  if (const std::string fault = standing_fault(visibility, pose, options.height_m);
+      !fault.empty()) {
+    throw Error("--pose " + options.pose, fault,
+                "give a free place, or another --height-m (vernier world info has the size)");
+  }
+  if (sources.calibration > 0) required_covariance(rig.estimate, options.rig);
+  ExperimentSettings settings;
+  settings.sources = sources;
+  settings.seed = options.seed;
+  const Rig told = LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
+                       .estimator_rig(options.trial);
   NoiseFreeViewOptions looking;
   looking.mount = {options.height_m, options.pitch_deg * degree};
   looking.with_corners = true;
   const NoiseFreeView seen = look(visibility, rig.estimate.rig, pose, looking);
-  const Sensor sensor(rig.estimate.rig, sources_of(options.sources));
+  const Sensor sensor(rig.estimate.rig, sources);
   const StereoObservation sighting = sensor.sense(seen, options.seed, options.trial, 0);
-  const Json json = sighting_json(rig.estimate.rig, seen, sighting);
+  Json json = sighting_json(rig.estimate.rig, seen, sighting);
+  json["calibration"] = sources.calibration;
+  json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(told)}};
+  json["space"] = space_json(reconstruct(told, sighting, settings));
+  const std::string told_text =
+      sources.calibration > 0
+          ? fmt::format("the estimator is told a rig drawn at psi_c = {:g}\n", sources.calibration)
+          : "the estimator is told the true rig\n";
   session.result(json, fmt::format("at ({:.2f}, {:.2f}) m heading {:.1f} deg: {} edges in view of "
-                                   "both eyes, {} sensed; {} corners, {} sensed\n"
+                                   "both eyes, {} sensed; {} corners, {} sensed\n{}"
                                    "all of them with --json\n",
                                    at[0], at[1], at[2], seen.edges.size(), sighting.segments.size(),
-                                   seen.corners.size(), sighting.corners.size()));
+                                   seen.corners.size(), sighting.corners.size(), told_text));
 }
 
 }  // namespace

@@ -23,10 +23,12 @@
 #include "sim/sensed_view.h"
 #include "sim/visibility.h"
 #include "stereo/reconstruction/triangulate.h"
+#include "stereo/segment.h"
 
 namespace vernier::sim {
 
 using namespace localise;
+using namespace stereo;
 using namespace stereo::internal;
 
 namespace {
@@ -49,9 +51,7 @@ NoiseFreeViewOptions look_options(const ExperimentSettings& settings) {
 PlaceView interpret(const Rig& told,
                     const StereoObservation& sighting,
                     const ExperimentSettings& settings) {
-  const TriangulationOptions options{.endpoint_sigma_px = told_endpoint_sigma_px(settings)};
-  return select_lines(triangulate(told, sighting.segments, options), sighting.segments,
-                      settings.mount);
+  return select_lines(reconstruct(told, sighting, settings), sighting.segments, settings.mount);
 }
 
 }  // namespace
@@ -59,6 +59,13 @@ PlaceView interpret(const Rig& told,
 double told_endpoint_sigma_px(const ExperimentSettings& settings) {
   return settings.knows_endpoint_sigma ? std::max(0.1, settings.sources.endpoint_sigma_px)
                                        : TriangulationOptions().endpoint_sigma_px;
+}
+
+std::vector<SpaceSegment> reconstruct(const Rig& told,
+                                      const StereoObservation& sighting,
+                                      const ExperimentSettings& settings) {
+  const TriangulationOptions options{.endpoint_sigma_px = told_endpoint_sigma_px(settings)};
+  return triangulate(told, sighting.segments, options);
 }
 
 MapViews map_views(const Visibility& visibility,

@@ -982,6 +982,70 @@ class Simulation(Case):
         self.assertEqual(exact['sensed']['right'], exact['true']['right'])
         self.assertGreater(len(exact['true']['left']), 50)
 
+    def test_simulate_says_what_is_true_what_was_told_and_what_is_seen_in_space(self):
+        words = ('simulate', '--pose', '10,7.5,0', '--seed', '4', '--trial', '2', '--json')
+        view = json.loads(self.works(*words).stdout)
+        true, sensed, space = view['true'], view['sensed'], view['space']
+        for key in ('feature', 'segment', 'object', 'a_m', 'b_m', 'right'):
+            self.assertEqual(len(true[key]), len(true['left']), key)
+        self.assertEqual(len(set(true['feature'])), len(true['feature']))
+        for key in ('feature', 'edge', 'segment', 'right'):
+            self.assertEqual(len(sensed[key]), len(sensed['left']), key)
+        for key in ('a_m', 'b_m', 'depth_sigma_m', 'reliable'):
+            self.assertEqual(len(space[key]), len(sensed['left']), key)
+        for feature, edge, segment in zip(sensed['feature'], sensed['edge'], sensed['segment']):
+            self.assertEqual(feature // 2, true['feature'][edge])
+            self.assertEqual(segment, true['segment'][edge])
+        self.assertEqual(len(view['corners']['corner']), len(view['corners']['left']))
+        nominal = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())['cameras']
+        for seen, filed in zip(view['rig']['true'], nominal, strict=True):
+            self.assertEqual(seen['parameters'], filed['parameters'])
+        self.assertEqual(view['rig']['told'], view['rig']['true'])
+        self.assertEqual(view['calibration'], 0)
+
+        exact = json.loads(self.works(*words, '--source', 'none').stdout)
+        near = 0
+        for a, b, reliable, edge in zip(exact['space']['a_m'], exact['space']['b_m'],
+                                        exact['space']['reliable'], exact['sensed']['edge']):
+            errors = [abs(x - y) for end, key in ((a, 'a_m'), (b, 'b_m'))
+                      for x, y in zip(end, exact['true'][key][edge])]
+            near += reliable and max(errors) < 1e-6
+        self.assertGreater(near, 30)
+
+        drawn = json.loads(self.works(*words, '--source', 'calibration=10').stdout)
+        self.assertEqual(drawn['calibration'], 10)
+        self.assertEqual(drawn['rig']['true'], view['rig']['true'])
+        self.assertNotEqual(drawn['rig']['told'], view['rig']['true'])
+        self.assertEqual(drawn['sensed'], sensed)  # it acts on what is told and nothing else
+        self.assertNotEqual(drawn['space'], space)
+        samples = self.folder / 'samples.csv'
+        self.works('sample', 'nominal', '--psi-c', '10', '-n', '3', '--seed', '4', '-o', samples)
+        names, *rows = [line.split(',') for line in samples.read_text().splitlines()]
+        third = dict(zip(names, map(float, rows[2])))
+        self.assertEqual(drawn['rig']['told'][0]['parameters']['f_px'], third['left.f_px'])
+
+    def test_simulate_refuses_places_and_options_that_make_no_sense(self):
+        for pose, why in (('-3,7.5,0', 'lies outside the world'),
+                          ('10,99,0', 'lies outside the world'),
+                          ('0.05,7.5,0', 'has a surface nearer than 0.12 m')):
+            self.complains('simulate', f'--pose={pose}', of=why)
+        self.complains('simulate', '--pose', '10,7.5,0', '--height-m', '3', of='lies 3 m high')
+        self.complains('simulate', '--pose', '10,7.5,0', '--height-m', '2.45',
+                       of='less than 0.2 m above the camera')
+        for sources, why in ((('stereo_mismatch=0', 'stereo_mismatch_px=5'), 'has no effect'),
+                             (('none', 'corner_mismatch_px=5'), 'has no effect'),
+                             (('edge_loss=0.1', 'none'), 'would undo'),
+                             (('edge_loss=0.1', 'edge_loss=0.2'), 'is the second value'),
+                             (('calibration=-1',), 'out of range')):
+            words = [word for source in sources for word in ('--source', source)]
+            self.complains('simulate', '--pose', '10,7.5,0', *words, of=why)
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        bare = {key: rig[key] for key in ('format', 'version', 'cameras')}
+        (self.folder / 'bare.json').write_text(json.dumps(bare))
+        self.works('simulate', '--rig', self.folder / 'bare.json', '--pose', '10,7.5,0', '-q')
+        self.complains('simulate', '--rig', self.folder / 'bare.json', '--pose', '10,7.5,0',
+                       '--source', 'calibration=1', of='covariance')
+
     def test_world_make_is_repeatable(self):
         for name in ('a', 'b'):
             self.works('world', 'make', '--seed', '7', '-o', self.folder / name)

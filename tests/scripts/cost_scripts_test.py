@@ -83,7 +83,7 @@ class BuildCost(InFolder):
     """The check of what the log holds."""
 
     def check(self, costs, exceptions="", top=0):
-        """The exit code of the check and what it printed; calib/rig.cpp is one unit of two."""
+        """The exit code of the check and what it printed; calib/camera/rig.cpp is one unit of two."""
         build = self.folder / "build"
         build.mkdir(exist_ok=True)
         (build / "compile_costs.tsv").write_text("".join(
@@ -103,14 +103,14 @@ class BuildCost(InFolder):
                 return 2, str(problem)
         return code, printed.getvalue()
 
-    RIG = str(ROOT / "calib/rig.cpp")
+    RIG = str(ROOT / "calib/camera/rig.cpp")
     POSE = str(ROOT / "calib/pose.cpp")
 
     def test_names_the_dear_unit(self):
         code, said = self.check([(12.01, "compiled", "rig.o", self.RIG),
                                  (11.99, "compiled", "pose.o", self.POSE)])
         self.assertEqual(code, 1)
-        self.assertIn("too dear to compile: calib/rig.cpp", said)
+        self.assertIn("too dear to compile: calib/camera/rig.cpp", said)
         self.assertNotIn("compile: calib/pose.cpp", said)
         self.assertIn("2 of 3 units measured", said)
 
@@ -133,16 +133,16 @@ class BuildCost(InFolder):
 
     def test_exceptions(self):
         dear = [(15, "compiled", "rig.o", self.RIG)]
-        self.assertEqual(self.check(dear, "calib/rig.cpp 16 kernels\n")[0], 0)
-        self.assertEqual(self.check(dear, "calib/rig.cpp 14 kernels\n")[0], 1)
-        code, said = self.check([(3, "compiled", "rig.o", self.RIG)], "calib/rig.cpp 16 kernels\n")
+        self.assertEqual(self.check(dear, "calib/camera/rig.cpp 16 kernels\n")[0], 0)
+        self.assertEqual(self.check(dear, "calib/camera/rig.cpp 14 kernels\n")[0], 1)
+        code, said = self.check([(3, "compiled", "rig.o", self.RIG)], "calib/camera/rig.cpp 16 kernels\n")
         self.assertEqual(code, 0)
-        self.assertIn("warning: exceptions.txt: calib/rig.cpp costs 3.0 s", said)
-        code, said = self.check(dear, "calib/rig.cpp 16 kernels\ncalib/none.cpp 16 kernels\n")
+        self.assertIn("warning: exceptions.txt: calib/camera/rig.cpp costs 3.0 s", said)
+        code, said = self.check(dear, "calib/camera/rig.cpp 16 kernels\ncalib/none.cpp 16 kernels\n")
         self.assertEqual(code, 1)
         self.assertIn("there is no calib/none.cpp", said)
-        for bad in ("calib/rig.cpp 16", "calib/rig.cpp much of it", "calib/rig.cpp 11 is within",
-                    "calib/rig.cpp 16 one\ncalib/rig.cpp 17 two"):
+        for bad in ("calib/camera/rig.cpp 16", "calib/camera/rig.cpp much of it", "calib/camera/rig.cpp 11 is within",
+                    "calib/camera/rig.cpp 16 one\ncalib/camera/rig.cpp 17 two"):
             self.assertEqual(self.check(dear, bad)[0], 2, bad)
 
     def test_the_exceptions_of_this_checkout_can_be_read(self):

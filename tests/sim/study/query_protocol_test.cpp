@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "calib/error.h"
 #include "localise/place.h"
 #include "sim/route.h"
+#include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/small_office.h"
 
@@ -68,6 +72,54 @@ TEST(QueryProtocol, WallsAreNotFree) {
   EXPECT_FALSE(is_free(world, outside, 0.12, 1.4));
   const Eigen::Vector2d on_route = world.route[0].points_m[0];
   EXPECT_TRUE(is_free(world, on_route, 0.12, 1.4));
+}
+
+/// Four upright faces and a lid.
+void add_box(WorldDescription& world, double x, double y, double dx, double dy, double height) {
+  const Eigen::Vector2d corners[] = {{x, y}, {x + dx, y}, {x + dx, y + dy}, {x, y + dy}};
+  std::vector<Eigen::Vector3d> lid;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d &a = corners[i], &b = corners[(i + 1) % 4];
+    world.loose.segments_m.push_back({{a.x(), a.y(), 0}, {a.x(), a.y(), height}});
+    world.loose.surfaces_m.push_back(
+        {{a.x(), a.y(), 0}, {b.x(), b.y(), 0}, {b.x(), b.y(), height}, {a.x(), a.y(), height}});
+    lid.emplace_back(a.x(), a.y(), height);
+  }
+  world.loose.surfaces_m.push_back(lid);
+}
+
+// A room of 6 x 4 m with a cupboard of 1 x 1 m, a table, and a screen that hides a part of it from
+// the route but can be walked around.
+TEST(StandingFault, NamesWhyACameraCannotBeThere) {
+  WorldDescription description;
+  add_box(description, 0, 0, 6, 4, 2.5);
+  add_box(description, 4, 2, 1, 1, 2);
+  add_box(description, 2, 2.5, 0.6, 0.6, 0.7);
+  description.loose.surfaces_m.push_back({{1, 1.5, 0}, {1, 4, 0}, {1, 4, 2.5}, {1, 1.5, 2.5}});
+  description.route.push_back({{{1.5, 1.8}, {3, 1.8}}});
+  const World world = build_world(description);
+  const Visibility visibility(world);
+  const auto fault = [&](double x, double y, double height) {
+    return standing_fault(visibility, {x, y, 0}, height);
+  };
+  EXPECT_EQ(fault(2, 1, 1.2), "");
+  EXPECT_EQ(fault(0.5, 3.5, 1.2), "");  // behind the screen
+  EXPECT_EQ(fault(5.5, 2.5, 1.2), "");  // behind the cupboard
+  EXPECT_EQ(fault(4.5, 2.5, 1.2), "is closed off from the route, as inside a wall or a cupboard");
+  EXPECT_NE(fault(2.3, 2.8, 1.2).find("has a surface nearer than 0.12 m"), std::string::npos);
+  EXPECT_NE(fault(0.05, 2, 1.2).find("has a surface nearer than 0.12 m"), std::string::npos);
+  EXPECT_NE(fault(2, 1, 2.4).find("less than 0.2 m above the camera"), std::string::npos);
+  EXPECT_EQ(fault(7, 1, 1.2), "lies outside the world, which reaches from (0, 0) to (6, 4) m");
+  EXPECT_EQ(fault(2, 1, 3), "lies 3 m high in a world from 0 to 2.5 m");
+  EXPECT_NE(fault(std::nan(""), 1, 1.2), "");
+}
+
+TEST(StandingFault, QueriesHaveNone) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Pose2D q =
+        draw_query(test::small_office_visibility(), QueryProtocol::anywhere, 1.2, 5, trial);
+    EXPECT_EQ(standing_fault(test::small_office_visibility(), q, 1.2), "");
+  }
 }
 
 TEST(QueryProtocol, NamesRoundTrip) {

@@ -1085,7 +1085,8 @@ class Study(Case):
         self.assertEqual(comparison['maps'], 6)
         self.assertTrue(0 <= comparison['p_value'] <= 1)
         self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
-        self.assertEqual(sum(comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')), 60)
+        counts = [comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')]
+        self.assertEqual(sum(counts), 60)
         for i in range(2):
             self.works('study', file, '-o', self.folder / f'part{i}', '--shard', f'{i}/2', '-q')
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
@@ -1104,7 +1105,8 @@ class Study(Case):
             said = json.loads(self.works('study', file, '-o', out, '--json', '-q').stdout)
             self.assertEqual(said['rig'], {'file': rig, 'covariance_kind': kind})
             table = self.works('study', 'status', out).stdout
-            self.assertIn(f'rig {rig}: its covariance, which drives psi_c, is of kind {kind}', table)
+            self.assertIn(f'rig {rig}: its covariance, which drives psi_c, is of kind {kind}\n',
+                          table)
 
     def test_an_interval_needs_six_maps(self):
         file = self.study(5)

@@ -104,10 +104,11 @@ TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
   Study s = study(7, "[0.1]");
   std::vector<int> reported;
   s.file.cells.push_back(s.file.cells[0]);  // shares the first one's ceiling
-  StudyRun job{folder_ / "ceilings", 2, {}, {}, [&](int done, int total) {
-                 EXPECT_EQ(total, 7);
-                 reported.push_back(done);
-               }};
+  StudyRun job{.folder = folder_ / "ceilings", .threads = 2};
+  job.ceiling_progress = [&](int done, int total) {
+    EXPECT_EQ(total, 7);
+    reported.push_back(done);
+  };
   run_study(s, job);
   EXPECT_EQ(reported, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
   job.ceiling_progress = [](int, int) { FAIL() << "it is in the store"; };

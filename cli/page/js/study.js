@@ -47,12 +47,14 @@ export function headline(report) {
 }
 
 function headline_words(study, cell) {
-  const range = cell.success_interval_95 || cell.success_interval_binomial_95;
+  const range = cell.success_interval_95;
   const words = [`In ${counted(cell.trials, "trial")} the robot placed itself within 1 m of where`
     + ` it stood ${percent(cell.success)} of the time.`];
   if (range) {
     words.push(` With 95 % confidence the rate lies between ${percent(range[0])} and`
       + ` ${percent(range[1])}.`);
+  } else if (cell.success_interval_95_missing) {
+    words.push(` The rate has no interval: it ${cell.success_interval_95_missing}.`);
   }
   const clustered = cell.success_interval_95 && cell.success_interval_binomial_95;
   const notes = ["An unanswered query counts as a failure; heading is not judged."];
@@ -136,11 +138,11 @@ function cell_columns(study) {
 }
 
 export function comparisons_section(study) {
+  const test = study.comparisons[0]?.test ?? "McNemar's test, trials taken as independent";
   const made = section("comparisons", "Paired comparisons", paragraph(
     "Cells ran on the same queries with the same random numbers, so the sharper question is where"
     + " they disagree: queries that only one of the two answered within 1 m. p is the chance"
-    + " of a split at least this uneven if neither cell were better (McNemar's test, trials taken"
-    + " as independent)."));
+    + ` of a split at least this uneven if neither cell were better (${test}).`));
   if (study.comparisons.length > 3) {
     made.append(paragraph(`With ${study.comparisons.length} comparisons, one p below 0.05 is to be`
       + " expected now and then by chance; p is not corrected for their number."));
@@ -151,7 +153,7 @@ export function comparisons_section(study) {
     both_count("Both", "both"), both_count("Only A", "only_a"), both_count("Only B", "only_b"),
     both_count("Neither", "neither"),
     { head: "A less B", small: "points of success", cell: (row) => points(row) },
-    { head: "p", cell: (row) => p_value(row.mcnemar_p) },
+    { head: "p", cell: (row) => p_value(p_of(row)) },
     { head: "In words", text: true, cell: verdict },
   ], study.comparisons));
 }
@@ -164,8 +166,12 @@ function points(row) {
   return is_number(d) ? `${d > 0 ? "+" : ""}${fixed(d, 1)}` : DASH;
 }
 
+/** By map where the study says so; older results have McNemar's alone. */
+const p_of = (row) => ("p_value" in row ? row.p_value : row.mcnemar_p);
+
 function verdict(row) {
-  if (!is_number(row.mcnemar_p)) return DASH;
-  if (row.mcnemar_p >= 0.05) return "no difference shown";
+  const p = p_of(row);
+  if (!is_number(p)) return DASH;
+  if (p >= 0.05) return "no difference shown";
   return difference(row) > 0 ? `${row.a} is better` : `${row.b} is better`;
 }

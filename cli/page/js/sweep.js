@@ -96,7 +96,7 @@ function success_plot(study) {
     error_y: interval_bars(cells), line: { color: SERIES[i % SERIES.length], width: 1.5 },
     marker: { size: 8, symbol: i }, showlegend: all.length > 1,
     customdata: cells.map((cell) => [plot_text(cell.label),
-      range_percent(cell.success_interval_95 || cell.success_interval_binomial_95),
+      range_percent(cell.success_interval_95),
       count(cell.trials)]),
     hovertemplate: "%{customdata[0]}<br>success %{y:.1f} %<br>95 %: %{customdata[1]}"
       + "<br>%{customdata[2]} trials<extra></extra>",
@@ -107,7 +107,7 @@ function success_plot(study) {
 }
 
 function interval_bars(cells) {
-  const ranges = cells.map((cell) => cell.success_interval_95 || cell.success_interval_binomial_95);
+  const ranges = cells.map((cell) => cell.success_interval_95);
   return bars_in_percent(cells.map((cell) => cell.success), ranges, { thickness: 1.5, width: 6 });
 }
 

@@ -27,9 +27,9 @@ enum class Linearise { residual_only, with_jacobian };
 
 /// Behind the normal equations, the refined minimum and the fit of a single board's pose, which
 /// want every row; the Ceres cost and the re-solver run the formulas of
-/// calib/camera/corner_formulas.inc on many views at once (calib/solver/view_kernel.h) and keep their
-/// sums alone. `target_m` holds the board's warp already; `shapes` (calib/board/board_warp.h) asks
-/// for the derivative by it.
+/// calib/camera/corner_formulas.inc on many views at once (calib/solver/view_kernel.h) and keep
+/// their sums alone. `target_m` holds the board's warp already; `shapes` (calib/board/board_warp.h)
+/// asks for the derivative by it.
 void linearise_view(const Camera& camera,
                     const Pose& T_camera_first,
                     const Pose& T_first_board,

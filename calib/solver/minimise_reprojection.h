@@ -14,10 +14,10 @@ namespace vernier::internal {
 ///
 /// over the rig, one pose of the board a frame and, if free, the board's warp, by Ceres (dense
 /// Schur, one analytic block a view). r is the reprojection residual of the board's corners and
-/// the Sampson residual of matched pairs (calib/solver/epipolar_formulas.inc), which have σ of their
-/// own; either may be absent. Returns the state at the minimum; throws Error where Ceres finds
-/// none, as above, and for a camera without views or pairs unless each of its parameters is held or
-/// known by a prior. Whether the views determine the rig is not asked
+/// the Sampson residual of matched pairs (calib/solver/epipolar_formulas.inc), which have σ of
+/// their own; either may be absent. Returns the state at the minimum; throws Error where Ceres
+/// finds none, as above, and for a camera without views or pairs unless each of its parameters is
+/// held or known by a prior. Whether the views determine the rig is not asked
 /// (calib/solver/linearised_cost.h).
 ///
 /// Ceres warns of a linear solver's failure through glog, whatever its options; that is no fault of

@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 #include <tbb/version.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <cstdlib>
 #include <filesystem>

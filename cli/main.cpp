@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <glog/logging.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cli/program/cli11_fwd.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {

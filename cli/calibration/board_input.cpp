@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibration/board_input.h"
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
 #include <span>

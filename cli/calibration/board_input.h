@@ -9,6 +9,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
+#include "cli/program/cli11_fwd.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibrate.h"
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
 #include <string>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibration/convert_formats.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 #include <fstream>

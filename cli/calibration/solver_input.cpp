@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibration/solver_input.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstddef>
 #include <sstream>

@@ -9,6 +9,7 @@
 #include "calib/calibrate.h"
 #include "calib/rig_file.h"
 #include "calib/rig_prior.h"
+#include "cli/program/cli11_fwd.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {

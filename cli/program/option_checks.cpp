@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/program/option_checks.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 

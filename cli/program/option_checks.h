@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <span>
 #include <string>
 
+#include "cli/program/cli11_fwd.h"
 #include "cli/program/namespaces.h"
 
 namespace vernier::cli {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/study.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstddef>
 #include <cstdlib>

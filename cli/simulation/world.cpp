@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/program/cli11_fwd.h"
 #include "stereo/matcher.h"
 
 #include "cli/program/namespaces.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/scene_options.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <tuple>
 

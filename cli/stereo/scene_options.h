@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/program/cli11_fwd.h"
 #include "stereo/evaluation/stereo_scenes.h"
 
 #include "cli/program/namespaces.h"

@@ -41,7 +41,7 @@ Staged::Staged(const std::filesystem::path& named, std::string_view content) : f
   }
   if (std::filesystem::exists(file_, unknown) &&
       !std::filesystem::is_regular_file(file_, unknown)) {
-    throw Error(named.string(), "is there and is no regular file", "name a file");
+    throw Error(named.string(), "exists and is not a regular file", "choose another name");
   }
   temporary_ = file_.string() + "." + std::to_string(::getpid()) + ".tmp";
   std::ofstream out(temporary_, std::ios::binary);
@@ -50,7 +50,8 @@ Staged::Staged(const std::filesystem::path& named, std::string_view content) : f
   if (!out) {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
-    throw Error(file_.string(), "cannot be written", "check that its folder exists and has room");
+    throw Error(file_.string(), "cannot be written",
+                "check that its folder exists and has free space");
   }
 }
 

@@ -48,7 +48,7 @@ NetpbmHead netpbm_head(std::string_view bytes) {
 /// Whether a binary Netpbm file holds as many pixels as its header says.
 std::string netpbm_fault(std::string_view bytes) {
   const NetpbmHead head = netpbm_head(bytes);
-  if (head.end == 0) return "has no Netpbm header that can be read";
+  if (head.end == 0) return "has an invalid Netpbm header";
   const std::size_t pixel = (bytes[1] == '6' ? 3 : 1) * (head.largest > 255 ? 2 : 1);
   const bool whole = head.width <= 1u << 20 && head.height <= 1u << 20 &&
                      bytes.size() >= head.end + 1 + head.width * head.height * pixel;

@@ -83,7 +83,7 @@ class Parser {
     value.kind = PythonLiteral::Kind::dictionary;
     ++at_;
     while (!take('}')) {
-      if (!text_begins()) fail("has a key that is no text in quotes");
+      if (!text_begins()) fail("has a key that is not a quoted string");
       std::string key = quoted();
       if (value.find(key)) fail("has the key '" + key + "' twice");
       if (!take(':')) fail("has no colon after the key '" + key + "'");
@@ -128,7 +128,8 @@ class Parser {
       ++at_;
     }
     value.text = text_.substr(begin, at_ - begin);
-    if (value.text.empty()) fail(std::string("has a \"") + text_[at_] + "\" where a value belongs");
+    if (value.text.empty())
+      fail(std::string("has a \"") + text_[at_] + "\" where a value is expected");
     const char* first = value.text.data() + (value.text[0] == '+');
     const char* last = value.text.data() + value.text.size();
     const auto parsed = std::from_chars(first, last, value.number);

@@ -72,10 +72,10 @@ std::vector<std::string> YamlNode::keys() const {
 }
 
 std::string YamlNode::text() const {
-  if (!node_.IsScalar()) throw Error(place(), "is not a text", "");
+  if (!node_.IsScalar()) throw Error(place(), "is not a string", "");
   const std::string& scalar = node_.Scalar();
   if (std::any_of(scalar.begin(), scalar.end(), is_control)) {
-    throw Error(place(), quoted(scalar) + " is not one line of text", "correct it");
+    throw Error(place(), quoted(scalar) + " is not a single-line string", "correct it");
   }
   return scalar;
 }

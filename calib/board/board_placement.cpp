@@ -35,7 +35,7 @@ struct Target {
     middle_m = 0.5 * (low + high);
     extent_m = high - low;
     if (!(extent_m[0] > 0 && extent_m[1] > 0)) {
-      throw Error("board", "its corners lie on a line", "give a board of two rows and columns");
+      throw Error("board", "its corners are collinear", "give a board of two rows and columns");
     }
   }
 };
@@ -154,9 +154,8 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
     }
   }
   if (boards.empty()) {
-    throw Error("board", "nowhere do all cameras see it whole",
-                "give a larger board, which is held farther away, or let one camera see a part of "
-                "it (--partly)");
+    throw Error("board", "no placement shows it whole in all cameras",
+                "use a larger board farther away, or let one camera see a part of it (--partly)");
   }
   return boards;
 }

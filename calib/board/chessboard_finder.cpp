@@ -209,12 +209,11 @@ std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetectio
       result.goes_on = true;
       return reason + "; " + bigger(board) + ": " + seen + " are seen";
     }
-    reason += "; only " + seen + " of its corners can be followed";
+    reason += "; only " + seen + " of its corners were found";
     // A few corners may be of something else; those of a board larger than 3x4 are not.
     if (grid->columns * grid->rows > std::max(12, board.columns * board.rows / 4)) {
-      reason += cut_by_border(grey, *grid)
-                    ? ", the image's border cuts the board off"
-                    : ", something covers the others, or the board has fewer";
+      reason += cut_by_border(grey, *grid) ? ", the board is cut off by the image's border"
+                                           : ", the others are occluded or the board has fewer";
     }
     const double spacing = smallest_spacing(*grid);
     if (spacing < 10) reason += ", and they are only " + std::to_string(int(spacing)) + " px apart";

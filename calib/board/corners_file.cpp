@@ -87,7 +87,7 @@ class CornerReader {
     const int id = count_[image]++;
     if (id >= grid_.prod()) {
       throw Error(place, fmt::format("{} has more than {} corners", image, grid_.prod()),
-                  fmt::format("the board is said to be a {}", name_of(target_)));
+                  fmt::format("the board was given as a {}", name_of(target_)));
     }
     if (fields[1] == "-" || level_of(fields, place) < 0) return;
     const Eigen::Vector2d pixel_px(parse_real(fields[1], place, "x"),
@@ -110,7 +110,7 @@ class CornerReader {
     number_frames(file);
     std::erase_if(views_, [](const BoardView& view) { return view.ids.size() < 4; });
     if (views_.empty()) {
-      throw Error(file.string(), "no board in it", "give a corners file with data");
+      throw Error(file.string(), "it contains no board", "give a corners file with data");
     }
     return corner_lines::finished({size_px_, target_points(target_), std::move(views_)},
                                   cameras_.size(), file);
@@ -157,7 +157,7 @@ ImageName parse_image_name(const std::filesystem::path& image) {
   const std::string stem = image.stem().string();
   const std::size_t last = stem.find_last_of("0123456789");
   if (last == std::string::npos) {
-    throw Error(image.string(), "no number in its name says which frame it is",
+    throw Error(image.string(), "its name has no frame number",
                 "name images like left01.png, right01.png");
   }
   std::size_t first = last;

@@ -109,7 +109,7 @@ class FlatYaml {
     const std::string key(trimmed(line.substr(0, colon)));
     const std::string value(unquoted(trimmed(line.substr(colon + 1))));
     if (!entries_.insert({key, {value, number}}).second) {
-      throw Error(place(number), key + " is said a second time", "remove one of the lines");
+      throw Error(place(number), key + " appears a second time", "remove one of the lines");
     }
   }
 
@@ -127,7 +127,7 @@ AprilTagGrid april_grid(FlatYaml& yaml) {
   const FlatYaml::Entry offset = yaml.take("codeOffset");
   if (offset.value != "0") {
     throw Error(yaml.place(offset.line), "codeOffset is \"" + offset.value + "\"",
-                "Vernier counts tags from 0: give a board that does");
+                "only codeOffset 0 is supported");
   }
   return grid;
 }
@@ -152,11 +152,11 @@ BoardTarget read_kalibr_target(const std::filesystem::path& file) {
   } else if (type.value == "checkerboard") {
     target = checkerboard(yaml);
   } else if (type.value == "circlegrid") {
-    throw Error(yaml.place(type.line), "a circlegrid is not detected by Vernier",
+    throw Error(yaml.place(type.line), "circlegrid targets are not supported",
                 "use a checkerboard, a ChArUco board or an aprilgrid");
   } else {
     throw Error(yaml.place(type.line), "target_type is \"" + type.value + "\"",
-                "it is aprilgrid or checkerboard");
+                "supported: aprilgrid, checkerboard");
   }
   yaml.expect_no_more();
   check_target(target);

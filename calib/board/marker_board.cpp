@@ -58,7 +58,7 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
     if (!result.rejected_corners.empty())
       result.reason += "; not used: " + rejected_corners_text(result);
   } else if (!span_plane(result.ids, target_m) || !determines_pose(target_m, result.ids)) {
-    result.reason = "all good corners of the " + name + ", or all but one, lie on one line";
+    result.reason = "all good corners of the " + name + ", or all but one, are collinear";
   } else {
     return;
   }
@@ -73,17 +73,17 @@ std::string marker_fault(const cv::Mat& grey,
                          const std::string& name) {
   std::string reason = "no " + name + " found";
   if (seen.repeated > 0) {
-    reason += "; " + std::to_string(seen.repeated) + " markers are there more than once";
+    reason += "; " + std::to_string(seen.repeated) + " markers appear more than once";
   }
   if (seen.foreign > 0) {
-    reason += "; " + std::to_string(seen.foreign) + " markers have numbers that it has not";
+    reason += "; " + std::to_string(seen.foreign) + " markers have ids that are not on this board";
   }
   if (seen.markers.size() == 1) {
     reason += "; only marker " + std::to_string(seen.markers[0].id) + " of " +
               std::to_string(layout.corners_m.size()) + " is seen";
   } else if (seen.markers.empty() && seen.undecoded > 0) {
-    reason += "; " + std::to_string(seen.undecoded) +
-              " outlines of four sides, none with a pattern of " + layout.dictionary;
+    reason += "; " + std::to_string(seen.undecoded) + " quadrilaterals, none with a pattern of " +
+              layout.dictionary;
   }
   const std::string fault = image_fault(grey);
   return fault.empty() ? reason : reason + "; " + fault;
@@ -134,7 +134,8 @@ std::optional<FoundLayout> find_layout(const cv::Mat& grey,
   }
   if (!remedy.empty()) {
     result.reason = std::to_string(seen.markers.size()) +
-                    " markers are seen, but they do not lie as on the " + name + "; " + remedy;
+                    " markers are seen, but their arrangement does not match the " + name + "; " +
+                    remedy;
     return std::nullopt;
   }
   seen.markers = std::move(good);
@@ -156,7 +157,7 @@ Board swapped(Board board) {
 
 template <class Board>
 std::string swap_remedy(const Board& board) {
-  return "they lie as on one of " + std::to_string(board.rows) + "x" +
+  return "they match a board of " + std::to_string(board.rows) + "x" +
          std::to_string(board.columns) + ": swap the columns and rows";
 }
 
@@ -166,9 +167,9 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
     CharucoBoard other = board;
     other.legacy = !board.legacy;
     mistakes.push_back({{layout_of(other)},
-                        board.legacy ? "they lie as OpenCV 4.6 and later draws it: leave out "
-                                       "--legacy"
-                                     : "they lie as OpenCV before 4.6 drew it: give --legacy"});
+                        board.legacy
+                            ? "they match the layout of OpenCV 4.6 and later: leave out --legacy"
+                            : "they match the layout of OpenCV before 4.6: give --legacy"});
   }
   mistakes.push_back({{layout_of(swapped(board))}, swap_remedy(board)});
   return mistakes;
@@ -177,9 +178,9 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
 std::vector<Mistake> mistakes_for(const AprilTagGrid& grid) {
   AprilTagGrid other = grid;
   other.top_row_first = !grid.top_row_first;
-  return {{turned_layouts(other), grid.top_row_first
-                                      ? "they count from the lowest row: leave out --top-row-first"
-                                      : "they count from the upper row: give --top-row-first"},
+  return {{turned_layouts(other),
+           grid.top_row_first ? "they are numbered from the bottom row: leave out --top-row-first"
+                              : "they are numbered from the top row: give --top-row-first"},
           {turned_layouts(swapped(grid)), swap_remedy(grid)}};
 }
 

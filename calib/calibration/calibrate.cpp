@@ -202,7 +202,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   if (models.size() != observations.size_px.size()) {
     throw Error("calibration",
                 fmt::format("{} models for {} cameras", models.size(), observations.size_px.size()),
-                "give one model, or one a camera");
+                "give one model, or one per camera");
   }
   Solution s;
   if (options.check_input) s.diagnosis = check_observations(observations);
@@ -242,7 +242,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
 
 /// Why residuals are larger than any corner noise, as far as that can be found.
 std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
-  std::string words = fmt::format("residuals of {:.2f} px are no corner noise", rms_px);
+  std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
   std::vector<ResidualFinding> findings;
   if (look_for_causes) {
     findings = diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
@@ -292,25 +292,24 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
   const double typical = std::exp(ratio.log().mean());
   if (typical >= 1.3) {
     warnings.push_back(fmt::format(
-        "residuals of one view depend on each other: standard deviations are {:.1f} times those "
+        "residuals within a view are correlated: standard deviations are {:.1f} times those "
         "of the minimum variance bound",
         typical));
   }
   const auto out = summary.outliers.size();
   const auto all = out + static_cast<std::size_t>(s.cost.equations.residuals) / 2;
   if (out > 0) {
-    warnings.push_back(fmt::format("{} of {} corners were left out as outliers{}", out, all,
-                                   100 * out > 2 * all
-                                       ? ": so many are rather a wrong model, a bent board or "
-                                         "blurred images"
-                                       : ""));
+    warnings.push_back(fmt::format(
+        "{} of {} corners were left out as outliers{}", out, all,
+        100 * out > 2 * all ? ": so many suggest a wrong model, a bent board or blurred images"
+                            : ""));
   }
   const auto frames = static_cast<double>(s.state.frames.size());
   if (frames < few_frames && frames > 1) {
     warnings.push_back(
         fmt::format("only {:.0f} views: the standard deviations themselves are uncertain by about "
                     "{:.0f} %, and "
-                    "lean on the shape of the minimum variance bound; take 15 or more",
+                    "rely on the shape of the minimum variance bound; use 15 or more",
                     frames, 100 / std::sqrt(2 * (frames - 1))));
   }
   return warnings;

@@ -87,14 +87,13 @@ void refuse_repeated(const JointEvidence& so_far,
   const auto before = first_matches(so_far.pairs);
   for (const auto& first : first_matches(more.pairs)) {
     if (!before.count(first)) continue;
-    throw Error(name, "it holds image pairs that an input before it holds",
-                "give every batch once, by itself or within a rig file");
+    throw Error(name, "it repeats image pairs of a previous input",
+                "give every batch once, on its own or in a rig file");
   }
   for (const BoardTerm& b : more.boards) {
     for (const BoardTerm& a : so_far.boards) {
       if (shared_views(a.evidence, rig, b.evidence, rig) == 0) continue;
-      throw Error(name, "it holds views of a board that an input before it holds",
-                  "give every view once");
+      throw Error(name, "it repeats board views of a previous input", "give every view once");
     }
   }
 }
@@ -126,10 +125,11 @@ void check_models(const Rig& first, const CombineInput& input) {
   check_same_cameras(first, rig, input.name);
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     if (rig.cameras[c].model.index() == first.cameras[c].model.index()) continue;
-    throw Error(input.name,
-                fmt::format("its {} lens is {}, that of the first input {}", rig.cameras[c].name,
-                            model_name(rig.cameras[c].model), model_name(first.cameras[c].model)),
-                "calibrate with the same model");
+    throw Error(
+        input.name,
+        fmt::format("its {} lens model is {}, in the first input it is {}", rig.cameras[c].name,
+                    model_name(rig.cameras[c].model), model_name(first.cameras[c].model)),
+        "calibrate with the same model");
   }
 }
 
@@ -185,10 +185,10 @@ PriorConsistency agreement_of(const GaussianRigPrior& before,
 void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) {
   for (const GaussianRigPrior& prior : evidence.priors) {
     if (prior.covariance.kind == CovarianceKind::prior) continue;
-    summary.warnings.push_back(fmt::format(
-        "a prior among the inputs is itself a calibration ({}): if what that was made of is "
-        "among them too, it counts twice",
-        name(prior.covariance.kind)));
+    summary.warnings.push_back(
+        fmt::format("a prior among the inputs is itself a calibration ({}): if its data are among "
+                    "the inputs too, they count twice",
+                    name(prior.covariance.kind)));
     return;
   }
 }
@@ -202,7 +202,7 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   if (first_is_prior && !combination.options.held.empty()) {
     std::string names;
     for (const HeldParameter& held : combination.options.held) names += " " + held.name;
-    summary.warnings.push_back("held as known exactly, since " + inputs.front().name +
+    summary.warnings.push_back("fixed, since " + inputs.front().name +
                                " gives them no variance:" + names);
   }
   const PairObservations& pairs = combination.evidence.pairs;
@@ -231,19 +231,19 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
       constexpr double worth_saying = 0.01;
       if (i > 0 && input.agreement.p_value < worth_saying) {
         summary.warnings.push_back(
-            fmt::format("{} hardly agrees with what stands before it (p {:.1g})", input.name,
+            fmt::format("{} is barely consistent with the previous inputs (p {:.1g})", input.name,
                         input.agreement.p_value));
       }
       continue;
     }
     if (input.agreement.dof == 0) {
       summary.trust_warnings.push_back(input.name +
-                                       " was left out: " + input.agreement.description);
+                                       " was excluded: " + input.agreement.description);
       continue;
     }
     summary.trust_warnings.push_back(fmt::format(
-        "{} disagrees with what stands before it (chi² {:.1f} for {}, p {:.1g}) and was left out: "
-        "the rig has changed, or one of them states too little uncertainty",
+        "{} is inconsistent with the previous inputs (chi² {:.1f} for {}, p {:.1g}) and was "
+        "excluded: the rig has changed, or one of them understates its uncertainty",
         input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
   }
 }
@@ -306,7 +306,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   if (inputs.empty()) throw Error("combination", "there is no input", "give rig files or pairs");
   if (!inputs.front().estimate) {
     throw Error(inputs.front().name, "pairs alone do not determine a rig",
-                "put a prior or a board calibration first");
+                "give a prior or a board calibration first");
   }
   const Rig& start = inputs.front().estimate->rig;
   const JointOptions joint = with_held(options.joint, inputs.front());

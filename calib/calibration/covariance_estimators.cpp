@@ -20,7 +20,7 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
   const Eigen::VectorXd& diagonal = equations.held_poses_diagonal;
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
     if (!(diagonal[i] > 0)) {
-      throw Error(names[i], "the observations say nothing about it", "use views that move it");
+      throw Error(names[i], "the observations do not constrain it", "add views that do");
     }
   }
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
@@ -28,7 +28,7 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
   const SymmetricEigen eigen(scaled);
   if (!(eigen.eigenvalues()[0] > 1e-13 * eigen.eigenvalues()[diagonal.size() - 1])) {
     throw Error("calibration",
-                "the views leave a direction free: " +
+                "the views leave a direction undetermined: " +
                     describe_direction(eigen.eigenvectors().col(0), names),
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }

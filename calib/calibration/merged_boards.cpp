@@ -29,7 +29,7 @@ void check_sizes(const BoardObservations& observations, const Rig& rig) {
     same = observations.size_px[c] == rig.cameras[c].size_px;
   }
   if (same) return;
-  throw Error("combination", "views of a board are of other cameras than the rig",
+  throw Error("combination", "its board views are of other cameras than the rig's",
               "combine calibrations of one rig");
 }
 

@@ -251,10 +251,10 @@ std::vector<std::string> overrejected_cameras(const BoardObservations& observati
       if (view.camera == c && !kept.contains(view.frame)) out.push_back(std::to_string(view.frame));
     }
     if (out.size() <= kept.size()) continue;
-    words.push_back(fmt::format(
-        "{} of the {} views of camera {} (\"{}\") fit none of the others, more than may be left "
-        "out as outliers: look at the images of frames {}",
-        out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
+    words.push_back(
+        fmt::format("{} of the {} views of camera {} (\"{}\") do not fit the others, too many to "
+                    "exclude as outliers: inspect the images of frames {}",
+                    out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
   }
   return words;
 }

@@ -143,8 +143,8 @@ void check_rays(const PairObservations& pairs, const Rig& rig, const std::string
       throw Error(
           place.empty() ? fmt::format("pair {}", i + 1) : fmt::format("{}:{}", place, i + 2),
           "the prior's " + rig.cameras[static_cast<std::size_t>(c)].name +
-              " lens has no ray for it (its distortion folds the image there)",
-          "use a prior whose distortion holds to the image's edge");
+              " lens model cannot be inverted there (its distortion folds the image)",
+          "use a prior whose distortion is valid up to the image's edge");
     }
   }
 }
@@ -171,7 +171,7 @@ void check_sides(const PairObservations& pairs,
                   ? "left and right are swapped: the corners lie behind the rig"
               : 2 * exchanged_pairs.size() > judged && right == 0
                   ? fmt::format("left and right are swapped: the corners of {} of {} image pairs "
-                                "lie behind the rig, and of the others it cannot be told",
+                                "lie behind the rig, the others are ambiguous",
                                 exchanged_pairs.size(), judged)
                   : fmt::format("left and right are swapped in image pairs {}: their corners lie "
                                 "behind the rig",
@@ -191,8 +191,8 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
   ObservationDiagnosis diagnosis;
   if (judged > 0 && flat == judged) {
     diagnosis.trust_warnings.emplace_back(
-        "the corners of every image pair lie on one plane, or too far away for parallax: they "
-        "leave more of the rig to the prior; take images of a scene with depth");
+        "the corners of every image pair lie on one plane, or too far away for parallax: more of "
+        "the rig is determined by the prior alone; use images of a scene with depth");
   } else if (2 * flat > judged) {
     diagnosis.warnings.push_back(fmt::format(
         "in {} of {} image pairs all corners lie on one plane, or too far away for parallax", flat,

@@ -160,9 +160,9 @@ class Diagnosis {
     if (!best) return;
     findings_.push_back(
         {share_gone(best->sum_px2),
-         fmt::format("the lens needs another model: with {} the same corners leave {:.2f} px "
-                     "instead of {:.2f} px (now predictions lie {:.2f} px too far {} on the mean "
-                     "near the image's edge); calibrate with --model {}",
+         fmt::format("the lens needs another model: {} fits the same corners to {:.2f} px instead "
+                     "of {:.2f} px (predictions are now {:.2f} px too far {} on average near the "
+                     "image's edge); calibrate with --model {}",
                      best_name, rms_of(best->sum_px2, corners_), rms(),
                      std::abs(outward_at_edge_px()), outward_at_edge_px() > 0 ? "out" : "in",
                      best_name)});
@@ -177,10 +177,10 @@ class Diagnosis {
     const Eigen::Vector2d warp_mm = 1e3 * bent->state.warp_m;
     findings_.push_back(
         {share_gone(bent->sum_px2),
-         fmt::format("the board is not flat: bent by {:.2g} mm across and {:.2g} mm along, it "
-                     "leaves {:.2f} px instead of {:.2f} px; let the shape be estimated or use a "
-                     "stiff board",
-                     warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
+         fmt::format(
+             "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y fits to {:.2f} px "
+             "instead of {:.2f} px; estimate the board's shape or use a stiff board",
+             warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
   }
 
   void look_at_time() {
@@ -219,8 +219,8 @@ class Diagnosis {
       }
       findings_.push_back(
           {std::min(1.0, (together_sum - alone_sum) / sum_px2_),
-           fmt::format("cameras 0 and {} did not see the board at one place in {} of {} frames, "
-                       "each image fitting alone but not both together: {}; hold the board still, "
+           fmt::format("cameras 0 and {} did not see the board at the same pose in {} of {} frames "
+                       "(each image fits alone, but not both together): {}; hold the board still, "
                        "trigger both at once, or leave these frames out",
                        second, apart.size(), pair.pairs().size(), some_of(names))});
     }
@@ -253,8 +253,8 @@ class Diagnosis {
     }
     findings_.push_back(
         {poor_sum / sum_px2_,
-         fmt::format("{} of {} images hold {:.0f} % of the misfit: {}; the others leave {:.2f} px: "
-                     "look at these images, or leave them out",
+         fmt::format("{} of {} images account for {:.0f} % of the squared residuals: {}; the "
+                     "others have {:.2f} px rms: inspect these images, or leave them out",
                      poor.size(), residuals_.size(), 100 * poor_sum / sum_px2_, some_of(names),
                      rms_of(sum_px2_ - poor_sum, corners_ - poor_corners))});
   }
@@ -276,10 +276,9 @@ class Diagnosis {
                    others_px = median_or_zero(std::move(others));
       if (!(own_px > 2.5 * others_px)) continue;
       findings_.push_back(
-          {sum / sum_px2_,
-           fmt::format("camera {} (\"{}\") leaves {:.2f} px, the others {:.2f} px: look at its "
-                       "focus, its images and its lens model",
-                       c, state_.rig.cameras[c].name, own_px, others_px)});
+          {sum / sum_px2_, fmt::format("camera {} (\"{}\") has residuals of {:.2f} px, the others "
+                                       "{:.2f} px: check its focus, its images and its lens model",
+                                       c, state_.rig.cameras[c].name, own_px, others_px)});
     }
   }
 
@@ -287,8 +286,8 @@ class Diagnosis {
     for (const Camera& camera : state_.rig.cameras) {
       if (std::abs(camera.ax() - 1) < 0.05) continue;
       findings_.push_back(
-          {0, fmt::format("camera \"{}\" seems to have pixels {:.0f} % {} than high: where that is "
-                          "not so, the board's squares are not square or its sides are not as said",
+          {0, fmt::format("camera \"{}\" seems to have pixels {:.0f} % {} than high: if not, the "
+                          "board's squares are not square or its given dimensions are wrong",
                           camera.name, 100 * std::abs(1 / camera.ax() - 1),
                           camera.ax() < 1 ? "wider" : "narrower")});
     }
@@ -311,7 +310,7 @@ class Diagnosis {
     }
     if (!whole.empty()) {
       findings_.push_back({0, fmt::format("{} image{} left out as a whole, because no pose of the "
-                                          "board fits the rest: {}; look at {}",
+                                          "board fits the rest: {}; inspect {}",
                                           whole.size(), whole.size() == 1 ? " was" : "s were",
                                           some_of(whole), whole.size() == 1 ? "it" : "them")});
     }

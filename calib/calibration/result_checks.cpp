@@ -56,8 +56,8 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
   return fmt::format(
       "the distortion of camera \"{}\" cannot be inverted in {:.2g} % of its image ({}; from "
       "{:.0f} "
-      "px of its principal point on): pixels there have no ray, and what needs one ends with an "
-      "error; use a model with fewer distortion parameters, or add views at the image's border",
+      "px of its principal point on): pixels there have no ray, and functions that need one fail; "
+      "use a model with fewer distortion parameters, or add views at the image's border",
       camera.name, 100.0 * folded / (columns * rows), fmt::join(regions, ", "), least_px);
 }
 
@@ -86,8 +86,8 @@ std::optional<std::string> ill_conditioning_warning(const Covariance& bound, con
       rig.cameras.begin(), rig.cameras.end(),
       [](const Camera& camera) { return std::holds_alternative<OpenCv8>(camera.model); });
   return fmt::format(
-      "the views hardly determine this model: its parameters' scaled condition is {:.1e}{}, so "
-      "that the standard deviations say too little; {}",
+      "the views hardly determine this model: the scaled condition number of its parameters is "
+      "{:.1e}{}, so the standard deviations are not reliable; {}",
       condition, words.empty() ? "" : " (" + words + ")",
       richest ? "use --model opencv5"
               : "use a model with fewer parameters, or add tilted views that fill the image");

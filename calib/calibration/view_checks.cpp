@@ -129,17 +129,18 @@ class PairCheck {
       if (2 * count < pairs || count <= agreeing) continue;
       throw Error(
           cameras(),
-          fmt::format("their images are paired wrongly: {} of {} frames agree on no pose between "
-                      "the cameras, but {} of {} do when camera {}'s images are taken {} frame{} "
-                      "{}",
-                      n - agreeing, n, count, pairs, second_, std::abs(shift),
-                      std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
-          "number the images so that those taken at once have one number");
+          fmt::format(
+              "their images are paired wrongly: {} of {} frames do not agree on the pose between "
+              "the cameras, but {} of {} do when camera {}'s images are taken {} frame{} "
+              "{}",
+              n - agreeing, n, count, pairs, second_, std::abs(shift),
+              std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
+          "number the images so that simultaneous ones have the same number");
     }
     if (2 * as_is.gross <= n) return;  // a rough start may be the reason
     const std::string fault = fmt::format(
         "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
-        "or not of one frame, or the cameras moved against each other",
+        "or are paired wrongly, or the cameras moved relative to each other",
         agreeing, n);
     const std::string cure = "check the pairing; hold the board still or trigger both at once";
     if (n >= 4) throw Error(cameras(), fault, cure);
@@ -163,8 +164,8 @@ class PairCheck {
       const ViewPair& pair = consensus_.pairs()[i];
       diagnosis.trust_warnings.push_back(fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
-          "not simultaneous or the corners of one are numbered from another place; leave the frame "
-          "out",
+          "not simultaneous or the corners of one are numbered from another corner of the board; "
+          "leave the frame out",
           image_place(pair.second, second_), pair.alone_px, together));
     }
     if (!turned.empty()) throw_turned(turned, as_is.fits);
@@ -243,14 +244,13 @@ void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   }
   if (centre.norm() < 1e-3 * distance) {
     diagnosis.trust_warnings.push_back(
-        fmt::format("both cameras stand at one place ({:.2g} m apart, the board at {:.2g} m): the "
-                    "images may be of one camera",
+        fmt::format("both cameras are at the same position ({:.2g} m apart, the board at {:.2g} "
+                    "m): the images may be from one camera",
                     centre.norm(), distance));
   } else if (centre.x() < 0 && -centre.x() > centre.tail<2>().cwiseAbs().maxCoeff()) {
     diagnosis.trust_warnings.push_back(
-        fmt::format("camera 1 (\"{}\") stands {:.3g} m to the left of camera 0 (\"{}\"): the "
-                    "cameras seem to be exchanged, and disparities of such a pair are negative; "
-                    "give left and right the other way round",
+        fmt::format("camera 1 (\"{}\") is {:.3g} m to the left of camera 0 (\"{}\"): the cameras "
+                    "seem to be exchanged, which makes disparities negative; swap left and right",
                     start.rig.cameras[1].name, -centre.x(), start.rig.cameras[0].name));
   }
 }

@@ -14,8 +14,8 @@ namespace {
 template <std::size_t I = 0>
 CameraModel find_model(std::string_view name) {
   if constexpr (I == std::variant_size_v<CameraModel>) {
-    throw Error("camera model \"" + std::string(name) + "\"", "there is no such model",
-                "use radial1, pinhole, opencv4, opencv5, opencv8 or fisheye4");
+    throw Error("camera model \"" + std::string(name) + "\"", "unknown model",
+                "supported: radial1, pinhole, opencv4, opencv5, opencv8, fisheye4");
   } else {
     using Model = std::variant_alternative_t<I, CameraModel>;
     if (Model::name == name) return Model{};

@@ -37,7 +37,7 @@ void check_value(const HeldParameter& held) {
   if (!held.value) return;
   const bool positive = ends_with(held.name, ".f_px") || ends_with(held.name, ".ax");
   if (!std::isfinite(*held.value) || (positive && !(*held.value > 0))) {
-    throw Error("held parameter " + held.name, fmt::format("{} is no value for it", *held.value),
+    throw Error("held parameter " + held.name, fmt::format("invalid value {}", *held.value),
                 positive ? "give a number above 0" : "give a finite number");
   }
 }

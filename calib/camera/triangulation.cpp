@@ -25,9 +25,7 @@ void check_other(const Rig& rig, int other) {
   if (other > 0 && other < static_cast<int>(rig.cameras.size())) return;
   throw Error("triangulation",
               "the rig has " + std::to_string(rig.cameras.size()) +
-                  " camera(s), so none to pair "
-                  "with the first as number " +
-                  std::to_string(other),
+                  " camera(s), so the first cannot be paired with number " + std::to_string(other),
               "give a rig of two or more");
 }
 

@@ -63,8 +63,8 @@ CovarianceKind covariance_kind(std::string_view name) {
   for (const auto& [kind, word] : kinds) {
     if (word == name) return kind;
   }
-  throw Error(fmt::format("covariance kind \"{}\"", name), "there is no such kind",
-              "use mvb, clustered, jackknife, prior or combined");
+  throw Error(fmt::format("covariance kind \"{}\"", name), "unknown kind",
+              "supported: mvb, clustered, jackknife, prior, combined");
 }
 
 std::string describe_direction(const Eigen::VectorXd& direction,

@@ -145,7 +145,7 @@ Observability observability(const Rig& rig,
     throw Error("prior",
                 "its covariance is singular along " +
                     describe_direction(prior.eigenvectors().col(0), names),
-                "hold what is known exactly");
+                "fix parameters that are known exactly");
   }
   const Eigen::MatrixXd root = prior.root(), inverse_root = prior.inverse_root();
   const Eigen::MatrixXd ratio = inverse_root * R1 * inverse_root;

@@ -217,7 +217,7 @@ void write_differences(const Rig& b,
   const Eigen::VectorXd after = misses(b, result.T_b_a, points);
   if (after.size() == 0) {
     throw Error("projection difference", "the alignment takes points behind a camera",
-                "look whether the rigs look the same way");
+                "check that the rigs face the same way");
   }
   std::vector<Eigen::Vector2d> all_focus;
   std::vector<std::vector<Eigen::Vector2d>> focus(result.maps.size());
@@ -286,7 +286,7 @@ void check(const ProjectionDifferenceOptions& options) {
     throw Error("grid", "it has no pixels", "give at least one column and one row");
   }
   if (!(options.focus_share > 0)) {
-    throw Error("focus", "its share of the image is not above 0", "give a number in (0, 1]");
+    throw Error("focus", "its fraction of the image is not above 0", "give a number in (0, 1]");
   }
 }
 
@@ -305,7 +305,7 @@ ProjectionDifference projection_difference(const Rig& a,
   if (focus.size() < 6) {
     throw Error("projection difference",
                 "fewer than 6 pixels have a ray in one rig and an image in the other",
-                "give a finer grid, or look whether the rigs look the same way");
+                "give a finer grid, or check that the rigs face the same way");
   }
   const double nearest_m = nearest(options);
   result.T_b_a = align(b, focus, nearest_m);

@@ -144,7 +144,7 @@ void check_covariance(const Rig& rig, const Covariance& covariance, const char* 
   const auto n = static_cast<Eigen::Index>(covariance.names.size());
   if (covariance.names != parameter_names(rig) || covariance.matrix.rows() != n ||
       covariance.matrix.cols() != n) {
-    throw Error(place, "its covariance is of other parameters than the rig's", "");
+    throw Error(place, "its covariance does not match the rig's parameters", "");
   }
   ScaledDecomposition{covariance};  // throws where it is not positive semi-definite
 }
@@ -242,7 +242,7 @@ RigDifference rig_difference(const Rig& a,
       known_names.push_back(p.name);
     } else if (std::abs(p.delta) > 1e-12 * (1 + std::abs(p.a))) {
       result.fixed_at_different_values.push_back(
-          fmt::format("{} is held at {} in one and at {} in the other", p.name, p.a, p.b));
+          fmt::format("{} is fixed at {} in one and at {} in the other", p.name, p.a, p.b));
     }
     result.parameters.push_back(std::move(p));
   }

@@ -56,14 +56,14 @@ Eigen::MatrixXd inverse_of(const Covariance& covariance) {
   for (Eigen::Index i = 0; i < sd.size(); ++i) {
     if (!(sd[i] > 0)) {
       throw Error("prior of " + covariance.names[static_cast<std::size_t>(i)], "its variance is 0",
-                  "hold a parameter that is known exactly");
+                  "fix a parameter that is known exactly");
     }
   }
   if (!(decomposition.scaled_condition() < 1e13)) {
     throw Error("prior",
                 "its covariance is singular: no variance where " +
                     decomposition.directions().back().description,
-                "give that direction a variance, or hold its parameters");
+                "give that direction a variance, or fix its parameters");
   }
   const Eigen::MatrixXd R =
       sd.cwiseInverse().asDiagonal() * covariance.matrix * sd.cwiseInverse().asDiagonal();
@@ -114,8 +114,8 @@ GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterP
   covariance.matrix = Eigen::MatrixXd::Zero(n, n);
   for (const ParameterPrior& k : known) {
     if (!(k.sigma > 0) || !std::isfinite(k.sigma)) {
-      throw Error("prior of " + k.name, fmt::format("{} is no standard deviation", k.sigma),
-                  "give a number above 0, or hold the parameter");
+      throw Error("prior of " + k.name, fmt::format("{} is not a standard deviation", k.sigma),
+                  "give a number above 0, or fix the parameter");
     }
     const auto i = static_cast<Eigen::Index>(covariance.names.size());
     covariance.matrix(i, i) = k.sigma * k.sigma;

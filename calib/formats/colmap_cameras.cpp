@@ -50,8 +50,8 @@ const Model& find_model(const std::string& name, const std::string& place) {
   for (const Model& model : models) {
     if (name == model.name) return model;
   }
-  throw Error(place, "Vernier has no camera model like " + name,
-              "known are PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
+  throw Error(place, "unsupported camera model " + name,
+              "supported: PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
               "their simpler forms");
 }
 
@@ -87,8 +87,8 @@ std::string model_line(const Camera& camera) {
 
 const std::string& plain_name(const Camera& camera) {
   if (camera.name.find(' ') != std::string::npos) {
-    throw Error("camera \"" + camera.name + "\"", "COLMAP's names hold no blanks",
-                "name it otherwise");
+    throw Error("camera \"" + camera.name + "\"", "COLMAP's names cannot contain blanks",
+                "rename it");
   }
   return file_stem(camera);
 }
@@ -133,7 +133,7 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
   std::map<int, Camera> cameras;
   for (const Line& line : lines) {
     if (!cameras.emplace(line.whole(0), read_camera(line, options)).second) {
-      throw Error(line.place(), fmt::format("camera {} is there twice", line.whole(0)),
+      throw Error(line.place(), fmt::format("camera {} appears twice", line.whole(0)),
                   "keep one of them");
     }
   }

@@ -179,8 +179,8 @@ std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
     for (std::size_t i = 0; i < cameras.count(); ++i) ids.push_back(cameras.id(i));
     if (cameras.count() > 1)
       notes.push_back(file.string() +
-                      ": its cameras are matched by order with those of cameras.txt: neither "
-                      "parameters nor images.txt tell which is which");
+                      ": its cameras are matched by order with those of cameras.txt, since neither "
+                      "parameters nor images.txt identify them");
   }
   std::vector<PlacedId> placed;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -204,11 +204,12 @@ std::vector<PlacedId> from_images(const std::filesystem::path& file,
   }
   if (placed.size() != cameras.count()) {
     if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
-    throw Error(file.string(),
-                fmt::format("holds {} images of {} cameras, so it does not say where the cameras "
-                            "are on the rig",
-                            placed.size(), cameras.count()),
-                "keep one frame of the rig, or give rigs.txt or rig_config.json");
+    throw Error(
+        file.string(),
+        fmt::format(
+            "holds {} images of {} cameras, so it does not define the cameras' poses on the rig",
+            placed.size(), cameras.count()),
+        "keep one frame of the rig, or give rigs.txt or rig_config.json");
   }
   return placed;
 }
@@ -225,8 +226,8 @@ std::vector<PlacedId> from_beside(const std::filesystem::path& file,
   if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
   throw Error(
       file.string(),
-      fmt::format("holds {} cameras and nothing beside it says where they are", cameras.count()),
-      "put rigs.txt, rig_config.json or images.txt beside it");
+      fmt::format("holds {} cameras, but no file next to it gives their poses", cameras.count()),
+      "put rigs.txt, rig_config.json or images.txt in the same folder");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ int Node::integer() const {
 }
 
 std::string Node::text() const {
-  if (!json_.is_string()) throw Error(place_, "is not a text", "");
+  if (!json_.is_string()) throw Error(place_, "is not a string", "");
   return json_.get<std::string>();
 }
 
@@ -175,8 +175,8 @@ PairObservations parse_pairs(const Node& node) {
                                 ? Eigen::VectorXd::Constant(count, noise.number())
                                 : noise.vector();
     if (y.size() % 4 != 0 || sigma.size() != count) {
-      throw Error(one.place(), "its pixels do not go with its noise",
-                  "give four coordinates and one sigma_px a match");
+      throw Error(one.place(), "its pixels and its noise differ in number",
+                  "give four coordinates and one sigma_px per match");
     }
     for (Eigen::Index i = 0; i < count; ++i) {
       add_pair(pairs, one.at("pair").integer(), y.segment<4>(4 * i), sigma[i]);
@@ -237,7 +237,7 @@ BoardView parse_view(const Node& v, const Rig& rig) {
     throw Error(v.at("ids").place(),
                 "holds " + std::to_string(v.at("ids").size()) + " corners for " +
                     std::to_string(pixels.size()) + " pixels",
-                "give one a pixel");
+                "give one per pixel");
   }
   for (std::size_t k = 0; k < pixels.array().size(); ++k) {
     const Eigen::VectorXd q = pixels.at(k).vector();

@@ -41,13 +41,13 @@ void read_distortion(const YamlNode& root, OpenCvIntrinsics& in) {
     const bool odd = !known.fisheye && n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14;
     if (n < known.least || n > known.most || odd) {
       throw Error(coefficients.place(),
-                  fmt::format("holds {} coefficients, which {} has not", n, known.name),
+                  fmt::format("holds {} coefficients, not a number that {} has", n, known.name),
                   "plumb_bob has 4 or 5, rational_polynomial 8, equidistant 4");
     }
     return;
   }
-  throw Error(model.place(), "Vernier has no distortion model like \"" + model.text() + "\"",
-              "known are plumb_bob, rational_polynomial and equidistant");
+  throw Error(model.place(), "unsupported distortion model \"" + model.text() + "\"",
+              "supported: plumb_bob, rational_polynomial, equidistant");
 }
 
 /// Where the rectified camera is from the common one, in metres of the file: t of P = K' [I | t].
@@ -93,7 +93,7 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
 ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files,
                                  const ImportOptions& options) {
   if (files.size() > 2) {
-    throw Error(files[2].string(), "a camera_info holds no pose, only a pair's rectification",
+    throw Error(files[2].string(), "a camera_info has no poses, only a pair's rectification",
                 "give one file or the two of a pair");
   }
   std::vector<RosCameraInfo> infos;
@@ -108,7 +108,7 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
     const Eigen::Vector3d t = shifts[1] - shifts[0];
     if (t.isZero()) {
       throw Error(files[1].string() + ": projection_matrix",
-                  "has no baseline, so the files do not say where the cameras are",
+                  "has no baseline, so the files do not give the cameras' poses",
                   "give the camera_info of a calibrated pair, the left one first");
     }
     const Eigen::Matrix3d R_right_rectified = infos[1].R_rectified_camera.transpose();

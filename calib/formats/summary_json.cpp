@@ -46,7 +46,7 @@ std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
     throw Error(node.at("held").at(i).place(), "the rig has no parameter \"" + held[i] + "\"",
-                "name it as parameter_names does, after the camera");
+                "use a name from parameter_names");
   }
   return held;
 }

@@ -38,7 +38,7 @@ std::vector<double> coordinates(const std::vector<Eigen::Vector3d>& points, int 
 }  // namespace
 
 BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
-  const Error refused("target", "its points are on no flat, square grid",
+  const Error refused("target", "its points are not on a flat, square grid",
                       "mrcal calibrates from chessboards only; leave mrcal out");
   const double pitch =
       std::min(pitch_along(coordinates(target_m, 0)), pitch_along(coordinates(target_m, 1)));

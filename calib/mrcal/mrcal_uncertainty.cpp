@@ -165,7 +165,7 @@ bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProble
 }
 
 MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertaintyProblem& problem) {
-  const Error broken("mrcal", "its Python's answer is not what was asked for", "leave mrcal out");
+  const Error broken("mrcal", "its Python script gave an unexpected answer", "leave mrcal out");
   try {
     std::ifstream in(reply);
     MrcalUncertaintyAnswer answer = answer_of(Json::parse(in));

@@ -124,9 +124,9 @@ void check_cameras(const BoardObservations& observations,
     if (unknown == own.end()) continue;
     const std::string name = parameter_names(rig)[static_cast<std::size_t>(*unknown)];
     throw Error(fmt::format("camera {} (\"{}\")", c, rig.cameras[c].name),
-                "no view of the board is left of it, and nothing else is known of its " +
+                "it has no view of the board, and no prior gives its " +
                     name.substr(rig.cameras[c].name.size() + 1),
-                "give views of it, or hold or know all of its parameters");
+                "add views of it, or give fixed values or priors for all of its parameters");
   }
 }
 
@@ -181,10 +181,10 @@ class Minimisation {
     if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
                   what_.pairs.size() > 0
-                      ? "look at the matches, the prior and the sides: many wrong matches, a prior "
-                        "of other cameras or swapped images do this"
-                      : "look at the corners: a mirrored or turned board, or swapped cameras, do "
-                        "this");
+                      ? "check the matches, the prior, and left and right: many wrong matches, a "
+                        "prior of other cameras or swapped images can cause this"
+                      : "check the corners: a mirrored or rotated board, or swapped cameras, can "
+                        "cause this");
     }
     BoardState state = start_;
     buffer_.write_to(state);

@@ -147,7 +147,7 @@ ReducedNormalEquations without_warp(const ReducedNormalEquations& equations) {
   const auto p = equations.information.rows() - 2;
   const Eigen::LLT<Eigen::Matrix2d> W(equations.information.bottomRightCorner<2, 2>());
   if (W.info() != Eigen::Success) {
-    throw Error("board warp", "the views say nothing about it", "leave it out");
+    throw Error("board warp", "the views do not constrain it", "do not estimate it");
   }
   Eigen::MatrixXd M(p + 2, p);  // a = M z = [I; -W⁻¹ X] z, with W the warp's block of S
   M.topRows(p).setIdentity();

@@ -230,7 +230,7 @@ Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
   const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
   if (!factor.is_positive_definite() || !(factor.rcond() > min_rcond)) {
-    throw Error("calibration", "the views leave a direction free",
+    throw Error("calibration", "the views leave a direction undetermined",
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }
   const Eigen::MatrixXd half =

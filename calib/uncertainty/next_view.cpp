@@ -110,12 +110,13 @@ ViewAdvice advise_views(const Eigen::MatrixXd& factor,
                         const std::vector<CandidateView>& candidates,
                         const TargetQuantity& wanted,
                         const ViewAdviceOptions& options) {
-  if (candidates.empty()) throw Error("advice", "there is no view to choose from", "");
+  if (candidates.empty()) throw Error("advice", "there is no candidate view", "");
   Eigen::MatrixXd F = factor;
   double before = sd_of(wanted, F);
   if (!(before > 0)) {
-    throw Error(wanted.name, "it has no error to reduce: what it depends on is held",
-                "choose another error, or calibrate with it free");
+    throw Error(wanted.name,
+                "its standard deviation is already 0: the parameters it depends on are fixed",
+                "choose another quantity, or calibrate with them free");
   }
   ViewAdvice advice;
   const int steps = std::max(options.views, options.more);

@@ -147,7 +147,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
   for (const PixelPair& pair : pairs) {
     const auto x = triangulate_point(sampler.mean(), pair, other);
     if (!x) {
-      throw Error("sampled propagation", "a pixel pair has no point under the rig itself",
+      throw Error("sampled propagation", "a pixel pair cannot be triangulated with the rig itself",
                   "give pixels whose rays meet in front of the rig");
     }
     told.push_back(*x);

@@ -119,7 +119,7 @@ Eigen::MatrixXd rectification_gradient(const Rig& rig, double at_m) {
     matches.emplace_back(project(rig.cameras[0], x), right);
   }
   if (matches.empty()) {
-    throw Error("rectification", fmt::format("the images share nothing at {} m", at_m),
+    throw Error("rectification", fmt::format("the images do not overlap at {} m", at_m),
                 "choose a greater distance");
   }
   const double f = 0.5 * (rig.cameras[0].f_px() + rig.cameras[1].f_px());
@@ -147,9 +147,10 @@ TargetQuantity parameter_error(const Rig& rig, const std::string& name) {
   const std::vector<std::string> names = parameter_names(rig);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw Error("\"" + name + "\"", "there is no such error to reduce",
-                fmt::format("use depth, projection, rectification, baseline or a parameter: {}",
-                            fmt::join(names, " ")));
+    throw Error(
+        "\"" + name + "\"", "unknown quantity",
+        fmt::format("supported: depth, projection, rectification, baseline or a parameter: {}",
+                    fmt::join(names, " ")));
   }
   const auto n = static_cast<Eigen::Index>(names.size());
   return {name, unit_of(name), Eigen::RowVectorXd::Unit(n, found - names.begin())};

@@ -222,7 +222,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
     if (progress) progress(split + 1, options.splits);
   }
   if (result.boards == 0) {
-    throw Error("boards left out", "no split could be calibrated and judged",
+    throw Error("boards left out", "no split could be calibrated and evaluated",
                 "give more views, or a model with fewer parameters");
   }
   result.edges = edges.coverage();

@@ -197,8 +197,8 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   }
   if (!best) return {};
   std::string text = fmt::format(
-      "residuals are structured: {} predicts views left out at {:.3f} px where {} has {:.3f} px "
-      "({} of {} views better)",
+      "residuals are structured: {} predicts held-out views to {:.3f} px, {} to {:.3f} px (better "
+      "in {} of {} views)",
       best->name, best->held_out_rms_px, comparison.in_use.name, comparison.in_use.held_out_rms_px,
       best->better_views, comparison.frames);
   if (best->largest_move_sigmas > clear_move_sigmas) {
@@ -248,11 +248,11 @@ ModelComparison compare_models(const RigEstimate& estimate,
   const auto models = candidates(estimate.rig);
   if (models.empty()) {
     comparison.not_compared =
-        "there is none richer than " + name_of(models_of(estimate.rig)) + " here";
+        "no richer model than " + name_of(models_of(estimate.rig)) + " is available";
     return comparison;
   }
   if (evidence.frames.size() < min_frames_to_compare) {
-    comparison.not_compared = fmt::format("{} frames are too few, it takes {}",
+    comparison.not_compared = fmt::format("{} frames are too few, at least {} are needed",
                                           evidence.frames.size(), min_frames_to_compare);
     return comparison;
   }

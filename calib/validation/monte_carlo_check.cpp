@@ -179,8 +179,8 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                                   const MonteCarloOptions& options) {
   const int p = parameter_count(state.rig);
   if (covariance.rows() != p || covariance.cols() != p) {
-    throw Error("covariance", "it has another size than the rig has parameters",
-                "give it in full, with zeros for held parameters");
+    throw Error("covariance", "its size does not match the number of the rig's parameters",
+                "give it in full, with zeros for fixed parameters");
   }
   const ScaledRoot root(covariance);
   const Copies copies(observations, state, problem, options.seed);
@@ -198,7 +198,7 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
   check.failed = options.trials - check.trials;
   if (check.trials < 2 * root.white.rows() || root.white.rows() == 0) {
     throw Error("Monte-Carlo check",
-                std::to_string(check.trials) + " copies were solved, too few to judge " +
+                std::to_string(check.trials) + " copies were solved, too few for " +
                     std::to_string(root.white.rows()) + " parameters",
                 "ask for more trials");
   }

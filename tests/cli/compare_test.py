@@ -188,7 +188,7 @@ class Advise(Rigs):
                        of='use depth, projection, rectification, baseline or a parameter')
         self.complains('advise', 'nominal', '--board', '9x6', of='give both --board and --square-m')
         self.complains('advise', 'nominal', '--board', '9x1', '--square-m', '0.04',
-                       of='its corners lie on a line')
+                       of='its corners are collinear')
         self.complains('advise', 'nominal', '--views', '0', of='--views')
         for at in ('0', '-1', 'nan', 'inf'):
             self.complains('advise', 'nominal', '--at-m', at, of='')

@@ -618,7 +618,7 @@ class BadInput(Case):
 
     def test_links_are_followed_and_pipes_refused(self):
         os.mkfifo(self.folder / 'pipe')
-        self.complains('world', 'make', '-o', self.folder / 'pipe', of='no regular file')
+        self.complains('world', 'make', '-o', self.folder / 'pipe', of='not a regular file')
         (self.folder / 'link').symlink_to(self.folder / 'target')
         self.works('world', 'make', '-o', self.folder / 'link')
         self.assertTrue((self.folder / 'link').is_symlink())

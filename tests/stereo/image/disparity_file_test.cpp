@@ -170,7 +170,7 @@ TEST_F(DisparityFile, RefusesBadNumpyArrays) {
   for (const std::size_t length : {6, 9, 10, 30}) {
     expect_complaint(good.substr(0, length), "cut off in its NumPy header");
   }
-  expect_complaint(npy("<f4", data, "(2, 3)", "True"), "Fortran order");
+  expect_complaint(npy("<f4", data, "(2, 3)", "True"), "Fortran (column-major) order");
   expect_complaint(npy("<f4", data, "(6,)"), "has 1 dimensions, not 2");
   expect_complaint(npy("<f4", data, "(2, 3, 1)"), "has 3 dimensions, not 2");
   expect_complaint(npy("<f4", "", "(0, 3)"), "a dimension of 0");

@@ -16,7 +16,7 @@ namespace vernier::internal {
 
 namespace {
 
-/// A file written beside its place; removed again unless it has been put there.
+/// A temporary file that replaces its target on commit; removed if it is not committed.
 class Staged {
  public:
   Staged(const std::filesystem::path& named, std::string_view content);
@@ -33,8 +33,8 @@ class Staged {
 };
 
 Staged::Staged(const std::filesystem::path& named, std::string_view content) : file_(named) {
-  // A rename would replace a link by a file, and a device or pipe too: links are followed, what is
-  // no file is refused.
+  // rename() would replace a link, a device or a pipe by a regular file: follow links and refuse
+  // anything that is not a regular file.
   std::error_code unknown;
   for (int links = 0; links < 40 && std::filesystem::is_symlink(file_, unknown); ++links) {
     file_ = file_.parent_path() / std::filesystem::read_symlink(file_, unknown);

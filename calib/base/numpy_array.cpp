@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view magic{"\x93NUMPY", 6};
 constexpr double max_side = 1 << 20;
 
-/// The head of a .npy file and where its data begin.
+/// The header of a .npy file and the offset of its data.
 struct Head {
   std::string type;
   bool column_major = false;
@@ -89,7 +89,7 @@ std::vector<double> decode(std::string_view data, std::size_t count, bool big_en
 
 using Decode = std::vector<double> (*)(std::string_view, std::size_t, bool);
 
-/// How numbers of a kind (f, i, u) and size in bytes are read; none for others.
+/// The decoder for numbers of a kind (f, i, u) and size in bytes; null if unsupported.
 Decode decoder(std::string_view type) {
   if (type == "f4") return decode<float>;
   if (type == "f8") return decode<double>;

@@ -27,7 +27,7 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Starts a program with its standard input empty and its output in files. Returns errno.
+/// Starts a program with empty standard input and its output redirected to files. Returns errno.
 int start(const std::vector<std::string>& words,
           const std::string& output,
           const std::string& error_output,

@@ -29,7 +29,7 @@ class Parser {
 
   void advance() { line_ += text_[at_++] == '\n'; }
 
-  /// Blanks and comments.
+  /// Skips blanks and comments.
   void skip() {
     while (at_ < text_.size()) {
       if (text_[at_] == '#') {
@@ -101,7 +101,7 @@ class Parser {
     }
   }
 
-  /// One text; Python joins those that follow each other.
+  /// One string. Adjacent strings are joined, as in Python.
   std::string quoted() {
     std::string joined;
     while (next(), text_begins()) {
@@ -119,7 +119,7 @@ class Parser {
     return joined;
   }
 
-  /// A number or a word.
+  /// A number or a bare word.
   void bare(PythonLiteral& value) {
     const std::size_t begin = at_;
     while (at_ < text_.size() &&

@@ -12,7 +12,7 @@
 namespace vernier::internal {
 namespace {
 
-/// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
+/// Levenshtein distance: insertions, deletions and replacements between two words.
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
   for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;

@@ -31,14 +31,14 @@ BoardView view_of(const BoardDetection& found) {
   BoardView view;
   view.frame = found.frame;
   view.camera = found.camera;
-  view.image = found.image.string();  // with its folder, which may be what tells the cameras apart
+  view.image = found.image.string();  // with its folder, which may identify the camera
   view.ids = found.ids;
   view.pixels_px = found.corners_px;
   return view;
 }
 
-/// The images' numbers. Throws Error where a camera has no frame number in common with the cameras
-/// before it, or two images of one.
+/// The frame numbers of the images. Throws Error if a camera shares no frame number with the
+/// cameras before it, or has a number twice.
 std::vector<std::int64_t> frame_numbers(
     const std::vector<std::vector<std::filesystem::path>>& images) {
   std::set<std::int64_t> before;
@@ -67,8 +67,8 @@ std::vector<std::int64_t> frame_numbers(
   return {before.begin(), before.end()};
 }
 
-/// The board of an image. One that cannot be read is refused with the reason, and its Error is kept
-/// where it is the first.
+/// The board of an image. An image that cannot be read is recorded as refused, with the reason; the
+/// first such Error is kept.
 BoardDetection detect_or_refuse(const std::filesystem::path& image,
                                 const BoardTarget& target,
                                 std::optional<Error>& first_fault) {

@@ -61,7 +61,7 @@ std::vector<int> frames_of(const BoardObservations& observations) {
 
 bool determines_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids) {
   if (ids.size() < 4) return false;
-  // A line that all but one are on holds two of the first three, whichever that one is.
+  // If all but one corner are on a line, it contains two of the first three.
   for (int without = 0; without < 3; ++without) {
     const Eigen::Vector3d& a = target_m[ids[(without + 1) % 3]];
     const Eigen::Vector3d along = target_m[ids[(without + 2) % 3]] - a;

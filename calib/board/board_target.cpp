@@ -17,7 +17,7 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
-/// Beyond it a number is a slip of the pen, and its square too many corners.
+/// A larger number is a typing error, and its square too many corners.
 constexpr int max_along_a_side = 1000;
 
 void require_few(int columns, int rows, const std::string& place) {

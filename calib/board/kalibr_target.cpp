@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// What stands before a comment: a # at the beginning or after a blank, outside quotes.
+/// The part of a line before a comment: a # at the beginning or after a blank, outside quotes.
 std::string_view without_comment(std::string_view line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -44,7 +44,7 @@ std::string_view unquoted(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-/// The keys of a flat YAML file, each taken once.
+/// The keys of a flat YAML file. Each key can be taken once.
 class FlatYaml {
  public:
   struct Entry {

@@ -27,15 +27,15 @@ namespace {
 
 constexpr std::size_t min_corners = 6;
 
-/// The largest window that holds nothing but the corner: `free_m` is the distance to the next edge
-/// of the pattern.
+/// The largest window that contains nothing but the corner: `free_m` is the distance to the next
+/// edge of the pattern.
 int window_at(const Eigen::Matrix3d& H, const Eigen::Vector2d& corner_m, double free_m) {
   const Eigen::Vector2d stretch =
       Eigen::JacobiSVD<Eigen::Matrix2d>(map_derivative(H, corner_m)).singularValues();
   return std::clamp(static_cast<int>(std::floor(0.9 * free_m * stretch[1] - 0.5)), 2, 11);
 }
 
-/// Whether the corners span the plane: no line within a tenth of their extent holds them all.
+/// Whether the corners span the plane: not all within a tenth of their extent from a line.
 bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>& target_m) {
   Eigen::MatrixX2d x(ids.size(), 2);
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -47,7 +47,7 @@ bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>&
   return s[1] > 0.01 * s[0];  // of squares
 }
 
-/// Takes all corners back where they are too few to use.
+/// Rejects all corners if there are too few.
 void judge(const std::vector<Eigen::Vector3d>& target_m,
            const std::string& name,
            BoardDetection& result) {
@@ -66,7 +66,7 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
   result.corners_px.clear();
 }
 
-/// Why there are no markers to work with, by what was seen instead.
+/// The reason why no usable markers were found.
 std::string marker_fault(const cv::Mat& grey,
                          const DetectedMarkers& seen,
                          const MarkerLayout& layout,
@@ -89,13 +89,13 @@ std::string marker_fault(const cv::Mat& grey,
   return fault.empty() ? reason : reason + "; " + fault;
 }
 
-/// A board that people mistake for another, and what to say then.
+/// A board commonly mistaken for another, and the remedy.
 struct Mistake {
   std::vector<MarkerLayout> layouts;
   std::string remedy;
 };
 
-/// The layout that most markers agree with, and those that do.
+/// The layout that most markers are consistent with, and these markers.
 std::pair<std::size_t, std::vector<DetectedMarker>> best_layout(
     const std::vector<DetectedMarker>& markers, const std::vector<MarkerLayout>& layouts) {
   std::pair<std::size_t, std::vector<DetectedMarker>> best;
@@ -111,8 +111,8 @@ struct FoundLayout {
   DetectedMarkers seen;
 };
 
-/// The markers that lie as one of the layouts has them; nothing, and the reason in `result`, where
-/// there are no two such.
+/// The markers that match one of the layouts; std::nullopt, with the reason in `result`, for fewer
+/// than two.
 std::optional<FoundLayout> find_layout(const cv::Mat& grey,
                                        const std::vector<MarkerLayout>& layouts,
                                        const std::vector<Mistake>& mistakes,
@@ -142,7 +142,7 @@ std::optional<FoundLayout> find_layout(const cv::Mat& grey,
   return FoundLayout{layouts[index], std::move(seen)};
 }
 
-/// A tag may stand on the sheet at any quarter turn: its neighbours tell which.
+/// A tag may be printed at any quarter turn, which is determined from its neighbours.
 std::vector<MarkerLayout> turned_layouts(const AprilTagGrid& grid) {
   std::vector<MarkerLayout> layouts;
   for (int turns = 0; turns < 4; ++turns) layouts.push_back(layout_of(grid, turns));
@@ -213,7 +213,7 @@ void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDe
     const auto near = [&](std::size_t count, double squares) {
       return homography_near(markers, found->layout, points[id], count, squares * board.square_m);
     };
-    if (!near(1, 0.8)) continue;  // neither marker beside it is seen
+    if (!near(1, 0.8)) continue;  // neither adjacent marker was detected
     const auto H = near(4, 1.7);
     if (!H) continue;
     guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});

@@ -62,7 +62,7 @@ CornerRow parse_row(std::string_view line, const std::string& place) {
   return r;
 }
 
-/// What a file of observations has said so far.
+/// Collects the lines of a file of observations.
 class ObservationRows {
  public:
   explicit ObservationRows(const std::vector<Eigen::Vector2i>& size_px) : size_px_(size_px) {}
@@ -137,7 +137,7 @@ BoardObservations read_observations(const std::filesystem::path& file,
 }
 
 void write_observations(const BoardObservations& observations, const std::filesystem::path& file) {
-  // A target without a grid of its own gets one row.
+  // A target without a grid of its own is written as one row.
   const auto& target = observations.target_m;
   std::vector<double> xs, ys;
   for (const auto& point : target) {

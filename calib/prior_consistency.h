@@ -8,14 +8,14 @@
 
 namespace vernier {
 
-/// Whether new data and what was known before them can be of one rig.
+/// Consistency test of new data with a prior.
 struct PriorConsistency {
-  double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
-  int dof = 0;          ///< directions that the data improved
-  int clusters = 0;     ///< that the scatter was estimated from; 0: it is known
-  double p_value = 1;   ///< of a χ² this large or larger, by the law below
-  double in_sigma = 0;  ///< along the direction that disagrees most …
-  std::string description;  ///< … which is this
+  double chi2 = 0;          ///< over the observed directions
+  int dof = 0;              ///< number of directions that the data improved
+  int clusters = 0;         ///< number used to estimate the scatter; 0: it is known
+  double p_value = 1;       ///< of a χ² this large or larger, by the law below
+  double in_sigma = 0;      ///< along the direction of largest disagreement …
+  std::string description;  ///< … described here
 };
 
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound

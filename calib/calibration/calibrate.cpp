@@ -44,10 +44,10 @@ using namespace internal;
 
 namespace {
 
-constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
-constexpr int few_frames = 8;                  // below, their scatter says little
+constexpr double largest_corner_noise_px = 1;  // larger residuals indicate a fault
+constexpr int few_frames = 8;                  // fewer give an uncertain scatter
 
-/// A minimum of the cost and what surrounds it.
+/// A minimum of the cost and related quantities.
 struct Solution {
   BoardObservations observations;  // without the outliers
   BoardState state;
@@ -55,8 +55,8 @@ struct Solution {
   ReprojectionProblem problem;
   ObservationDiagnosis diagnosis;  // of the observations, before they were solved
   LinearisedCost cost;             // at the state
-  Eigen::MatrixXd bound;           // of what is free
-  double data_parameters = 0;      // how many of that the corners determine, tr(C S_data)
+  Eigen::MatrixXd bound;           // of the free parameters
+  double data_parameters = 0;      // number determined by the corners, tr(C S_data)
 };
 
 /// The normal equations and the bound at the solution's state.
@@ -92,7 +92,7 @@ double estimated_sigma(const Solution& s) {
   return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / dof);
 }
 
-/// The rig with opencv5 in place of poorer models, or nothing where there is none.
+/// The rig with opencv5 in place of simpler models; std::nullopt if there is none to replace.
 std::optional<Rig> with_richer_lenses(const Rig& rig) {
   std::vector<CameraModel> rich = models_of(rig);
   bool richer = false;
@@ -113,7 +113,7 @@ std::vector<BoardView> views_in_frame(const BoardObservations& observations, int
   return views;
 }
 
-/// Puts the boards where `other` has them, at the frames that both have.
+/// Copies the board poses of `other` at the frames that both have.
 void replace_poses(BoardState& state, const BoardState& other) {
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
     const auto at = std::lower_bound(other.frames.begin(), other.frames.end(), state.frames[f]);
@@ -122,9 +122,9 @@ void replace_poses(BoardState& state, const BoardState& other) {
   }
 }
 
-/// What a lens model rich enough takes for outliers, once it is fitted to what `fit` left in, and
-/// where its boards stand; frames that are out whole get a pose by that lens first, from `robust`.
-/// Nothing where there is no such lens or the views do not determine it.
+/// The outliers under a sufficiently rich lens model, fitted to the corners that `fit` kept, and
+/// its board poses; frames excluded as a whole first get a pose from `robust`. std::nullopt if
+/// there is no such model or the views do not determine it.
 std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
                                                  const BoardState& robust,
                                                  const RobustFit& fit,
@@ -155,9 +155,9 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
   return outliers_at(s.observations, whole);
 }
 
-/// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
-/// cannot fit is not taken for wrong corners. The wanted one's own robust minimum is where least
-/// squares begins then: without outliers, plain least squares may be in another valley.
+/// Excludes outliers. Corners are assessed with a rich lens model, so that the misfit of a simple
+/// model is not mistaken for wrong corners. Least squares then starts at the robust minimum of the
+/// requested model, since without outliers plain least squares may reach another local minimum.
 void reject_outliers(Solution& s, const CalibrationOptions& options) {
   const std::optional<BoardState> robust = robust_minimum(s.observations, s.state, s.problem);
   if (!robust) return;
@@ -179,12 +179,12 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   s.outliers = std::move(fit.outliers);
 }
 
-/// From the start to the minimum, without outliers.
+/// From the start to the minimum, outliers excluded.
 void descend(Solution& s, const CalibrationOptions& options) {
   try {
     s.state = minimise_reprojection(s.observations, s.state, s.problem);
   } catch (const Error&) {
-    // Steps of Gauss and Newton creep where residuals are large, as those of wrong corners are.
+    // Gauss–Newton converges slowly when residuals are large, as with wrong corners.
     if (!options.reject_outliers) throw;
     ReprojectionProblem hasty = s.problem;
     hasty.must_converge = false;
@@ -217,7 +217,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   try {
     descend(s, options);
     linearise(s);
-  } catch (const Error& error) {  // what was found before may be the reason
+  } catch (const Error& error) {  // the earlier findings may be the reason
     if (s.diagnosis.trust_warnings.empty()) throw;
     throw Error(error.what(), fmt::format("{}", fmt::join(s.diagnosis.trust_warnings, "; ")), "");
   }
@@ -240,7 +240,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   return s;
 }
 
-/// Why residuals are larger than any corner noise, as far as that can be found.
+/// The warning for residuals larger than corner noise, with their likely causes.
 std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
   std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
   std::vector<ResidualFinding> findings;
@@ -283,7 +283,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   return summary;
 }
 
-/// What the result says against itself.
+/// Warnings about the result.
 std::vector<std::string> warnings_of(const CalibrationSummary& summary,
                                      const Eigen::MatrixXd& honest,
                                      const Solution& s) {
@@ -315,7 +315,7 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
   return warnings;
 }
 
-/// What the result says against itself, more strongly.
+/// Trust warnings about the result.
 void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimate& estimate) {
   std::vector<std::string>& trust_warnings = estimate.calibration->trust_warnings;
   const auto add = [&](const std::optional<std::string>& doubt) {

@@ -48,7 +48,7 @@ std::string kind_of(const CombineInput& input) {
   return "prior";
 }
 
-/// The same knowledge but for the rounding of a file.
+/// Whether the priors are equal up to the rounding of a file.
 bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
   constexpr double rounding = 1e-9;
   if (a.covariance.names != b.covariance.names) return false;
@@ -62,7 +62,7 @@ bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
   }
   const std::vector<std::string> all = parameter_names(a.rig);
   const Eigen::VectorXd x = parameters(a.rig), y = parameters(b.rig);
-  for (const std::string& name : a.covariance.names) {  // the others it says nothing of
+  for (const std::string& name : a.covariance.names) {  // the others are not covered
     const auto i = std::find(all.begin(), all.end(), name) - all.begin();
     if (!(std::abs(x[i] - y[i]) <= rounding * (1e-3 + std::abs(x[i])))) return false;
   }
@@ -79,7 +79,7 @@ std::set<std::array<double, 4>> first_matches(const PairObservations& pairs) {
   return first;
 }
 
-/// Data that stand twice would count twice.
+/// Rejects repeated data, which would count twice.
 void refuse_repeated(const JointEvidence& so_far,
                      const JointEvidence& more,
                      const Rig& rig,
@@ -138,13 +138,13 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
   return gaussian_prior_of(joint.estimate, "combination");
 }
 
-/// Pairs against what was known before them.
+/// Consistency of the pairs with the previous inputs.
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
                                     const JointOptions& options) {
-  // Against a prior so much wider that, wrong, it does not hold the rig away from the pairs; as it
-  // is where they do not determine the rig against so little knowledge.
+  // Compare with a solution under a ten times wider prior, so that a wrong prior does not bias the
+  // rig; with the prior itself if the pairs do not determine the rig under the wide one.
   constexpr double wider = 10;
   GaussianRigPrior loose = before;
   loose.covariance.matrix *= wider * wider;
@@ -181,7 +181,7 @@ PriorConsistency agreement_of(const GaussianRigPrior& before,
   return agreement_of_rigs(before, *input.estimate, input.name);
 }
 
-/// Priors that are themselves calibrations: what they were made of may be among the inputs.
+/// Warns of priors that are themselves calibrations, whose data may be among the inputs too.
 void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) {
   for (const GaussianRigPrior& prior : evidence.priors) {
     if (prior.covariance.kind == CovarianceKind::prior) continue;
@@ -193,8 +193,7 @@ void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) 
   }
 }
 
-/// What the inputs said against themselves, and the pairs of all say of their scene and of what was
-/// left out.
+/// Collects the warnings of the inputs, of the scene of all pairs, and about excluded inputs.
 void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   CalibrationSummary& summary = *combination.joint.estimate.calibration;
   warn_of_priors(combination.evidence, summary);
@@ -248,7 +247,7 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   }
 }
 
-/// Parameters that no input may move: those that the first does not know.
+/// Parameters that no input may change: those without variance in the first.
 JointOptions with_held(JointOptions options, const CombineInput& first) {
   if (!first.estimate) return options;
   for (const HeldParameter& held : held_by(gaussian_prior_of(*first.estimate, first.name))) {
@@ -257,8 +256,7 @@ JointOptions with_held(JointOptions options, const CombineInput& first) {
   return options;
 }
 
-/// Evidence of the inputs, without priors that are another input's calibration: they are among the
-/// inputs themselves.
+/// Evidence of the inputs, without priors that are the calibration of another input.
 std::vector<JointEvidence> evidence_of_all(const std::vector<CombineInput>& inputs) {
   std::vector<GaussianRigPrior> calibrations;
   std::vector<JointEvidence> all;
@@ -324,7 +322,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
     if (before) {
       try {
         combined.agreement = agreement_of(*before, result.evidence, input, evidence, joint);
-      } catch (const Error& error) {  // it tells nothing by itself, so it is not taken in
+      } catch (const Error& error) {  // it cannot be compared, so it is not used
         combined.agreement = {0, 0, 0, 0, 0, error.what()};
       }
       combined.used = options.keep_disagreeing || combined.agreement.p_value >= options.min_p;

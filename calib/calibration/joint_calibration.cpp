@@ -55,7 +55,7 @@ ReducedNormalEquations data_equations(const JointMinimum& joint,
   return sum;
 }
 
-/// The same in the free directions, with the priors.
+/// The same in the free directions, with priors.
 ReducedNormalEquations free_equations(const JointMinimum& joint,
                                       const PairObservations& pairs,
                                       const Loss& loss,
@@ -90,7 +90,7 @@ std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
   return outliers;
 }
 
-/// The prior's χ² of the parameters that are held elsewhere than it has them, and their number.
+/// χ² of the prior over the held parameters whose value differs from its own, and their number.
 std::pair<double, int> of_held(const GaussianRigPrior& prior, const JointMinimum& joint) {
   const std::vector<std::string> all = parameter_names(joint.state.rig);
   const Eigen::VectorXd x = parameters(joint.state.rig), mean = parameters(prior.rig);
@@ -149,7 +149,7 @@ CalibrationSummary summary_of(const JointMinimum& joint,
   return summary;
 }
 
-/// What the result says against itself.
+/// Adds warnings about the result.
 void warn(const JointCalibration& joint,
           std::size_t pairs,
           double fixed_scale,
@@ -225,7 +225,7 @@ JointMinimum start_of(const JointEvidence& evidence,
   return joint;
 }
 
-/// What the pairs brought beyond priors and boards, where these alone determine the rig.
+/// The information added by the pairs, if priors and boards alone determine the rig.
 std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
                                                 const JointEvidence& evidence,
                                                 const Eigen::MatrixXd& free,
@@ -240,7 +240,7 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
   }
 }
 
-/// Clusters of the pairs' scatter (clustered_pairs), 0 where their noise was known.
+/// Number of clusters of the pairs' scatter (clustered_pairs); 0 if their noise was known.
 int clusters_of(const RigEstimate& estimate) {
   if (estimate.covariance->kind == CovarianceKind::mvb) return 0;
   const PairObservations& pairs = estimate.evidence->pairs;
@@ -262,7 +262,7 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   std::vector<Eigen::Index> free, given;
   for (std::size_t i = 0; i < held.size(); ++i) {
     const bool is_known = std::find(known.begin(), known.end(), all[i]) != known.end();
-    if (!held[i] && !is_known) return {};  // data alone say it
+    if (!held[i] && !is_known) return {};  // determined by the data alone
     if (is_known) (held[i] ? given : free).push_back(static_cast<Eigen::Index>(i));
   }
   const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);

@@ -25,8 +25,8 @@ constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps com
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
 
-/// Distance of neighbouring corners in the image: that on the target, times the root of how areas
-/// grow at the centre of the view's corners.
+/// Distance between neighbouring corners in the image: that on the target, times the square root of
+/// the area magnification at the centre of the view's corners.
 double corner_spacing_px(const BoardHomography& view,
                          const std::vector<Eigen::Vector3d>& target_m) {
   double least = std::numeric_limits<double>::infinity();
@@ -52,8 +52,8 @@ void check_grids(const BoardObservations& observations,
   }
 }
 
-/// Whether the corners stand in evenly spaced columns, as a chessboard's. Corners of tags do not;
-/// these are told one by one, so no such view can be mirrored, and their y may point up.
+/// Whether the corners form evenly spaced columns, as on a chessboard. Corners of tags do not; they
+/// are identified individually, so their views cannot be mirrored, and their y may point up.
 bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
   std::vector<double> columns;
   for (const Eigen::Vector3d& X : target_m) columns.push_back(X.x());
@@ -69,7 +69,7 @@ bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
   return most < 1.1 * least;
 }
 
-/// Throws for views mirrored against the others; a doubt where all are.
+/// Throws Error for views mirrored relative to the others; a trust warning if all are.
 void check_mirrored(const BoardObservations& observations,
                     const std::vector<BoardHomography>& homographies,
                     ObservationDiagnosis& diagnosis) {
@@ -141,7 +141,7 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
   }
 }
 
-/// Between the first point and the nearest of the others.
+/// Distance between the first point and the nearest other one.
 double min_side_m(const std::vector<Eigen::Vector3d>& target_m) {
   double least = INFINITY;
   for (std::size_t i = 1; i < target_m.size(); ++i) {
@@ -180,7 +180,7 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
   }
 }
 
-/// Frames that some cameras did not see: counted and said.
+/// Counts frames that some cameras did not see, and warns of them.
 void count_unpaired(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
   const auto cameras = static_cast<int>(observations.size_px.size());
   if (cameras < 2) return;

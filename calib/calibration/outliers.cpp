@@ -47,7 +47,7 @@ std::vector<double> camera_sigmas(const BoardObservations& observations,
   return sigmas;
 }
 
-/// Weights by the length of a residual in robust standard deviations, none below `least`.
+/// Weights by the length of a residual in robust standard deviations, at least `least`.
 PerCorner weights_of(const BoardObservations& observations,
                      const CornerResiduals& residuals,
                      const Loss& loss,
@@ -111,7 +111,7 @@ double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
   return median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
-/// One flag a corner of every view.
+/// One flag per corner of every view.
 std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observations,
                                              const BoardState& state,
                                              double limit) {
@@ -133,8 +133,8 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
   return flags;
 }
 
-/// Whether some view fits three times worse than is usual for its camera: least squares spreads the
-/// misfit of a wrong view over the others, so that no corner of it need look wrong by itself.
+/// Whether some view has an rms three times the usual one of its camera: least squares spreads the
+/// misfit of a wrong view over the others, so none of its corners need be an outlier by itself.
 bool some_view_stands_out(const BoardObservations& observations, const BoardState& state) {
   std::vector<std::vector<double>> rms(observations.size_px.size());  // by camera
   const CornerResiduals residuals = corner_residuals(observations, state);
@@ -156,7 +156,7 @@ bool any(const std::vector<std::vector<bool>>& flags) {
   });
 }
 
-/// The views and frames of `observations` that keep their corners, and what was left out.
+/// The views and frames of `observations` without outliers, and the outliers.
 RobustFit separated(const BoardObservations& observations,
                     const BoardState& state,
                     const std::vector<std::vector<bool>>& out) {

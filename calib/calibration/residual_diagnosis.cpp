@@ -34,7 +34,7 @@
 namespace vernier::internal {
 namespace {
 
-/// A solution and the squares it leaves.
+/// A solution and its sum of squared residuals.
 struct Trial {
   BoardState state;
   double sum_px2 = 0;
@@ -86,7 +86,7 @@ class Diagnosis {
   double share_gone(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
   double rms() const { return rms_of(sum_px2_, corners_); }
 
-  /// The same views solved otherwise; nothing where that fails.
+  /// The same views solved with another problem; std::nullopt if that fails.
   std::optional<Trial> solved(BoardState start, ReprojectionProblem trial) const {
     trial.max_iterations = 60;
     try {
@@ -99,7 +99,7 @@ class Diagnosis {
   }
 
   /// Priors and held values belong to the model they were given for, so only a free problem is
-  /// tried again, and its flags are none of the other model's.
+  /// solved with another model.
   std::optional<Trial> with_model(const CameraModel& model) const {
     const std::vector<CameraModel> models(state_.rig.cameras.size(), model);
     ReprojectionProblem trial = problem_;
@@ -113,7 +113,7 @@ class Diagnosis {
     }
   }
 
-  /// Mean residual along the radius (pixels, prediction beyond the corner positive) over the outer
+  /// Mean residual along the radius (pixels; positive: prediction beyond the corner) over the outer
   /// third of the radii that corners reach.
   double outward_at_edge_px() const {
     std::vector<std::pair<double, double>> radial;  // radius, residual along it

@@ -23,7 +23,8 @@
 namespace vernier::internal {
 namespace {
 
-/// The ninth of the image that a place is in, `x` and `y` from 0 to 1: "top left", "bottom", ….
+/// The ninth of the image that contains a position, `x` and `y` from 0 to 1: "top left", "bottom",
+/// ….
 std::string ninth_of(double x, double y) {
   const std::string row = y < 1.0 / 3 ? "top" : y > 2.0 / 3 ? "bottom" : "";
   const std::string column = x < 1.0 / 3 ? "left" : x > 2.0 / 3 ? "right" : "";

@@ -31,7 +31,7 @@ int distortion_count(const CameraModel& model) {
   return parameter_count(model) - core_parameter_count;
 }
 
-/// The first coefficient from `count` on that is not zero.
+/// The first non-zero coefficient from index `count` on.
 std::optional<std::size_t> first_beyond(const std::vector<double>& coefficients,
                                         std::size_t count) {
   for (std::size_t i = count; i < coefficients.size(); ++i) {

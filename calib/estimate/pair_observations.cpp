@@ -35,7 +35,7 @@ void check_row(const Eigen::Vector4d& y, const Rig& rig, const std::string& plac
   }
 }
 
-/// A match that stands twice in an image pair counts its noise twice.
+/// Rejects repeated matches in an image pair, which would count twice.
 void check_duplicates(const PairObservations& pairs, const std::string& place) {
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -29,7 +29,7 @@ namespace {
 
 using colmap::Line;
 
-/// Where each number of a model goes. Core: fx fy cx cy by index into the parameters.
+/// Layout of a COLMAP model's parameters. Core: fx fy cx cy by index.
 struct Model {
   const char* name;
   int core[4];
@@ -93,7 +93,7 @@ const std::string& plain_name(const Camera& camera) {
   return file_stem(camera);
 }
 
-/// w x y z, w at least 0.
+/// w x y z, with w >= 0.
 std::array<double, 4> quaternion(const Eigen::Matrix3d& R) {
   Eigen::Quaterniond q(R);
   q.normalize();
@@ -114,7 +114,8 @@ std::string rig_config_entry(const Camera& camera, const Pose& T, bool first) {
                                        "\"cam_from_rig_rotation\": [{}],\n        "
                                        "\"cam_from_rig_translation\": [{}, {}, {}]",
                                        fmt::join(quaternion(T.R), ", "), T.t[0], T.t[1], T.t[2]);
-  constexpr auto replace = rig_json::Json::error_handler_t::replace;  // a name may hold any bytes
+  constexpr auto replace =
+      rig_json::Json::error_handler_t::replace;  // a name may contain any bytes
   return fmt::format(
       "      {{\n        \"image_prefix\": {},\n        {},\n        "
       "\"camera_model_name\": \"{}\",\n        \"camera_params\": [{}]\n      }}",

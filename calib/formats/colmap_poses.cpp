@@ -41,7 +41,7 @@ Pose pose(const Line& line, std::size_t at, double unit_m) {
   return pose(v.head<4>(), unit_m * v.tail<3>(), line.place());
 }
 
-/// The cameras of cameras.txt and how to read lengths.
+/// The cameras of cameras.txt and the unit of length.
 struct Cameras {
   const std::vector<Line>& lines;  ///< by ascending CAMERA_ID
   double unit_m;
@@ -106,7 +106,7 @@ PlacedId from_entry(const Node& camera, int id, double unit_m) {
   return placed;
 }
 
-/// Whether a camera has the model and the parameters of an entry, as far as decimals tell.
+/// Whether a camera has the model and the parameters of an entry, up to rounding.
 bool has_parameters(const Line& camera, const Node& entry) {
   constexpr double rounding = 1e-9;
   if (!entry.has("camera_model_name") || !entry.has("camera_params")) return false;
@@ -120,7 +120,7 @@ bool has_parameters(const Line& camera, const Node& entry) {
   return true;
 }
 
-/// The cameras of the images under each prefix, by images.txt where it is there.
+/// The cameras of the images under each prefix, from images.txt if it exists.
 using CamerasOfPrefix = std::map<std::string, std::set<int>>;
 CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const Node& entries) {
   CamerasOfPrefix found;
@@ -135,7 +135,7 @@ CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const N
   return found;
 }
 
-/// The CAMERA_ID of each entry where they say it one by one, no two the same; else nothing.
+/// The CAMERA_ID of each entry if all are identified and distinct; else empty.
 std::vector<int> ids_said(const Node& entries,
                           const Cameras& cameras,
                           const CamerasOfPrefix& of_prefix) {

@@ -22,7 +22,7 @@
 namespace vernier::internal {
 namespace {
 
-/// The part of a topic before the last: left of /stereo/left/image_raw.
+/// The second last component of a topic: left of /stereo/left/image_raw.
 std::string camera_of_topic(const std::string& topic) {
   const std::size_t last = topic.rfind('/');
   if (last == std::string::npos || last == 0) return "";

@@ -19,12 +19,12 @@ namespace vernier::internal {
 /// (Kalibr's wiki, "yaml formats"). The pose of camera n is therefore the product
 /// T_n_first = T_n_(n-1) … T_1_0. Other camera models (omni, eucm, ds) and fov are refused.
 
-/// A camera is named after its rostopic where that gives each one its own (/stereo/left/image_raw
-/// is left), else cam0, cam1 …. T_cam_imu and timeshift_cam_imu are noted and left behind.
+/// A camera is named after its rostopic if the names are distinct (/stereo/left/image_raw gives
+/// left), else cam0, cam1 …. T_cam_imu and timeshift_cam_imu are ignored with a note.
 ImportedRig read_kalibr_camchain(const std::filesystem::path& file,
                                  const ImportOptions& options = {});
 
-/// camchain.yaml. Throws Error for a coefficient beyond p2 that is not zero, which radtan lacks.
+/// camchain.yaml. Throws Error for a non-zero coefficient beyond p2, which radtan does not have.
 std::vector<ExportedFile> kalibr_camchain(const Rig& rig);
 
 }  // namespace vernier::internal

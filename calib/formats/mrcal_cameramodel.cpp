@@ -33,7 +33,7 @@ constexpr LensModel lens_models[] = {{"LENSMODEL_PINHOLE", 0},
                                      {"LENSMODEL_OPENCV8", 8},
                                      {"LENSMODEL_OPENCV12", 12}};
 
-/// The key's value under the first of its names (mrcal renamed some) that is there.
+/// The value of the first of these names of a key (mrcal renamed some) that is present.
 const PythonLiteral* find_any(const PythonLiteral& model, std::vector<const char*> names) {
   for (const char* name : names) {
     if (const PythonLiteral* value = model.find(name)) return value;

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t max_cameras = 9;
 
-/// The keys of several files as if they were one.
+/// The keys of several files merged into one.
 class Keys {
  public:
   explicit Keys(const std::vector<std::filesystem::path>& files) {
@@ -64,7 +64,7 @@ class Keys {
   std::string place_;
 };
 
-/// What the keys of camera i (from 1; 0: the only one) end in.
+/// Suffix of the keys of camera i (from 1; 0: the only one).
 std::string suffix(std::size_t i, const char* separator = "") {
   return i == 0 ? "" : separator + std::to_string(i);
 }
@@ -109,7 +109,7 @@ Eigen::Vector2i image_size(const Keys& keys,
   return stated ? *stated : *options.size_px;
 }
 
-/// Whether cv::fisheye's model is meant; nothing where the file does not say.
+/// Whether the model is cv::fisheye's; std::nullopt if the file does not say.
 std::optional<bool> stated_fisheye(const Keys& keys, std::size_t i) {
   for (const std::string& end : {suffix(i, "_"), std::string()}) {
     if (keys.has("fisheye_model" + end)) {

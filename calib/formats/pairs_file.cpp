@@ -60,7 +60,7 @@ PairObservations read_pairs(const std::filesystem::path& file) {
   TextLines lines(file);
   std::string_view line;
   const bool any = lines.next(line);
-  if (any && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // a spreadsheet's mark
+  if (any && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // byte order mark
   if (!any || line != header) {
     throw Error(file.string() + ":1", "it has no header of a pairs file",
                 fmt::format("its first line must be {}", header));

@@ -114,7 +114,7 @@ Rig parse_cameras(const Node& node) {
   return rig;
 }
 
-/// The rig's parameters that the file lists, by their indices: all, or some in the same order.
+/// Indices of the rig's parameters that the file lists: all, or some in the same order.
 std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
   const std::vector<std::string> all = parameter_names(rig);
   const std::vector<std::string> stated = rig_json::parse_texts(root, "parameter_names");
@@ -153,14 +153,14 @@ void check_parameters(const Node& root, const Rig& rig, const std::vector<Eigen:
   }
 }
 
-/// One flag a parameter that is not listed: it is held.
+/// One flag per parameter: true if it is not listed, hence held.
 std::vector<bool> unlisted(const Rig& rig, const std::vector<Eigen::Index>& listed) {
   std::vector<bool> held(static_cast<std::size_t>(parameter_count(rig)), true);
   for (const Eigen::Index i : listed) held[static_cast<std::size_t>(i)] = false;
   return held;
 }
 
-/// The matrix below `node`, one row a listed parameter, in the tangent; zero for the others.
+/// The matrix at `node`, one row per listed parameter, in the tangent; zero for the others.
 Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                                        const Rig& rig,
                                        const std::vector<Eigen::Index>& listed) {
@@ -190,8 +190,8 @@ Covariance parse_covariance(const Node& node,
           parse_parameter_matrix(node, rig, listed)};
 }
 
-/// JSON has no NaN: it would be written as null, which no rig file may hold but for the residual of
-/// an outlier whose frame went with it.
+/// JSON has no NaN: it would be written as null, which a rig file may contain only for the residual
+/// of an outlier whose frame was excluded too.
 void require_finite(const Json& json, const std::string& place) {
   if (json.is_number_float() && !std::isfinite(json.get<double>())) {
     throw Error(place, "is not a finite number", "a rig file cannot hold it");
@@ -207,7 +207,7 @@ void require_finite(const Json& json, const std::string& place) {
   }
 }
 
-/// A prior as the rig file that would say as much.
+/// A prior in the form of a rig file.
 Json prior_json(const GaussianRigPrior& prior) {
   RigEstimate estimate;
   estimate.rig = prior.rig;

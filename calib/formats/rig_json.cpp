@@ -140,12 +140,12 @@ PairOutlier parse_pair_outlier(const Node& node) {
 
 namespace {
 
-/// The double that is written as shortly as its float is.
+/// The double with the same shortest decimal form as its float.
 double shortest(double of_float) {
   return to_real(fmt::format("{}", static_cast<float>(of_float))).value_or(of_float);
 }
 
-/// Image pair after image pair: its number, its pixels four by four, its noise.
+/// The image pairs in order: number, pixels four by four, noise.
 Json pairs_json(const PairObservations& pairs) {
   Json json = Json::array();
   for (const ImagePair& image : pairs.image_pairs) {
@@ -209,7 +209,7 @@ Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
     for (std::size_t i = 0; whole && i < view.ids.size(); ++i) {
       whole = view.ids[i] == static_cast<int>(i);
     }
-    if (!whole) v["ids"] = view.ids;  // left out where the whole target was seen in order
+    if (!whole) v["ids"] = view.ids;  // omitted if the whole target was seen in order
     v["pixels_px"] = Json::array();
     for (const auto& q : view.pixels_px) v["pixels_px"].push_back({q.x(), q.y()});
     json["observations"].push_back(std::move(v));

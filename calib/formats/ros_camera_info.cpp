@@ -23,7 +23,7 @@ struct DistortionModel {
   std::size_t least, most;
   bool fisheye;
 };
-// kannala_brandt is what some drivers call equidistant
+// some drivers call equidistant kannala_brandt
 constexpr DistortionModel distortion_models[] = {{"plumb_bob", 0, 5, false},
                                                  {"rational_polynomial", 8, 14, false},
                                                  {"equidistant", 4, 4, true},
@@ -50,7 +50,8 @@ void read_distortion(const YamlNode& root, OpenCvIntrinsics& in) {
               "supported: plumb_bob, rational_polynomial, equidistant");
 }
 
-/// Where the rectified camera is from the common one, in metres of the file: t of P = K' [I | t].
+/// Position of the rectified camera relative to the common one, in metres of the file: t of P = K'
+/// [I | t].
 Eigen::Vector3d rectified_shift(const RosCameraInfo& info, const std::string& place) {
   const auto& P = info.P;
   if (P.isZero()) return Eigen::Vector3d::Zero();

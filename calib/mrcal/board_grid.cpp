@@ -12,10 +12,10 @@
 namespace vernier::internal {
 namespace {
 
-/// Points of a file have at least this many digits.
+/// Points in a file have at least this precision.
 constexpr double coincidence_m = 1e-9;
 
-/// For each point: a grid much larger than its points is none, but a point out of place.
+/// Maximum number of cells per point: in a sparser grid some point is misplaced.
 constexpr double max_cells = 4;
 
 /// Smallest distance between different coordinates along an axis.
@@ -57,7 +57,7 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
       extent.z() > coincidence_m) {
     throw refused;
   }
-  // the longest side divided, so that rounding in one coordinate does not grow along it
+  // divide the longest side, so that the rounding error of one coordinate does not grow along it
   Eigen::Index longest = 0;
   steps.maxCoeff(&longest);
   grid.spacing_m = extent[longest] / steps[longest];

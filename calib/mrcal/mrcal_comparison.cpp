@@ -20,7 +20,7 @@
 namespace vernier::internal {
 namespace {
 
-/// Relative; the costs of one minimum agree to about 1e-13.
+/// Relative; the costs at the same minimum agree to about 1e-13.
 constexpr double same_minimum = 1e-9;
 
 /// Our minimum moved by one standard deviation along each principal direction.
@@ -81,7 +81,7 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
                                const RefinedMinimum& ours,
                                double pixel_sigma_px,
                                const std::vector<bool>& held) {
-  MrcalProblem(observations, start);  // complains where the problem is none of mrcal's
+  MrcalProblem(observations, start);  // throws if mrcal cannot express the problem
   MrcalCheck check;
   try {
     check.solution = mrcal_solve(observations, start, held);
@@ -94,7 +94,7 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
   const MrcalSolution first = std::move(check.solution);
   check.solution = mrcal_solve(observations, beside(ours, pixel_sigma_px), held);
   check.comparison = compare(ours, check.solution, pixel_sigma_px);
-  if (first.solve_cpu_ms > 0) {  // timed from the start that both had
+  if (first.solve_cpu_ms > 0) {  // timed from the common start
     check.solution.solve_cpu_ms = first.solve_cpu_ms;
     check.solution.solve_wall_ms = first.solve_wall_ms;
   }

@@ -90,8 +90,8 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.gradient_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e12;  // Gauss-Newton steps until one fails
   options.jacobi_scaling = true;
-  // Columns are scaled to one: a damping that is never below 1e-12 keeps the Schur complement of a
-  // model that the views hardly determine positive definite.
+  // Columns are scaled to one: a damping of at least 1e-12 keeps the Schur complement positive
+  // definite for a model that the views hardly determine.
   options.max_trust_region_radius = 1e12;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in one order: the same bits every time
@@ -106,7 +106,7 @@ std::vector<int> parameters_of(const Rig& rig, int camera) {
   return own;
 }
 
-/// Throws Error for a camera that nothing in the problem says anything about.
+/// Throws Error for a camera without any data or prior.
 void check_cameras(const BoardObservations& observations,
                    const Rig& rig,
                    const ReprojectionProblem& problem) {
@@ -130,14 +130,14 @@ void check_cameras(const BoardObservations& observations,
   }
 }
 
-/// Whether the last twenty iterations brought nothing but rounding.
+/// Whether the last twenty iterations changed nothing but rounding.
 bool moves_no_more(const ceres::Solver::Summary& summary) {
   const auto& steps = summary.iterations;
   return steps.size() > 20 &&
          steps[steps.size() - 21].cost - summary.final_cost <= 1e-12 * summary.final_cost;
 }
 
-/// All residuals, before Ceres asks for the first.
+/// Evaluates all residuals before Ceres requests the first.
 class AllResiduals : public ceres::EvaluationCallback {
  public:
   AllResiduals(CompressedViews& views, CompressedPairs* pairs) : views_(views), pairs_(pairs) {}
@@ -151,7 +151,7 @@ class AllResiduals : public ceres::EvaluationCallback {
   CompressedPairs* pairs_;
 };
 
-/// Builds the Ceres problem of one calibration and owns what its blocks refer to.
+/// Builds the Ceres problem of one calibration and owns the data its blocks refer to.
 class Minimisation {
  public:
   Minimisation(const BoardObservations& observations,
@@ -253,7 +253,7 @@ class Minimisation {
     for (int i = 0; i < size; ++i) {
       if (what_.held[first + i]) held.push_back(i);
     }
-    // Ceres does not know the block of a camera that is held whole and was not seen.
+    // Ceres does not have the block of a fully held camera without views.
     if (held.empty() || !problem_.HasParameterBlock(block)) return;
     if (static_cast<int>(held.size()) == size) {
       problem_.SetParameterBlockConstant(block);

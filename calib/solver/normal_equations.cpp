@@ -89,7 +89,7 @@ ReducedNormalEquations mapped(const ReducedNormalEquations& equations, const Eig
   return result;
 }
 
-/// The equations with the warp's unknowns last where it is free.
+/// The equations with the warp's unknowns last if it is free.
 ReducedNormalEquations sum_of_frames(const BoardObservations& observations,
                                      const BoardState& state,
                                      double pixel_sigma_px,

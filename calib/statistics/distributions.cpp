@@ -19,7 +19,7 @@
 namespace vernier::internal {
 namespace {
 
-// Doubles throughout: long double would cost five times as much for digits nobody reads.
+// Doubles throughout: long double would cost five times as much for no benefit.
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>,
                                              boost::math::policies::promote_float<false>>;
 using ChiSquared = boost::math::chi_squared_distribution<double, Policy>;

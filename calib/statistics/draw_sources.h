@@ -6,8 +6,8 @@
 
 namespace vernier::internal {
 
-/// Who draws: the source number of RandomCounter. One list for the whole project, so that no two
-/// processes ever share a stream. Numbers are part of every stored result: never reuse one.
+/// The source number of RandomCounter. One list for the whole project, so that no two processes
+/// share a stream. Numbers are part of every stored result: never reuse one.
 enum class DrawSource : std::uint32_t {
   calibration = 1,         // psi_c, the rig that a query or (trial 2^31 + block) a map is told
   lateral_shift = 2,       // psi_l

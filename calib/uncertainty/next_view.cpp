@@ -37,7 +37,7 @@ double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const Targe
   return std::sqrt(half.squaredNorm() / static_cast<double>(wanted.gradient.rows()));
 }
 
-/// Standard deviations after each candidate alone.
+/// Standard deviations after adding each candidate alone.
 std::vector<double> ratings(const Eigen::MatrixXd& F,
                             const std::vector<CandidateView>& candidates,
                             const TargetQuantity& wanted) {
@@ -55,7 +55,7 @@ bool beside(const BoardPlacement& a, const BoardPlacement& b) {
   return true;
 }
 
-/// The best views that are not beside the first nor beside one another.
+/// The best views that are adjacent neither to the first nor to one another.
 std::vector<ScoredView> distinct_best(const std::vector<CandidateView>& candidates,
                                       const std::vector<double>& sd,
                                       double sd_before,

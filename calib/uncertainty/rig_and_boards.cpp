@@ -19,8 +19,8 @@ using namespace internal;
 
 namespace {
 
-/// How many of the parameters the views determine, tr(C_bound S): all that have a variance, but for
-/// what a prior knows of them.
+/// Number of parameters that the views determine, tr(C_bound S): all those with a variance, minus
+/// what a prior contributes.
 double data_parameters(const RigEstimate& estimate, double directions) {
   const CalibrationEvidence& evidence = *estimate.evidence;
   if (estimate.calibration->prior_dof == 0) return directions;

@@ -44,7 +44,7 @@ Eigen::MatrixXd derivative(const Rig& rig,
   return G;
 }
 
-/// Pixels in the middles of a grid's cells, so that all stand for the same area.
+/// Pixels at the centres of a grid's cells, so that all represent the same area.
 std::vector<Eigen::Vector2d> cell_middles(const Camera& camera) {
   std::vector<Eigen::Vector2d> pixels;
   for (int row = 0; row < grid_rows; ++row) {
@@ -96,9 +96,9 @@ Eigen::MatrixXd projection_gradient(const Rig& rig, double at_m) {
   });
 }
 
-/// Axes of the rectified cameras in the rig's frame, one a row: x along the baseline, z as near as
-/// that lets it to the mean of the optical axes. A turn of both about the baseline moves both
-/// rows of a point alike, so no other choice changes their difference to first order.
+/// Axes of the rectified cameras in the rig's frame, one per row: x along the baseline, z as close
+/// as possible to the mean of the optical axes. A rotation of both cameras about the baseline moves
+/// both rows of a point alike, so other choices do not change their difference to first order.
 Eigen::Matrix3d rectified_axes(const Rig& rig) {
   const Pose T_first_right = rig.T_camera_first[1].inverse();
   Eigen::Matrix3d R;

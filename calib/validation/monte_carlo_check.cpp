@@ -33,7 +33,7 @@ constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
 constexpr int wishart_draws = 2000;
 constexpr double min_p = 0.005;
 
-/// Makes the noisy copies of one calibration.
+/// Generates the noisy copies of one calibration.
 class Copies {
  public:
   Copies(const BoardObservations& observations,
@@ -124,7 +124,7 @@ Interval mean_interval(double q, double n, double probability) {
   return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
 }
 
-/// Fills in what the errors (a column a copy) say of the covariance.
+/// Evaluates the covariance with the errors (one column per copy).
 void judge(const Eigen::MatrixXd& errors,
            const Eigen::MatrixXd& covariance,
            const ScaledRoot& root,

@@ -20,7 +20,7 @@
 namespace vernier::internal {
 namespace {
 
-/// How many corners the views of each frame hold.
+/// Number of corners in the views of each frame.
 std::vector<int> corners_by_frame(const CalibrationEvidence& evidence, const std::string& place) {
   if (evidence.T_first_board.size() != evidence.frames.size()) {
     throw Error(place, "its evidence does not have one board pose per frame", "calibrate again");

@@ -34,7 +34,7 @@ struct PriorConsistency {
 /// normalised innovation squared. The estimate
 /// may have been made with the prior `looseness` times as wide, so that a wrong one does not hold
 /// the rig away from the data: then H = C_mvb⁻¹ − C_0⁻¹ / looseness², and likewise in the last
-/// equation. Throws Error where C_0 is singular.
+/// equation. Throws Error if C_0 is singular.
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
                                    const Eigen::MatrixXd& prior,

@@ -20,7 +20,7 @@ namespace vernier {
 /// that is the intrinsics of every camera, then the pose of every camera but the first.
 struct Rig {
   std::vector<Camera> cameras;
-  std::vector<Pose> T_camera_first;  ///< one a camera, the first the identity
+  std::vector<Pose> T_camera_first;  ///< one per camera, the first the identity
 };
 
 std::vector<std::string> parameter_names(const Rig& rig);

@@ -53,7 +53,7 @@ struct ConditionalBoardPoses {
 struct RigAndBoards {
   Rig rig;
   std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
+  std::vector<Pose> T_first_board;  ///< one per frame
   Eigen::MatrixXd rig_covariance;
   ConditionalBoardPoses given_rig;
   double board_sigma_px = 0;

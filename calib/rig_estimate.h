@@ -54,7 +54,7 @@ struct CalibrationSummary {
 struct CalibrationEvidence {
   BoardObservations observations;
   std::vector<int> frames;               ///< ascending
-  std::vector<Pose> T_first_board;       ///< one a frame
+  std::vector<Pose> T_first_board;       ///< one per frame
   Eigen::Vector2d warp_m{0, 0};          ///< of the board (calib/board/board_warp.h)
   PairObservations pairs;                ///< matched corners, including outliers
   std::vector<GaussianRigPrior> priors;  ///< priors

@@ -25,7 +25,7 @@ struct SimulatedBoard {
 
 /// Views of a chessboard that every camera of `rig` sees completely, with white noise, for tests
 /// and planning. The same seed and trial give the same poses; noise is drawn by (trial, frame,
-/// camera), poses by (seed) alone, so trials differ in noise only. Throws Error where no such view
+/// camera), poses by (seed) alone, so trials differ in noise only. Throws Error if no such view
 /// can be found in 1000 tries.
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,

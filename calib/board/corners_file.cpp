@@ -146,7 +146,7 @@ class CornerReader {
   Eigen::Vector2i grid_;  // columns, rows
   const std::vector<Eigen::Vector2i>& size_px_;
   std::vector<BoardView> views_;
-  std::vector<std::int64_t> numbers_;  // one a view, in its image's name
+  std::vector<std::int64_t> numbers_;  // one per view, in its image's name
   CameraOrder cameras_;
   std::map<std::string, int> count_;  // corners read of each image, found or not
 };

@@ -29,11 +29,11 @@
 namespace vernier::internal {
 namespace {
 
-using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
+using PerCorner = std::vector<std::vector<double>>;  // one per corner, view by view
 
 constexpr double min_sigma_px = 1e-6;  // residuals below are rounding
 
-/// Robust standard deviation of a coordinate, one a camera: lenses and images differ.
+/// Robust standard deviation of a coordinate, one per camera: lenses and images differ.
 std::vector<double> camera_sigmas(const BoardObservations& observations,
                                   const CornerResiduals& residuals) {
   std::vector<CornerResiduals> of_camera(observations.size_px.size());

@@ -28,8 +28,8 @@ namespace {
 /// The frames of two cameras that are consistent with one pose between them.
 struct Agreement {
   Rig rig;                          ///< the two cameras and the pose they agree on
-  std::vector<double> together_px;  ///< one a pair
-  std::vector<bool> fits;           ///< one a pair
+  std::vector<double> together_px;  ///< one per pair
+  std::vector<bool> fits;           ///< one per pair
   std::size_t count = 0;            ///< of those that fit
   std::size_t gross = 0;            ///< with an error too large for an approximate start
 };

@@ -14,7 +14,7 @@ namespace vernier::internal {
 /// Initial estimate of one camera and of the board poses in its views.
 struct InitialCamera {
   Camera camera;
-  std::vector<Pose> T_camera_board;  ///< one a view
+  std::vector<Pose> T_camera_board;  ///< one per view
   double typical_rms_px = 0;         ///< of the better three quarters of the views, per coordinate
 };
 

@@ -11,7 +11,7 @@ namespace vernier::internal {
 /// triangular form: Householder QR of each frame's rows [B_f | A_f | r_f], then of the remaining
 /// rows of all frames,
 ///
-///     R_f b_f + N_f a + s_f = 0      one a frame
+///     R_f b_f + N_f a + s_f = 0      one per frame
 ///     R a + s = 0                    the rig: RᵀR = S, the reduced information
 ///
 /// No normal matrix is formed, so the error of S⁻¹ = R⁻¹ R⁻ᵀ grows with the condition of A and not

@@ -60,7 +60,7 @@ class CompressedViews : public ceres::EvaluationCallback {
   const ParameterBuffer& parameters_;
   BoardState state_;
   std::vector<Lanes> pixels_;
-  std::vector<Place> places_;                    // one a view
+  std::vector<Place> places_;                    // one per view
   std::vector<std::vector<std::size_t>> first_;  // of a group's camera: index of its sums
   std::vector<Lanes> sums_;  // triangles of U; of a view evaluated without, χ² in the first
   bool with_jacobians_ = false;

@@ -65,7 +65,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
                                                 const SamplingOptions& options = {},
                                                 int other = 1);
 
-/// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite where one is.
+/// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite if one is.
 Interval interval_95(const std::vector<double>& sorted);
 
 }  // namespace vernier::internal

@@ -13,7 +13,7 @@ namespace vernier::internal {
 
 /// Prediction of held-out views by a lens model.
 struct ModelScore {
-  std::vector<CameraModel> models;  ///< one a camera
+  std::vector<CameraModel> models;  ///< one per camera
   std::string name;                 ///< such as "opencv4"
   double held_out_rms_px = 0;       ///< per coordinate, over views left out of the calibration
   double fitted_rms_px = 0;         ///< per coordinate, over all views

@@ -32,7 +32,7 @@ struct ViewInfluence {
       0;  ///< largest eigenvalue of H_f: fraction of the information in one direction
   double influence = 0;                ///< |L⁻¹ δ_f|
   double expected_influence = 0;       ///< (tr(H_f − H_f²))^½, the rms for independent noise
-  double leave_one_out_influence = 0;  ///< |L⁻¹ (move without)|; infinite where largest_share is 1
+  double leave_one_out_influence = 0;  ///< |L⁻¹ (move without)|; infinite if largest_share is 1
   Eigen::VectorXd delta;               ///< δ_f, in the tangent of calib/rig.h
   Eigen::VectorXd
       leave_one_out_delta;  ///< "move without"; empty where leave_one_out_influence is infinite

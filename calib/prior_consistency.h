@@ -22,12 +22,12 @@ struct PriorConsistency {
 /// and C the honest covariance of the estimate, all over the same directions, the offset of a
 /// right prior and right data has the covariance
 ///
-///     D = C_mvb (B + H C_0 H) C_mvb,   H = C_mvb⁻¹ − C_0⁻¹,   C_mvb B C_mvb = C − C_mvb C_0⁻¹
-///     C_mvb
+///     D = C_mvb (B + H C_0 H) C_mvb,   H = C_mvb⁻¹ − C_0⁻¹,
+///     C_mvb B C_mvb = C − C_mvb C_0⁻¹ C_mvb
 ///
 /// (the estimate is the prior's mean moved by C_mvb times the score of the data there, whose noise
 /// has the scatter B). χ² is of δ over the eigenvectors of C_0^(-1/2) D C_0^(-1/2) with eigenvalues
-/// above 0.05, that is where the data say something. Where B was estimated from `clusters` of data
+/// above 0.05, the directions the data inform. If B was estimated from `clusters` of data
 /// (0: it is known), χ² over its degrees of freedom is referred to Fisher's F with clusters − 1
 /// below, as of a variance with that many. Bar-Shalom, Li and Kirubarajan, "Estimation
 /// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the

@@ -67,7 +67,7 @@ struct RigEstimate {
   std::optional<Eigen::MatrixXd> covariance_mvb;  ///< the minimum variance bound
   std::optional<CalibrationSummary> calibration;
   std::optional<CalibrationEvidence> evidence;
-  std::string other_keys;  ///< keys of the file that this version does not know, as JSON text
+  std::string other_keys;  ///< unknown keys of the file, as JSON text
 };
 
 /// The covariance used for sampling. Throws Error(`place`) if the estimate has none.

@@ -40,7 +40,7 @@ struct Target {
   }
 };
 
-/// i-th of n values from `low` to `high`; the middle where n is 1.
+/// i-th of n values from `low` to `high`; the middle if n is 1.
 double step_between(double low, double high, int i, int n) {
   return n > 1 ? low + (high - low) * i / (n - 1) : 0.5 * (low + high);
 }

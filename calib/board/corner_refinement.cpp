@@ -52,7 +52,9 @@ bool is_crossing(const cv::Mat& grey, const Eigen::Vector2d& corner, double radi
 /// cornerSubPix for one corner. OpenCV resets a corner that left its window to its start, so one
 /// that did not move is tried again from a displaced start: std::nullopt if it does not move then
 /// either.
-std::optional<Eigen::Vector2d> settle(const cv::Mat& grey, const Eigen::Vector2d& from, int half) {
+std::optional<Eigen::Vector2d> refine_once(const cv::Mat& grey,
+                                           const Eigen::Vector2d& from,
+                                           int half) {
   for (const float nudge : {0.0f, 0.03f}) {
     const cv::Point2f start(float(from.x()) + nudge, float(from.y()) - nudge);
     std::vector<cv::Point2f> corner{start};
@@ -69,7 +71,7 @@ std::optional<CornerRejection> refine(const cv::Mat& grey, CornerGuess& guess) {
   const double room = std::min(guess.pixel_px.minCoeff(), far.minCoeff()) - 1;
   const int half = std::min(guess.half_window_px, static_cast<int>(std::floor(room)));
   if (half < min_half_window) return CornerRejection::at_border;
-  const auto moved_to = settle(grey, guess.pixel_px, half);
+  const auto moved_to = refine_once(grey, guess.pixel_px, half);
   if (!moved_to) return CornerRejection::moved_too_far;
   guess.pixel_px = *moved_to;
   guess.half_window_px = half;
@@ -78,9 +80,9 @@ std::optional<CornerRejection> refine(const cv::Mat& grey, CornerGuess& guess) {
 
 /// Distance of a corner from the position predicted by its nearest neighbours, relative to the
 /// tolerance; 0 if they do not predict one.
-double strangeness(const std::vector<CornerGuess>& corners,
-                   const std::vector<Eigen::Vector3d>& target_m,
-                   std::size_t index) {
+double relative_deviation(const std::vector<CornerGuess>& corners,
+                          const std::vector<Eigen::Vector3d>& target_m,
+                          std::size_t index) {
   const Eigen::Vector2d own = target_m[corners[index].id].head<2>();
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -128,16 +130,16 @@ void drop_covered_corners(const cv::Mat& grey,
 }
 
 /// Removes the most deviating corner until none deviates.
-void drop_strange_corners(std::vector<CornerGuess>& corners,
-                          const std::vector<Eigen::Vector3d>& target_m,
-                          std::vector<RejectedCorner>& refused) {
+void drop_deviating_corners(std::vector<CornerGuess>& corners,
+                            const std::vector<Eigen::Vector3d>& target_m,
+                            std::vector<RejectedCorner>& refused) {
   while (true) {
     double most = 1;
     std::size_t worst = corners.size();
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const double strange = strangeness(corners, target_m, i);
-      if (strange > most) {
-        most = strange;
+      const double relative = relative_deviation(corners, target_m, i);
+      if (relative > most) {
+        most = relative;
         worst = i;
       }
     }
@@ -165,7 +167,7 @@ void refine_corners(const cv::Mat& grey,
     }
   }
   drop_covered_corners(grey, kind, refined, result.rejected_corners);
-  drop_strange_corners(refined, target_m, result.rejected_corners);
+  drop_deviating_corners(refined, target_m, result.rejected_corners);
   for (const CornerGuess& corner : refined) {
     result.ids.push_back(corner.id);
     result.corners_px.push_back(corner.pixel_px);

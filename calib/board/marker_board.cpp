@@ -48,9 +48,9 @@ bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>&
 }
 
 /// Rejects all corners if there are too few.
-void judge(const std::vector<Eigen::Vector3d>& target_m,
-           const std::string& name,
-           BoardDetection& result) {
+void reject_too_few(const std::vector<Eigen::Vector3d>& target_m,
+                    const std::string& name,
+                    BoardDetection& result) {
   const std::size_t corners = result.ids.size();
   if (corners < min_corners) {
     result.reason = "only " + std::to_string(corners) + " good corners of the " + name +
@@ -219,7 +219,7 @@ void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDe
     guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::crossing, result);
-  judge(target_m, name, result);
+  reject_too_few(target_m, name, result);
 }
 
 void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDetection& result) {
@@ -243,7 +243,7 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
     }
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::as_most, result);
-  judge(target_m, name, result);
+  reject_too_few(target_m, name, result);
 }
 
 }  // namespace vernier::internal

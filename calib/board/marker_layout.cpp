@@ -146,7 +146,7 @@ bool inside(const cv::Mat& grey, const MarkerCorners& corners) {
 }
 
 /// The corners refined in the image, in windows of a tenth of the marker.
-MarkerCorners settled(const cv::Mat& grey, const MarkerCorners& corners) {
+MarkerCorners refined(const cv::Mat& grey, const MarkerCorners& corners) {
   double side = 1e9;
   std::vector<cv::Point2f> points;
   for (int k = 0; k < 4; ++k) {
@@ -176,7 +176,7 @@ std::optional<DetectedMarker> read_at_prediction(const cv::Mat& grey,
     for (int k = 0; k < 4; ++k) marker.corners_px[k] = map_point(*H, layout.corners_m[id][k]);
     for (int attempt = 0; attempt < 2 && inside(grey, marker.corners_px); ++attempt) {
       if (reads_as(grey, dictionary, marker, seen.border_bits)) return marker;
-      marker.corners_px = settled(grey, marker.corners_px);
+      marker.corners_px = refined(grey, marker.corners_px);
     }
   }
   return std::nullopt;

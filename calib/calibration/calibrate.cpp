@@ -125,10 +125,10 @@ void replace_poses(BoardState& state, const BoardState& other) {
 /// The outliers under a sufficiently rich lens model, fitted to the corners that `fit` kept, and
 /// its board poses; frames excluded as a whole first get a pose from `robust`. std::nullopt if
 /// there is no such model or the views do not determine it.
-std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
-                                                 const BoardState& robust,
-                                                 const RobustFit& fit,
-                                                 const CalibrationOptions& options) {
+std::optional<RobustFit> outliers_by_richer_lenses(const Solution& s,
+                                                   const BoardState& robust,
+                                                   const RobustFit& fit,
+                                                   const CalibrationOptions& options) {
   const std::optional<Rig> rig = with_richer_lenses(robust.rig);
   if (!rig) return {};
   BoardState whole = robust;
@@ -163,7 +163,7 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   if (!robust) return;
   RobustFit fit = outliers_at(s.observations, *robust);
   if (fit.outliers.empty()) return;
-  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, *robust, fit, options)) {
+  if (std::optional<RobustFit> judged = outliers_by_richer_lenses(s, *robust, fit, options)) {
     judged->state.rig = fit.state.rig;
     judged->state.warp_m = fit.state.warp_m;
     replace_poses(judged->state, fit.state);
@@ -241,7 +241,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
 }
 
 /// The warning for residuals larger than corner noise, with their likely causes.
-std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
+std::string residual_warning(const Solution& s, double rms_px, bool look_for_causes) {
   std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
   std::vector<ResidualFinding> findings;
   if (look_for_causes) {
@@ -271,7 +271,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   summary.warnings = s.diagnosis.warnings;
   summary.trust_warnings = s.diagnosis.trust_warnings;
   if (summary.rms_px > largest_corner_noise_px) {
-    summary.trust_warnings.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
+    summary.trust_warnings.push_back(residual_warning(s, summary.rms_px, options.check_input));
   }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {
@@ -316,10 +316,12 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
 }
 
 /// Trust warnings about the result.
-void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimate& estimate) {
+void add_trust_warnings(const Solution& s,
+                        const CalibrationOptions& options,
+                        RigEstimate& estimate) {
   std::vector<std::string>& trust_warnings = estimate.calibration->trust_warnings;
-  const auto add = [&](const std::optional<std::string>& doubt) {
-    if (doubt) trust_warnings.push_back(*doubt);
+  const auto add = [&](const std::optional<std::string>& warning) {
+    if (warning) trust_warnings.push_back(*warning);
   };
   add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
   const int clusters = options.white_noise ? 0 : estimate.calibration->views;
@@ -352,7 +354,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   if (options.check_input) {
     const auto folds = inversion_warnings(estimate.rig);
     warnings.insert(warnings.end(), folds.begin(), folds.end());
-    add_doubts(s, options, estimate);
+    add_trust_warnings(s, options, estimate);
   }
   estimate.evidence = CalibrationEvidence{
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};

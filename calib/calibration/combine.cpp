@@ -194,7 +194,7 @@ void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) 
 }
 
 /// Collects the warnings of the inputs, of the scene of all pairs, and about excluded inputs.
-void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
+void add_warnings(const std::vector<CombineInput>& inputs, Combination& combination) {
   CalibrationSummary& summary = *combination.joint.estimate.calibration;
   warn_of_priors(combination.evidence, summary);
   const bool first_is_prior = kind_of(inputs.front()) == "prior";
@@ -219,16 +219,16 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const CombinedInput& input = combination.inputs[i];
     if (input.used && inputs[i].estimate && inputs[i].estimate->calibration) {
-      for (const std::string& doubt : inputs[i].estimate->calibration->trust_warnings) {
+      for (const std::string& trust_warning : inputs[i].estimate->calibration->trust_warnings) {
         const auto& listed = summary.trust_warnings;
-        const bool again = std::find(listed.begin(), listed.end(), doubt) != listed.end();
+        const bool again = std::find(listed.begin(), listed.end(), trust_warning) != listed.end();
         if (!again && inputs.size() > 1)
-          summary.trust_warnings.push_back(input.name + ": " + doubt);
+          summary.trust_warnings.push_back(input.name + ": " + trust_warning);
       }
     }
     if (input.used) {
-      constexpr double worth_saying = 0.01;
-      if (i > 0 && input.agreement.p_value < worth_saying) {
+      constexpr double low_p = 0.01;
+      if (i > 0 && input.agreement.p_value < low_p) {
         summary.warnings.push_back(
             fmt::format("{} is barely consistent with the previous inputs (p {:.1g})", input.name,
                         input.agreement.p_value));
@@ -335,7 +335,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
                  : gaussian_prior_of(calibrate_jointly(result.evidence, before->rig, joint));
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
-  judge(inputs, result);
+  add_warnings(inputs, result);
   return result;
 }
 

@@ -71,7 +71,7 @@ PairObservations inliers_of(const JointMinimum& joint) {
   return selected(joint.cost.pairs, kept);
 }
 
-/// Clusters of the scores: image pairs, or cells of them where they are fewer than three.
+/// Clusters of the scores: image pairs, or cells of them if there are fewer than three.
 PairObservations clustered_pairs(const JointMinimum& joint) {
   const PairObservations& pairs = joint.cost.pairs;
   if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
@@ -270,7 +270,7 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
   Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
-  if (!given.empty()) {  // where the rest of what the prior knows has the values it was held at
+  if (!given.empty()) {  // condition the prior on the values of its held parameters
     const Eigen::MatrixXd white = ScaledRoot(C(given, given)).white;
     const Eigen::MatrixXd by_given = C(free, given) * white.transpose();
     offset -= by_given * (white * moved(given));
@@ -359,7 +359,7 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
     unlisted.push_back(held.name);
   }
   const std::vector<std::string> names = parameter_names(prior.rig);
-  for (HeldParameter& held : with_held.held) {  // where the prior has them
+  for (HeldParameter& held : with_held.held) {  // at the prior's values
     const auto at = std::find(names.begin(), names.end(), held.name);
     if (held.value || at == names.end()) continue;
     held.value = parameters(prior.rig)[at - names.begin()];

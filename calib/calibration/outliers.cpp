@@ -185,10 +185,9 @@ RobustFit separated(const BoardObservations& observations,
 
 void check_camera(const Rig& rig, int camera, int frame) {
   if (camera >= 0 && camera < static_cast<int>(rig.cameras.size())) return;
-  throw Error(
-      fmt::format("frame {}", frame),
-      fmt::format("the rig has {} cameras, so none of number {}", rig.cameras.size(), camera),
-      "give the corners of this rig");
+  throw Error(fmt::format("frame {}", frame),
+              fmt::format("the rig has {} cameras, so no camera {}", rig.cameras.size(), camera),
+              "give the corners of this rig");
 }
 
 }  // namespace

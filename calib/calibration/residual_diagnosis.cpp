@@ -69,21 +69,21 @@ class Diagnosis {
 
   std::vector<ResidualFinding> run() {
     if (!(sum_px2_ > 0)) return {};
-    look_at_lens();
-    look_at_board();
-    look_at_time();
-    look_at_images();
-    look_at_cameras();
+    check_lens();
+    check_board();
+    check_simultaneity();
+    check_images();
+    check_cameras();
     std::erase_if(findings_, [&](const auto& f) { return f.share < options_.min_share; });
     std::stable_sort(findings_.begin(), findings_.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
-    look_at_pixels();
-    look_at_what_is_missing();
+    check_pixels();
+    check_missing();
     return findings_;
   }
 
  private:
-  double share_gone(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
+  double fraction_explained(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
   double rms() const { return rms_of(sum_px2_, corners_); }
 
   /// The same views solved with another problem; std::nullopt if that fails.
@@ -139,7 +139,7 @@ class Diagnosis {
     return sum / std::max(1, count);
   }
 
-  void look_at_lens() {
+  void check_lens() {
     const bool free =
         problem_.priors.empty() &&
         std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
@@ -159,7 +159,7 @@ class Diagnosis {
     }
     if (!best) return;
     findings_.push_back(
-        {share_gone(best->sum_px2),
+        {fraction_explained(best->sum_px2),
          fmt::format("the lens needs another model: {} fits the same corners to {:.2f} px instead "
                      "of {:.2f} px (predictions are now {:.2f} px too far {} on average near the "
                      "image's edge); calibrate with --model {}",
@@ -168,7 +168,7 @@ class Diagnosis {
                      best_name)});
   }
 
-  void look_at_board() {
+  void check_board() {
     if (problem_.warp == BoardWarp::free) return;
     ReprojectionProblem trial = problem_;
     trial.warp = BoardWarp::free;
@@ -176,14 +176,14 @@ class Diagnosis {
     if (!bent) return;
     const Eigen::Vector2d warp_mm = 1e3 * bent->state.warp_m;
     findings_.push_back(
-        {share_gone(bent->sum_px2),
+        {fraction_explained(bent->sum_px2),
          fmt::format(
              "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y fits to {:.2f} px "
              "instead of {:.2f} px; estimate the board's shape or use a stiff board",
              warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
   }
 
-  void look_at_time() {
+  void check_simultaneity() {
     BoardObservations warped = observations_;
     warped.target_m = warped_target(warped.target_m, state_.warp_m);
     for (int second = 1; second < static_cast<int>(state_.rig.cameras.size()); ++second) {
@@ -226,7 +226,7 @@ class Diagnosis {
     }
   }
 
-  void look_at_images() {
+  void check_images() {
     std::vector<double> rms_px;
     std::vector<double> sums;
     for (const auto& view : residuals_) {
@@ -259,7 +259,7 @@ class Diagnosis {
                      rms_of(sum_px2_ - poor_sum, corners_ - poor_corners))});
   }
 
-  void look_at_cameras() {
+  void check_cameras() {
     if (state_.rig.cameras.size() < 2) return;
     for (int c = 0; c < static_cast<int>(state_.rig.cameras.size()); ++c) {
       std::vector<double> own, others;
@@ -271,7 +271,7 @@ class Diagnosis {
         (is_own ? own : others).push_back(rms_of(view_sum, residuals_[v].size()));
         if (is_own) sum += view_sum;
       }
-      // the usual image of each, so that single bad ones are no fault of the camera
+      // the median image of each, so that single bad ones do not count against the camera
       const double own_px = median_or_zero(std::move(own)),
                    others_px = median_or_zero(std::move(others));
       if (!(own_px > 2.5 * others_px)) continue;
@@ -282,7 +282,7 @@ class Diagnosis {
     }
   }
 
-  void look_at_pixels() {
+  void check_pixels() {
     for (const Camera& camera : state_.rig.cameras) {
       if (std::abs(camera.ax() - 1) < 0.05) continue;
       findings_.push_back(
@@ -293,7 +293,7 @@ class Diagnosis {
     }
   }
 
-  void look_at_what_is_missing() {
+  void check_missing() {
     std::map<std::pair<int, int>, std::pair<std::string, int>> out;  // by frame, camera
     for (const CornerOutlier& corner : options_.outliers) {
       auto& [image, count] = out[{corner.frame, corner.camera}];

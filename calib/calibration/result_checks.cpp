@@ -113,7 +113,7 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   try {
     agreement = prior_consistency(offset, names, before, bound(known, known), honest(known, known),
                                   clusters);
-  } catch (const Error&) {  // a prior that no double can invert says nothing here
+  } catch (const Error&) {  // a prior that cannot be inverted in double precision is not checked
     return {};
   }
   if (agreement.dof == 0 || agreement.p_value >= min_p) return {};

@@ -94,7 +94,7 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   if (estimate.covariance) rename_all(estimate.covariance->names);
   if (estimate.calibration) rename_all(estimate.calibration->held);
   if (!estimate.evidence) return;
-  for (GaussianRigPrior& prior : estimate.evidence->priors) {  // it may know fewer cameras
+  for (GaussianRigPrior& prior : estimate.evidence->priors) {  // it may have fewer cameras
     for (Camera& camera : prior.rig.cameras) {
       const auto was = std::find(cameras_before.begin(), cameras_before.end(), camera.name);
       if (was != cameras_before.end()) camera.name = names[was - cameras_before.begin()];

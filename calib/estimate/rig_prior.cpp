@@ -51,7 +51,7 @@ std::vector<bool> all_but(const std::vector<Eigen::Index>& places, const Rig& ri
 
 /// Inverse of a covariance, scaled before it is factored.
 Eigen::MatrixXd inverse_of(const Covariance& covariance) {
-  const ScaledDecomposition decomposition(covariance);  // says what is wrong with it
+  const ScaledDecomposition decomposition(covariance);  // throws if it is invalid
   const Eigen::VectorXd sd = covariance.matrix.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < sd.size(); ++i) {
     if (!(sd[i] > 0)) {
@@ -122,7 +122,7 @@ GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterP
     covariance.names.push_back(k.name);
     values.push_back({k.name, k.value});
   }
-  places_of(covariance.names, like);  // says which there is not
+  places_of(covariance.names, like);  // throws if one is missing
   return {with_held_values(like, values), std::move(covariance)};
 }
 

@@ -136,9 +136,9 @@ CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const N
 }
 
 /// The CAMERA_ID of each entry if all are identified and distinct; else empty.
-std::vector<int> ids_said(const Node& entries,
-                          const Cameras& cameras,
-                          const CamerasOfPrefix& of_prefix) {
+std::vector<int> identified_cameras(const Node& entries,
+                                    const Cameras& cameras,
+                                    const CamerasOfPrefix& of_prefix) {
   std::vector<int> ids;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Node entry = entries.at(i);
@@ -173,8 +173,8 @@ std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
                 fmt::format("holds {} cameras, cameras.txt {}", entries.size(), cameras.count()),
                 "give the files of one rig");
   }
-  std::vector<int> ids =
-      ids_said(entries, cameras, cameras_of_prefixes(file.parent_path() / "images.txt", entries));
+  std::vector<int> ids = identified_cameras(
+      entries, cameras, cameras_of_prefixes(file.parent_path() / "images.txt", entries));
   if (ids.empty()) {
     for (std::size_t i = 0; i < cameras.count(); ++i) ids.push_back(cameras.id(i));
     if (cameras.count() > 1)

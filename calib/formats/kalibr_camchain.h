@@ -12,9 +12,9 @@ namespace vernier::internal {
 
 /// Kalibr's camchain.yaml: cameras cam0, cam1 … with
 ///
-///     camera_model: pinhole            intrinsics: [fu, fv, pu, pv]     resolution: [width,
-///     height] distortion_model: radtan (k1 k2 p1 p2), equidistant (k1 k2 k3 k4, our fisheye4) or
-///     none T_cn_cnm1: 4x4, x_n = T x_(n-1), each camera after the one before it in the chain
+///     camera_model: pinhole     intrinsics: [fu, fv, pu, pv]     resolution: [width, height]
+///     distortion_model: radtan (k1 k2 p1 p2), equidistant (k1 k2 k3 k4, our fisheye4) or none
+///     T_cn_cnm1: 4x4, x_n = T x_(n-1), for each camera after the first in the chain
 ///
 /// (Kalibr's wiki, "yaml formats"). The pose of camera n is therefore the product
 /// T_n_first = T_n_(n-1) … T_1_0. Other camera models (omni, eucm, ds) and fov are refused.

@@ -265,8 +265,8 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (root.has("calibration")) {
     estimate.calibration = rig_json::parse_summary(root.at("calibration"), estimate.rig);
-    for (const std::string& doubt : estimate.calibration->trust_warnings) {
-      file.warnings.push_back(stored_warning_prefix(place) + doubt);
+    for (const std::string& warning : estimate.calibration->trust_warnings) {
+      file.warnings.push_back(stored_warning_prefix(place) + warning);
     }
   }
   if (root.has("evidence")) {

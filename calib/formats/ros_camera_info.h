@@ -33,8 +33,8 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
 /// A rig of one or two files, the left one first. The relative pose of a pair is recovered from the
 /// rectification:
 ///
-///     R = R_rect_rightᵀ R_rect_left,   T = R_rect_rightᵀ (t_right - t_left),   t = (P03/P00,
-///     P13/P11, 0)
+///     R = R_rect_rightᵀ R_rect_left,   T = R_rect_rightᵀ (t_right - t_left),
+///     t = (P03/P00, P13/P11, 0)
 ///
 /// Throws Error if the two P give no baseline, and for more than two files, since CameraInfo has no
 /// poses. A camera is named by camera_name, else after its file.

@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr int no_mrcal = 4;  // the script's exit code where Python has no mrcal
+constexpr int no_mrcal = 4;  // the script's exit code if Python has no mrcal
 
 template <typename Vector>
 Json list(const Vector& values) {

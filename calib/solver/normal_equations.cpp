@@ -161,7 +161,7 @@ ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E) {
   ReducedNormalEquations result = mapped(equations, E);
   result.held_poses_diagonal =
-      E.cwiseAbs2().transpose() * equations.held_poses_diagonal;  // exact where columns are axes
+      E.cwiseAbs2().transpose() * equations.held_poses_diagonal;  // exact if columns are axes
   return result;
 }
 

@@ -45,7 +45,8 @@ void check_probability(const char* distribution, double p) {
 
 void check_binomial(int trials, double probability) {
   if (trials < 0 || !(probability >= 0 && probability <= 1)) {
-    throw Error("binomial distribution", "its trials are negative or its probability none", "");
+    throw Error("binomial distribution",
+                "its trials are negative or its probability is not in [0, 1]", "");
   }
 }
 

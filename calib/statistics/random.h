@@ -16,7 +16,7 @@ struct RandomCounter {
   std::uint32_t feature = 0;  ///< identity of the thing, never its position in a list
   std::uint32_t source = 0;   ///< 8 bits: which process draws
   std::uint32_t eye = 0;      ///< 2 bits: 0 left, 1 right
-  std::uint32_t frame = 0;    ///< 22 bits: time step or look
+  std::uint32_t frame = 0;    ///< 22 bits: time step or observation
 };
 
 /// `place` for the view of a camera in a frame, distinct for every frame from 0 and every camera

@@ -48,7 +48,7 @@ std::vector<double> ratings(const Eigen::MatrixXd& F,
 }
 
 /// Whether two placements differ by at most one step of each kind.
-bool beside(const BoardPlacement& a, const BoardPlacement& b) {
+bool are_adjacent(const BoardPlacement& a, const BoardPlacement& b) {
   for (std::size_t kind = 0; kind < a.step.size(); ++kind) {
     if (std::abs(a.step[kind] - b.step[kind]) > 1) return false;
   }
@@ -69,7 +69,7 @@ std::vector<ScoredView> distinct_best(const std::vector<CandidateView>& candidat
     if (static_cast<int>(best.size()) > count) break;
     const BoardPlacement& p = candidates[i].placement;
     if (std::any_of(best.begin(), best.end(),
-                    [&](const ScoredView& v) { return beside(v.placement, p); })) {
+                    [&](const ScoredView& v) { return are_adjacent(v.placement, p); })) {
       continue;
     }
     best.push_back({p, sd_before, sd[i]});

@@ -74,7 +74,7 @@ std::optional<Eigen::Vector2d> physical_pixel(const Camera& camera, const Eigen:
   return q;
 }
 
-/// Where the rig `drawn` sees the point that `told` has at `point`.
+/// The position, in the frame of `drawn`, of the point that is at `point` in the frame of `told`.
 Eigen::Vector3d carried(const Pose& told,
                         const Pose& drawn,
                         const FixedPoint& point,

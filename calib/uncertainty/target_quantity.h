@@ -27,7 +27,8 @@ double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor);
 ///   depth          of a point on the left axis at `at_m`, from its pixels in both images (a pair)
 ///   projection     pixel of a point at `at_m` in the rig's frame, mean over all images' area; a
 ///                  row a coordinate
-///   rectification  row of the rectified left image less that of the right, of points at `at_m` all
+///   rectification  row of the rectified left image minus that of the right, of points at `at_m`
+///   all
 ///                  over the left image (a pair)
 ///   baseline       |T| of the second camera
 ///   or the name of a parameter, such as left.f_px.

@@ -143,11 +143,11 @@ std::map<int, PointTriangulation> points_of(const Rig& rig, const SeenPair& seen
 }
 
 /// Adds one held-out board, by its triangulated corners, to the tallies.
-void judge_board(const RigEstimate& estimate,
-                 const std::vector<Eigen::Vector3d>& target_m,
-                 const std::map<int, PointTriangulation>& points,
-                 Tally& edges,
-                 Tally& scale) {
+void evaluate_board(const RigEstimate& estimate,
+                    const std::vector<Eigen::Vector3d>& target_m,
+                    const std::map<int, PointTriangulation>& points,
+                    Tally& edges,
+                    Tally& scale) {
   const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
   const double sigma = estimate.calibration->pixel_sigma_px;
   const auto pairs = edges_of(target_m, points);
@@ -215,7 +215,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
         result.corners_left_out += static_cast<int>(seen[f].size() - points.size());
         ++(points.size() < 4 ? result.boards_left_out : result.boards);
         if (points.size() < 4) continue;
-        judge_board(estimate, observations.target_m, points, edges, scale);
+        evaluate_board(estimate, observations.target_m, points, edges, scale);
       }
     } catch (const Error&) {
       ++result.failed;  // these frames alone do not determine the rig

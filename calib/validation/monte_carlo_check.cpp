@@ -125,11 +125,11 @@ Interval mean_interval(double q, double n, double probability) {
 }
 
 /// Evaluates the covariance with the errors (one column per copy).
-void judge(const Eigen::MatrixXd& errors,
-           const Eigen::MatrixXd& covariance,
-           const ScaledRoot& root,
-           std::uint64_t seed,
-           MonteCarloCheck& check) {
+void evaluate_covariance(const Eigen::MatrixXd& errors,
+                         const Eigen::MatrixXd& covariance,
+                         const ScaledRoot& root,
+                         std::uint64_t seed,
+                         MonteCarloCheck& check) {
   const auto n = static_cast<double>(errors.cols());
   const Eigen::MatrixXd white = root.white * errors;
   const auto q = static_cast<int>(white.rows());
@@ -203,7 +203,7 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                 "ask for more trials");
   }
   const Eigen::MatrixXd found = errors.leftCols(check.trials);
-  judge(found, covariance, root, options.seed, check);
+  evaluate_covariance(found, covariance, root, options.seed, check);
   return check;
 }
 

@@ -35,7 +35,7 @@ struct ViewInfluence {
   double leave_one_out_influence = 0;  ///< |L⁻¹ (move without)|; infinite if largest_share is 1
   Eigen::VectorXd delta;               ///< δ_f, in the tangent of calib/rig.h
   Eigen::VectorXd
-      leave_one_out_delta;  ///< "move without"; empty where leave_one_out_influence is infinite
+      leave_one_out_delta;  ///< "move without"; empty if leave_one_out_influence is infinite
 };
 
 /// One per frame, in the equations' order, with `bound` their C (rows of held parameters zero),

@@ -230,7 +230,7 @@ TEST(Outliers, FramesAndCamerasThatTheStateDoesNotHaveAreAnError) {
   strange = board.observations;
   strange.views.back().camera = 2;
   EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),
-            "frame 3: the rig has 2 cameras, so none of number 2; give the corners of this rig");
+            "frame 3: the rig has 2 cameras, so no camera 2; give the corners of this rig");
 
   std::vector<CornerOutlier> outliers{{9, 0, 0, "", {0, 0}, 0}};
   measure_outliers(board.observations.target_m, board.truth, outliers);

@@ -158,8 +158,8 @@ class RealCorners(cli_test.Case):
         board = self.stamped('frame0{frame}_cam{camera}.jpg')
         self.complains('detect', '--left', self.folder / '*_cam0.jpg', '--right',
                        self.folder / '*_cam1.jpg', *board, '-o', self.folder / 'c.vnl',
-                       of='another image of this camera has the frame number 0 too; the last number in '
-                          'a name is the frame: name images like cam0_frame01.png')
+                       of='another image of this camera has the frame number 0 too; the last '
+                          'number in a name is the frame: name images like cam0_frame01.png')
 
 
 class WrongThing(cli_test.Case):

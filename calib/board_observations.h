@@ -8,16 +8,16 @@
 
 namespace vernier {
 
-/// What one camera saw of the target in one frame.
+/// The corners of the target seen by one camera in one frame.
 struct BoardView {
   int frame = 0;   ///< views of one frame are simultaneous
   int camera = 0;  ///< index into the rig's cameras
   std::string image;
-  std::vector<int> ids;  ///< index into target_m, one a corner
+  std::vector<int> ids;  ///< index into target_m, one per corner
   std::vector<Eigen::Vector2d> pixels_px;
 };
 
-/// Corners of a rigid target seen by the cameras of a rig.
+/// Corners of a rigid target observed by the cameras of a rig.
 struct BoardObservations {
   std::vector<Eigen::Vector2i> size_px;  ///< width and height of each camera's images
   std::vector<Eigen::Vector3d> target_m;
@@ -27,20 +27,20 @@ struct BoardObservations {
 /// The distinct frame numbers, ascending.
 std::vector<int> frames_of(const BoardObservations& observations);
 
-/// Whether these corners of the target fix its pose: four or more, and two at least beside any line
-/// of the board. Corners in a row leave it free to turn about them.
+/// Whether these corners of the target determine its pose: at least four, with at least two off any
+/// line of the board. Collinear corners leave a rotation about the line free.
 bool determines_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids);
 
-/// Evenly spaced ones of `frames`, so many at most.
+/// At most `most` of the frames, evenly spaced.
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int most);
 
-/// The views of some frames, ascending.
+/// The views of the given frames (ascending).
 BoardObservations at_frames(const BoardObservations& observations, const std::vector<int>& frames);
 
-/// Sorts the views by frame, then camera, and checks that the observations can be calibrated from:
-/// sizes given, camera and corner indices in range, no camera twice in a frame, pixels finite and
-/// inside the image, corners of a view that fix the board's pose. Throws Error naming frame,
-/// camera, corner.
+/// Sorts the views by frame, then camera, and checks that they can be used for calibration: sizes
+/// given, camera and corner indices in range, no camera twice in a frame, pixels finite and inside
+/// the image, corners of each view that determine the board's pose. Throws Error naming frame,
+/// camera and corner.
 void check_and_sort(BoardObservations& observations);
 
 }  // namespace vernier

@@ -11,22 +11,21 @@
 
 namespace vernier {
 
-/// Whether the board's warp is among the unknowns.
+/// Whether the board's warp is estimated.
 enum class BoardWarp { known, free };
 
-/// A state of a board calibration: the rig and where the board stood in every frame.
+/// State of a board calibration: the rig and the pose of the board in every frame.
 struct BoardState {
   Rig rig;
   std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
+  std::vector<Pose> T_first_board;  ///< one per frame
   Eigen::Vector2d warp_m{0, 0};     ///< of the board (calib/board/board_warp.h)
 };
 
-/// Where `frame` is among `frames` (ascending), as those of a state are. Throws Error where it is
-/// not among them.
+/// Index of `frame` in `frames` (ascending). Throws Error if it is not there.
 std::size_t frame_index(const std::vector<int>& frames, int frame);
 
-/// The state at some of its frames, ascending; frames it does not have are left out.
+/// The state at the given frames (ascending); frames it does not have are ignored.
 BoardState at_frames(const BoardState& state, const std::vector<int>& frames);
 
 }  // namespace vernier

@@ -9,12 +9,12 @@
 
 namespace vernier {
 
-/// A chessboard by its inner corners: row by row, x along the rows, y from row to row.
+/// A chessboard by its inner corners, row by row: x along the rows, y from row to row.
 struct Chessboard {
   int columns = 9;
   int rows = 6;
   double square_m = 0.025;  ///< distance between columns
-  double row_m = 0;         ///< distance between rows where the squares are none; 0: square_m
+  double row_m = 0;         ///< distance between rows if it differs; 0: square_m
 };
 
 /// A chessboard whose white squares hold ArUco markers, as OpenCV 4.6 draws it: the square in the
@@ -26,8 +26,8 @@ struct CharucoBoard {
   double square_m = 0.03;
   double marker_m = 0.022;
   std::string dictionary = "4x4_50";
-  /// As OpenCV before 4.6 drew it: the square in the lower left corner is black. Another board only
-  /// where the number of rows is even.
+  /// The layout before OpenCV 4.6: the square in the lower left corner is black. Differs only for
+  /// an even number of rows.
   bool legacy = false;
 };
 
@@ -40,21 +40,20 @@ struct CharucoBoard {
 ///     | tag 2 |  | tag 3 |      e.g. 2 x 2 tags: tag 0 has points 0 1 4 5, tag 3 has 10 11 14 15
 ///     4------5   6-------7      (r counts upwards)
 struct AprilTagGrid {
-  int columns = 6;       ///< tags
-  int rows = 6;          ///< tags
-  double tag_m = 0.088;  ///< side of a tag over its black border
-  double spacing = 0.3;  ///< gap between tags over the side of a tag
-  int border_bits = 0;   ///< width of the black border, 1 or 2 (Kalibr's); 0: whichever is found
+  int columns = 6;               ///< tags
+  int rows = 6;                  ///< tags
+  double tag_m = 0.088;          ///< side of a tag over its black border
+  double spacing = 0.3;          ///< gap between tags divided by the side of a tag
+  int border_bits = 0;           ///< width of the black border, 1 or 2 (Kalibr's); 0: detect it
   std::string family = "36h11";  ///< 16h5, 25h9, 36h10, 36h11
-  bool top_row_first = false;    ///< tags count from the upper left instead, row by row downwards
+  bool top_row_first = false;    ///< tags are numbered from the upper left, row by row downwards
 };
 
-/// What is looked for in images.
+/// The target to be detected in images.
 using BoardTarget = std::variant<Chessboard, CharucoBoard, AprilTagGrid>;
 
-/// Throws Error for a target that cannot be: too few corners or more than 1000 a side, a size that
-/// is not above 0, a marker larger than its square, an unknown dictionary, more tags than the
-/// family has.
+/// Throws Error for an invalid target: too few corners or more than 1000 per side, a size not above
+/// 0, a marker larger than its square, an unknown dictionary, or more tags than the family has.
 void check_target(const BoardTarget& target);
 
 /// Corner positions on the target in the order of their indices, z = 0, metres.
@@ -63,7 +62,7 @@ std::vector<Eigen::Vector3d> target_points(const BoardTarget& target);
 /// Columns and rows of the grid of corners.
 Eigen::Vector2i corner_grid(const BoardTarget& target);
 
-/// In words: "9x6 board", "8x6 ChArUco board", "6x6 AprilTag grid".
+/// Description: "9x6 board", "8x6 ChArUco board", "6x6 AprilTag grid".
 std::string name_of(const BoardTarget& target);
 
 }  // namespace vernier

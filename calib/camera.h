@@ -15,11 +15,11 @@
 
 namespace vernier {
 
-/// Every camera model: what differs between them is the distortion of normalised coordinates.
+/// All camera models; they differ in the distortion of normalised coordinates.
 using CameraModel = std::variant<Pinhole, Radial1, OpenCv4, OpenCv5, OpenCv8, Fisheye4>;
 
-/// A camera: S = F(f, ax, ay, ox, oy, k) of Tina Memo 2017-001 with ay = 1 by definition, because
-/// (f, ax, ay) together have an exact null direction.
+/// A camera: S = F(f, ax, ay, ox, oy, k) of Tina Memo 2017-001 with ay = 1 by definition, since (f,
+/// ax, ay) together have an exact null direction.
 ///
 ///     u = f ax x_d + ox      x_d = distort(x / z, y / z; k)
 ///     v = f    y_d + oy
@@ -36,11 +36,11 @@ struct Camera {
   double ox_px() const { return core_parameter(2); }
   double oy_px() const { return core_parameter(3); }
 
-  /// f_px, ax, ox_px or oy_px. Throws Error where the camera has no such parameter.
+  /// f_px, ax, ox_px or oy_px. Throws Error if the camera has no such parameter.
   double core_parameter(Eigen::Index index) const;
 };
 
-/// How many parameters every model has before its distortion: f, ax, ox, oy.
+/// Number of parameters before the distortion in every model: f, ax, ox, oy.
 inline constexpr int core_parameter_count = 4;
 
 /// The model called `name` (radial1, pinhole, opencv4, opencv5, opencv8, fisheye4). Throws Error
@@ -61,18 +61,18 @@ struct ProjectionJacobian {
   Eigen::Matrix<double, 2, Eigen::Dynamic> camera;  ///< px / parameter, in the order of the names
 };
 
-/// Pixel of a point in the camera's frame (metres, z > 0). Throws Error where the camera has not as
-/// many parameters as its model, as the functions below do.
+/// Pixel of a point in the camera's frame (metres, z > 0). Like the functions below, throws Error
+/// if the number of the camera's parameters is not that of its model.
 Eigen::Vector2d project(const Camera& camera, const Eigen::Vector3d& point);
 Eigen::Vector2d project(const Camera& camera,
                         const Eigen::Vector3d& point,
                         ProjectionJacobian& jacobian);
 
-/// The ray (x / z, y / z, 1) that projects to `pixel`: Newton's method on the distortion, to
-/// rounding. Throws Error where the model cannot be inverted (beyond its fold).
+/// The ray (x / z, y / z, 1) that projects to `pixel`, by Newton's method on the distortion, to
+/// rounding. Throws Error if the model cannot be inverted there (beyond its fold).
 Eigen::Vector3d unproject(const Camera& camera, const Eigen::Vector2d& pixel);
 
-/// The same, or nothing where the model cannot be inverted.
+/// The same; std::nullopt if the model cannot be inverted there.
 std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::Vector2d& pixel);
 
 /// Whether the pixel lies in the image: within half a pixel of the outermost pixel centres.

@@ -15,25 +15,25 @@
 
 namespace vernier {
 
-/// Something that is known of a rig: a rig file (a calibration with evidence, or a mere prior), or
-/// a batch of matched pairs.
+/// One input about a rig: a rig file (a calibration with evidence, or only a prior), or a batch of
+/// matched pairs.
 struct CombineInput {
   std::string name;
   std::optional<RigEstimate> estimate;
-  PairObservations pairs;  ///< where there is no estimate
+  PairObservations pairs;  ///< if there is no estimate
 };
 
 struct CombineOptions {
-  double min_p = 1e-4;            ///< an input that disagrees more than this is left out
-  bool keep_disagreeing = false;  ///< … or not
+  double min_p = 1e-4;            ///< an input with a smaller p-value is excluded …
+  bool keep_disagreeing = false;  ///< … unless this is set
   JointOptions joint;
 };
 
-/// What became of an input.
+/// The result for one input.
 struct CombinedInput {
   std::string name;
   std::string kind;            ///< prior, board, pairs, or board and pairs
-  PriorConsistency agreement;  ///< with what stood before it; of the first: none
+  PriorConsistency agreement;  ///< with the previous inputs; none for the first
   bool used = true;
 };
 
@@ -41,29 +41,28 @@ struct Combination {
   JointCalibration joint;
   JointEvidence evidence;  ///< of the inputs used
   std::vector<CombinedInput> inputs;
-  JointOptions options;  ///< with what the first input holds
+  JointOptions options;  ///< with the parameters held by the first input
 };
 
-/// One calibration from many. Evidence is put together and solved as one problem
-/// (calibrate_jointly): raw pairs and corners are linearised again at the common minimum, so the
-/// order of the inputs does not matter and the answer is the batch solution. A rig file without
-/// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
-/// several files counts once, and one that is another input's calibration not at all). Before it is
-/// taken in, every input is compared with all before it:
-/// of pairs, the prior's offset (prior_consistency.h); of calibrations, their difference
-/// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
-/// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
-/// lens models than the first.
+/// One calibration from several inputs. All evidence is solved as one problem (calibrate_jointly):
+/// raw pairs and corners are linearised again at the common minimum, so the order of the inputs
+/// does not matter and the result is the batch solution. A rig file without evidence is a prior;
+/// one with evidence contributes that, its own priors included (a prior contained in several files
+/// counts once, and one that is the calibration of another input not at all). Every input is
+/// compared with all previous ones before it is used: pairs by the prior's offset
+/// (prior_consistency.h), calibrations by their difference (rig_difference.h). An inconsistent one,
+/// as after a mechanical shock, is excluded and reported. Throws Error if the first inputs do not
+/// determine the rig, or inputs differ from the first in cameras or lens models.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
 
-/// Evidence of one input, its knowledge of the rig as a prior where it has no other.
+/// Evidence of one input; the rig's estimate as a prior if it has no other.
 JointEvidence evidence_of(const CombineInput& input);
 
-/// The information filter of Thacker and Mayhew (1991): batch after batch, what is known is kept as
-/// a mean and a covariance only, linearised where each batch left it.
+/// The information filter of Thacker and Mayhew (1991): batch by batch, only a mean and a
+/// covariance are kept, linearised where each batch left them.
 struct InformationFilterResult {
   Rig rig;
-  Covariance covariance;        ///< the bound that the filter believes
+  Covariance covariance;        ///< the filter's bound
   double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
   std::string worst_parameter;  ///< … in that one's bound, and of which parameter
   double min_sigma_ratio = 1;   ///< smallest of its standard deviations over the batch's …

@@ -9,11 +9,11 @@
 
 namespace vernier {
 
-/// Where a covariance comes from.
+/// Source of a covariance.
 enum class CovarianceKind { mvb, clustered, jackknife, prior, combined };
 
 std::string_view name(CovarianceKind kind);
-/// Throws Error for a name that is none of mvb, clustered, jackknife, prior, combined.
+/// Throws Error for any name but mvb, clustered, jackknife, prior, combined.
 CovarianceKind covariance_kind(std::string_view name);
 
 /// A covariance of the rig's free parameters with their names: rotations in the left tangent.
@@ -29,14 +29,14 @@ struct CovarianceDirection {
   double variance_share = 0;   ///< s over the sum of all s, in [0, 1]
   double scaled_variance = 0;  ///< s
   Eigen::VectorXd direction;   ///< a column of U, unit, in standard deviations
-  std::string description;     ///< what it means, for a person
+  std::string description;     ///< description in words
 };
 
 /// Scaled singular value decomposition of a covariance: C = (D U √s)(D U √s)ᵀ.
 class ScaledDecomposition {
  public:
-  /// Throws Error where `covariance` is not symmetric or not positive semi-definite, naming the
-  /// direction in which it fails.
+  /// Throws Error, naming the direction, if `covariance` is not symmetric or not positive
+  /// semi-definite.
   explicit ScaledDecomposition(const Covariance& covariance);
 
   /// D U √s, parameters x parameters: C = factor factorᵀ.
@@ -53,8 +53,8 @@ class ScaledDecomposition {
   double raw_condition_ = 0, scaled_condition_ = 0;
 };
 
-/// A unit direction in words: "0.9 of this direction is the right centre (x) against the right
-/// camera's rotation about y".
+/// Description of a unit direction: "0.9 of this direction is the right centre (x) against the
+/// right camera's rotation about y".
 std::string describe_direction(const Eigen::VectorXd& direction,
                                const std::vector<std::string>& names);
 

@@ -8,25 +8,24 @@
 
 namespace vernier {
 
-/// What every function throws on a bad argument or a bad file.
+/// Thrown by every function for an invalid argument or file.
 ///
-/// One line for a person: where the fault is (a file, with its line or key where there is one),
-/// what is wrong, and what to do about it. what() gives the three as "place: fault; remedy". An
-/// expected failure of a method (too few lines to localise from, say) is no Error but a status in
-/// that method's result.
+/// One line for the user: location (a file, with its line or key if there is one), fault and
+/// remedy. what() is "place: fault; remedy". An expected failure of a method (such as too few lines
+/// for localisation) is not an Error but a status in the method's result.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& place, const std::string& fault, const std::string& remedy)
       : std::runtime_error(place + ": " + fault + (remedy.empty() ? "" : "; " + remedy)),
         parts_(std::make_shared<const Parts>(Parts{place, fault, remedy})) {}
 
-  // No move: what is moved from keeps its parts too.
+  // No move constructor: a moved-from Error keeps its parts too.
   Error(const Error&) = default;
   Error& operator=(const Error&) = default;
 
   const std::string& place() const noexcept { return parts_->place; }
   const std::string& fault() const noexcept { return parts_->fault; }
-  /// Empty where there is none.
+  /// Empty if there is none.
   const std::string& remedy() const noexcept { return parts_->remedy; }
 
  private:

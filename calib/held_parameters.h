@@ -14,8 +14,8 @@ namespace vernier {
 /// component of the rotation vector.
 struct HeldParameter {
   std::string name;  ///< such as "left.ax" (see parameter_names)
-  /// Nothing: ax 1, the centre in the middle of the image, no distortion; a focal length or a part
-  /// of a pose where the start has it.
+  /// std::nullopt: ax 1, the principal point at the image centre, no distortion; a focal length or
+  /// a component of a pose keeps its start value.
   std::optional<double> value;
 };
 

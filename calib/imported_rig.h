@@ -14,45 +14,45 @@
 
 namespace vernier {
 
-/// What another tool's file may leave unsaid.
+/// Information that another tool's file may lack.
 struct ImportOptions {
-  std::optional<CameraModel> model = {};  ///< unless given, the smallest that holds it exactly
-  std::optional<Eigen::Vector2i> size_px = {};  ///< of every camera, where the file has no size
+  std::optional<CameraModel> model = {};  ///< default: the smallest that represents it exactly
+  std::optional<Eigen::Vector2i> size_px = {};  ///< of every camera, if the file has no size
   double unit_m = 1;                            ///< the file's unit of length, metres
 };
 
-/// A rig out of another tool's files.
+/// A rig imported from another tool's files.
 struct ImportedRig {
   Rig rig;
-  std::vector<std::string> notes;  ///< what was assumed, and what a rig has no place for
+  std::vector<std::string> notes;  ///< assumptions, and information that a rig cannot hold
 };
 
-/// A file of another tool's, to be written: a rig may need several.
+/// An exported file of another tool's format; a rig may need several.
 struct ExportedFile {
   std::filesystem::path name;  ///< without a folder
   std::string text;
 };
 
-/// A camera and where it is, before the rig's frame is chosen.
+/// A camera and its pose, before the rig's frame is chosen.
 struct PlacedCamera {
   Camera camera;
   Pose T_camera_reference;
 };
 
-/// The rig in the frame of the first camera: T_i_first = T_i_reference T_first_reference⁻¹.
-/// Cameras without a name, or with another's, become left, right, camera2 …
+/// The rig in the frame of the first camera: T_i_first = T_i_reference T_first_reference⁻¹. Cameras
+/// without a name, or with a repeated one, are named left, right, camera2 …
 Rig rig_of(std::vector<PlacedCamera> cameras);
 
-/// left, right, camera2 …: the names of cameras that have none.
+/// Default camera names: left, right, camera2 ….
 std::string default_camera_name(std::size_t index);
 
-/// The camera's name as one of a file. Throws Error where it is none: empty, a dot first, or with a
-/// slash, a backslash or a control character in it.
+/// The camera's name, usable as a file name. Throws Error if it is empty, begins with a dot, or
+/// contains a slash, a backslash or a control character.
 const std::string& file_stem(const Camera& camera);
 
-/// The rotation nearest to a matrix from a file: the matrix itself where it is orthonormal to
-/// rounding (1e-14), U Vᵀ of its singular value decomposition where it is to 1e-6. Throws
-/// Error(`place`) beyond that, and for a mirror.
+/// The rotation nearest to a matrix from a file: the matrix itself if it is orthonormal to rounding
+/// (1e-14), U Vᵀ of its singular value decomposition if it is to 1e-6. Throws Error(`place`) for
+/// larger deviations, and for a reflection.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place);
 
 }  // namespace vernier

@@ -12,38 +12,38 @@
 
 namespace vernier {
 
-/// Reads `frame,camera,row,col,X,Y,Z,qx,qy` (further columns ignored, target metres, pixels).
-/// Every (row, col) must have one place on the target, and one line a frame and camera; frames are
-/// 0 or above, cameras 0 to 1023. Throws Error with file and line.
+/// Reads `frame,camera,row,col,X,Y,Z,qx,qy` (further columns ignored, target in metres, pixels).
+/// Every (row, col) must have one position on the target, and one line per frame and camera; frames
+/// are 0 or above, cameras 0 to 1023. Throws Error with file and line.
 BoardObservations read_observations(const std::filesystem::path& file,
                                     const std::vector<Eigen::Vector2i>& size_px);
 
 /// Writes the same columns; numbers are exact (shortest form that reads back equal).
 void write_observations(const BoardObservations& observations, const std::filesystem::path& file);
 
-/// Corners in mrcal's format: a line `# filename x y level`, then per image one line a corner in
-/// the order of the target's indices (a chessboard's row by row), "-" for x, y, level where one was
-/// not found. An image's frame is the last number in its name and its camera the rest of the name,
-/// in order of first appearance (left01.jpg and right01.jpg: frame 1 of cameras 0 and 1). A level
-/// below 0 means as much as "-". Level k > 0 says that the corner was found in an image reduced 2^k
-/// times; such corners weigh here as much as others, which count_coarse_corners lets you find out.
-/// Throws Error with file and line, and for a target that cannot be.
+/// Corners in mrcal's format: a line `# filename x y level`, then for each image one line per
+/// corner in the order of the target's indices (row by row for a chessboard), "-" for x, y, level
+/// if it was not found. The frame of an image is the last number in its name and its camera the
+/// rest of the name, numbered by first appearance (left01.jpg and right01.jpg: frame 1 of cameras 0
+/// and 1). A level below 0 is equivalent to "-". Level k > 0 means that the corner was found in an
+/// image reduced 2^k times; such corners have full weight here, see count_coarse_corners. Throws
+/// Error with file and line, and for an invalid target.
 BoardObservations read_corners(const std::filesystem::path& file,
                                const BoardTarget& target,
                                const std::vector<Eigen::Vector2i>& size_px);
 
-/// How many corners of a corners file have a level above 0: coarser by 2^level, mrcal gives them
-/// the weight 1/2^level.
+/// Number of corners with a level above 0 in a corners file: coarser by 2^level, weighted by
+/// 1/2^level in mrcal.
 int count_coarse_corners(const std::filesystem::path& file);
 
-/// Writes camera after camera, so that reading counts them alike; a view without corners is one
-/// line of dashes. Throws Error for an image whose name would not read back: one that is empty,
-/// holds blanks, begins with '#', has no number, or does not go with its camera.
+/// Writes camera by camera, so that reading numbers them in the same way; a view without corners is
+/// one line of dashes. Throws Error for an image whose name would not read back: one that is empty,
+/// contains blanks, begins with '#', has no number, or does not match its camera.
 void write_corners(const BoardObservations& observations,
                    const BoardTarget& target,
                    const std::filesystem::path& file);
 
-/// How an image belongs to a rig by its name.
+/// Camera and frame of an image from its name.
 struct ImageName {
   std::string camera;      ///< the name without its last number
   std::int64_t frame = 0;  ///< the last number (calib/base/frame_numbering.h)

@@ -9,13 +9,13 @@
 
 namespace vernier {
 
-/// The Brown–Conrady family in OpenCV's order and meaning of the coefficients:
+/// The Brown–Conrady models with OpenCV's order and definition of the coefficients:
 ///
-///     x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶) + 2 p1 x y + p2 (r² + 2
-///     x²) y_d = y (…)                                                    + p1 (r² + 2 y²) + 2 p2 x
-///     y
+///     g   = (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶)
+///     x_d = x g + 2 p1 x y + p2 (r² + 2 x²)
+///     y_d = y g + p1 (r² + 2 y²) + 2 p2 x y
 ///
-/// with the coefficients that a model does not list equal to zero. Brown, "Close-range camera
+/// with coefficients that a model does not list equal to zero. Brown, "Close-range camera
 /// calibration" (1971); the rational form is OpenCV's.
 struct OpenCv4 {
   static constexpr std::string_view name = "opencv4";

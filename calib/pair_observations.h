@@ -17,12 +17,12 @@ struct ImagePair {
   std::size_t first = 0, count = 0;
 };
 
-/// Corners of any scene matched between simultaneous images of a left and a right camera. Nothing
-/// is known of where they are in space.
+/// Corners of an arbitrary scene matched between simultaneous images of a left and a right camera;
+/// their positions in space are unknown.
 struct PairObservations {
   std::vector<ImagePair> image_pairs;      ///< of distinct numbers, in the order of their rows
   std::vector<Eigen::Vector4d> pixels_px;  ///< u_left, v_left, u_right, v_right
-  /// Standard deviation of a coordinate: one a row, or a single one for all. Empty: 1 px.
+  /// Standard deviation of a coordinate: one per row, or a single one for all. Empty: 1 px.
   std::vector<float> sigma_px;
 
   double sigma_of(std::size_t row) const {
@@ -37,16 +37,15 @@ void add_pair(PairObservations& pairs,
               const Eigen::Vector4d& pixels_px,
               double sigma_px);
 
-/// Adds all of `more` as image pairs of their own; one whose number is taken gets the least that is
-/// free.
+/// Adds all of `more` as separate image pairs; one with a number in use gets the smallest free one.
 void append(PairObservations& pairs, const PairObservations& more);
 
-/// The rows with `kept`, image pairs without any left out.
+/// The rows with `kept` set; image pairs without any are dropped.
 PairObservations selected(const PairObservations& pairs, const std::vector<bool>& kept);
 
-/// Checks that the rig can be calibrated from the pairs: two cameras, pixels finite and inside the
-/// images, noise above 0 and finite, no match given twice. Throws Error naming the row as a line of
-/// the file `place` (rows begin on its second line), or by its number where `place` is empty.
+/// Checks that the pairs can be used for calibration: two cameras, pixels finite and inside the
+/// images, noise above 0 and finite, no repeated match. Throws Error naming the row as a line of
+/// the file `place` (rows begin on its second line), or by its number if `place` is empty.
 void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place = "");
 
 }  // namespace vernier

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// A rigid motion. Named `T_a_b` it maps coordinates in b to coordinates in a:
+/// A rigid transform. Named `T_a_b`, it maps coordinates in b to coordinates in a:
 ///
 ///     x_a = T_a_b * x_b = R x_b + t
 struct Pose {
@@ -28,12 +28,12 @@ Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& w);
 /// Rotation vector (radians, angle in [0, pi]) of a rotation matrix; the inverse of the above.
 Eigen::Vector3d vector_from_rotation(const Eigen::Matrix3d& R);
 
-/// Left Jacobian J_l(w) of SO(3): exp(w + dw) = exp(J_l(w) dw) exp(w) to first order, so it takes
-/// an additive change of a rotation vector to the left tangent. Solà, Deray and Atchuthan,
-/// "A micro Lie theory for state estimation in robotics" (2018), Eq. (145).
+/// Left Jacobian J_l(w) of SO(3): exp(w + dw) = exp(J_l(w) dw) exp(w) to first order, so it maps an
+/// additive change of a rotation vector to the left tangent. Solà, Deray and Atchuthan, "A micro
+/// Lie theory for state estimation in robotics" (2018), Eq. (145).
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w);
 
-/// Left tangent: R becomes exp(delta[0..2]) R and t becomes t + delta[3..5].
+/// Update in the left tangent: R becomes exp(delta[0..2]) R and t becomes t + delta[3..5].
 Pose retract(const Pose& T, const Eigen::Matrix<double, 6, 1>& delta);
 
 }  // namespace vernier

@@ -8,33 +8,33 @@
 
 namespace vernier {
 
-/// Whether new data and what was known before them can be of one rig.
+/// Consistency test of new data with a prior.
 struct PriorConsistency {
-  double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
-  int dof = 0;          ///< directions that the data improved
-  int clusters = 0;     ///< that the scatter was estimated from; 0: it is known
-  double p_value = 1;   ///< of a χ² this large or larger, by the law below
-  double in_sigma = 0;  ///< along the direction that disagrees most …
-  std::string description;  ///< … which is this
+  double chi2 = 0;          ///< over the observed directions
+  int dof = 0;              ///< number of directions that the data improved
+  int clusters = 0;         ///< number used to estimate the scatter; 0: it is known
+  double p_value = 1;       ///< of a χ² this large or larger, by the law below
+  double in_sigma = 0;      ///< along the direction of largest disagreement …
+  std::string description;  ///< … described here
 };
 
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
 /// and C the honest covariance of the estimate, all over the same directions, the offset of a
 /// right prior and right data has the covariance
 ///
-///     D = C_mvb (B + H C_0 H) C_mvb,   H = C_mvb⁻¹ − C_0⁻¹,   C_mvb B C_mvb = C − C_mvb C_0⁻¹
-///     C_mvb
+///     D = C_mvb (B + H C_0 H) C_mvb,   H = C_mvb⁻¹ − C_0⁻¹,
+///     C_mvb B C_mvb = C − C_mvb C_0⁻¹ C_mvb
 ///
 /// (the estimate is the prior's mean moved by C_mvb times the score of the data there, whose noise
 /// has the scatter B). χ² is of δ over the eigenvectors of C_0^(-1/2) D C_0^(-1/2) with eigenvalues
-/// above 0.05, that is where the data say something. Where B was estimated from `clusters` of data
+/// above 0.05, the directions the data inform. If B was estimated from `clusters` of data
 /// (0: it is known), χ² over its degrees of freedom is referred to Fisher's F with clusters − 1
 /// below, as of a variance with that many. Bar-Shalom, Li and Kirubarajan, "Estimation
 /// with Applications to Tracking and Navigation" (2001), section 5.4, has it for white noise as the
 /// normalised innovation squared. The estimate
 /// may have been made with the prior `looseness` times as wide, so that a wrong one does not hold
 /// the rig away from the data: then H = C_mvb⁻¹ − C_0⁻¹ / looseness², and likewise in the last
-/// equation. Throws Error where C_0 is singular.
+/// equation. Throws Error if C_0 is singular.
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
                                    const Eigen::MatrixXd& prior,

@@ -13,23 +13,23 @@
 
 namespace vernier {
 
-/// What a point is fixed to while the calibration changes; there is no projection uncertainty
-/// without saying so.
+/// The frame in which a point is fixed while the calibration changes, which projection uncertainty
+/// depends on.
 enum class PointFixedTo {
   boards,        ///< the world, by the mean of the calibration's boards (mrcal's "mean-pcam")
   camera,        ///< the camera's own frame: its intrinsics alone, the same at every distance
   first_camera,  ///< the rig's frame: intrinsics and the camera's pose
 };
 
-/// Covariance (px²) of the pixel at which a camera sees a fixed point. To first order
+/// Covariance (px²) of the projection of a fixed point in a camera. To first order
 ///
 ///     q = project(R_c x + t_c),   δq = J_i δi + J_p (w_c × R_c x + τ_c + R_c δx)
 ///
 /// with (w_c, τ_c) the left tangent of the camera's pose and δx = w × x + u the mean motion of the
-/// boards (rig_and_motion_covariance) where the point is fixed to them, else 0; a point fixed to
-/// the camera has the first term alone. At infinity translations drop out. With `boards` and the
-/// bound this is mrcal 2.2's projection_uncertainty (method "mean-pcam"; mrcal's documentation,
-/// "Propagating calibration uncertainty", and D. Kogan's derivation there), reached through six
+/// boards (rig_and_motion_covariance) if the point is fixed to them, else 0; a point fixed to the
+/// camera has the first term only. At infinity translations vanish. With `boards` and the bound
+/// this is mrcal 2.2's projection_uncertainty (method "mean-pcam"; mrcal's documentation,
+/// "Propagating calibration uncertainty", and D. Kogan's derivation there), computed from six
 /// numbers instead of all board poses.
 class ProjectionUncertainty {
  public:
@@ -41,11 +41,11 @@ class ProjectionUncertainty {
                         int camera,
                         PointFixedTo fixed_to);
 
-  /// For the point seen at `pixel` at a range along its ray, m, or infinity. Nothing where the
+  /// For the point seen at `pixel` at a range along its ray, m, or infinity. std::nullopt if the
   /// camera's model cannot be inverted. Throws Error unless distance_m > 0.
   std::optional<Eigen::Matrix2d> covariance(const Eigen::Vector2d& pixel, double distance_m) const;
 
-  /// For a point x of the camera's frame, m, or (at infinity) a direction.
+  /// For a point x in the camera's frame, m, or (at infinity) a direction.
   Eigen::Matrix2d covariance_of_point(const Eigen::Vector3d& x_camera, bool at_infinity) const;
 
   const Camera& camera() const { return camera_; }
@@ -60,15 +60,16 @@ class ProjectionUncertainty {
   Eigen::MatrixXd covariance_;  ///< of intrinsics, then the camera's pose, then the boards' motion
 };
 
-/// Standard deviation in the worst direction: the root of the larger eigenvalue.
+/// Standard deviation in the worst direction: the square root of the larger eigenvalue.
 double worst_sd(const Eigen::Matrix2d& covariance);
 
-/// Over a camera's image, mrcal's grid: columns x rows pixels from the first to the last pixel.
+/// Covariances over a camera's image on mrcal's grid: columns x rows pixels from the first to the
+/// last pixel.
 struct ProjectionGrid {
   int columns = 0, rows = 0;
-  std::vector<double> x_px, y_px;           ///< one a column, one a row
-  std::vector<Eigen::Matrix2d> covariance;  ///< row by row; NaN where the pixel has no ray
-  int absent = 0;                           ///< how many have none
+  std::vector<double> x_px, y_px;           ///< one per column, one per row
+  std::vector<Eigen::Matrix2d> covariance;  ///< row by row; NaN if the pixel has no ray
+  int absent = 0;                           ///< number of pixels without a ray
 };
 
 /// Throws Error unless columns and rows are at least 2 and distance_m > 0.

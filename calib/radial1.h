@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// What a model says of a normalised point: where distortion takes it, and its derivatives.
+/// The distorted position of a normalised point and its derivatives.
 template <int N>
 struct Distorted {
   Eigen::Vector2d x;                 ///< distorted normalised coordinates

@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// Cameras fixed to each other; the first one's frame is the rig's.
+/// Cameras fixed relative to each other; the first camera's frame is the rig's.
 ///
 /// Parameter vector, in this order and with these names:
 ///
@@ -20,18 +20,18 @@ namespace vernier {
 /// that is the intrinsics of every camera, then the pose of every camera but the first.
 struct Rig {
   std::vector<Camera> cameras;
-  std::vector<Pose> T_camera_first;  ///< one a camera, the first the identity
+  std::vector<Pose> T_camera_first;  ///< one per camera, the first the identity
 };
 
 std::vector<std::string> parameter_names(const Rig& rig);
 int parameter_count(const Rig& rig);
 
-/// Values in the order of the names; a rotation as its rotation vector. Throws Error where a camera
-/// has not as many parameters as its model.
+/// Values in the order of the names; a rotation as its rotation vector. Throws Error if the number
+/// of a camera's parameters is not that of its model.
 Eigen::VectorXd parameters(const Rig& rig);
 
-/// The rig at `rig` moved by `delta` in its tangent: intrinsics add, a rotation becomes
-/// exp([w]x) R (left tangent, radians), a translation adds. Covariances live in this tangent.
+/// The rig moved by `delta` in its tangent: intrinsics add, a rotation becomes exp([w]x) R (left
+/// tangent, radians), a translation adds. Covariances are expressed in this tangent.
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
 
 /// The delta with retract(from, delta) = to.

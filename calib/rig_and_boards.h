@@ -12,20 +12,20 @@
 
 namespace vernier {
 
-/// The second half of the normal equations: where the boards stood, given the rig.
+/// The distribution of the board poses given the rig.
 ///
 /// reduced_normal_equations (calib/solver/normal_equations.h) eliminates the board poses; this
-/// keeps what it needs to bring them back. With A, B, W the derivatives of a frame's residuals by
-/// the rig a, by the board's pose in that frame and by the board's warp w, the minimum moves, at
-/// unit noise,
+/// keeps what is needed to recover them. With A, B, W the derivatives of a frame's residuals with
+/// respect to the rig a, the board's pose in that frame and the board's warp w, the minimum moves,
+/// at unit noise,
 ///
 ///     δ_f = −(BᵀB)⁻¹ (BᵀA δ_a + BᵀW δ_w) + ε_f,   Cov ε_f = (BᵀB)⁻¹
 ///     δ_w = −S_ww⁻¹ S_wa δ_a + ε_w,               Cov ε_w = S_ww⁻¹
 ///
-/// with S the information left when the poses are eliminated, and ε_f, ε_w and δ_a independent of
-/// each other. This is the inverse of the full normal matrix written as a chain: joint covariances
-/// of rig and boards follow without it ever being formed, whatever the covariance of a is.
-/// Tangents: calib/rig.h for a, calib/pose.h for δ_f.
+/// with S the information after elimination of the poses, and ε_f, ε_w and δ_a independent of each
+/// other. This is the inverse of the full normal matrix written as a chain: joint covariances of
+/// rig and boards follow without forming it, for any covariance of a. Tangents: calib/rig.h for a,
+/// calib/pose.h for δ_f.
 struct ConditionalBoardPoses {
   struct Frame {
     Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;  ///< −(BᵀB)⁻¹ BᵀA, 6 x parameters
@@ -37,28 +37,29 @@ struct ConditionalBoardPoses {
   Eigen::Matrix2d warp_factor;                           ///< of Cov ε_w; zero for a flat board
 };
 
-/// How rig and boards move together: what carries a point that is fixed in space rather than in a
-/// camera (mrcal's reference for its projection uncertainty).
+/// Joint distribution of rig and boards, needed for points fixed in space rather than in a camera
+/// (mrcal's reference for its projection uncertainty).
 ///
 /// The covariance of the boards given the rig is board_sigma_px² times that of joint_information.h.
-/// For the bound board_sigma_px is the pixel noise σ and everything is (JᵀJ)⁻¹ σ² exactly. For the
-/// honest covariance C of the rig it is σ √φ with the mean inflation of what the views say,
+/// For the bound, board_sigma_px is the pixel noise σ and everything is (JᵀJ)⁻¹ σ² exactly. For the
+/// honest covariance C of the rig it is σ √φ with the mean inflation of the part determined by the
+/// views,
 ///
 ///     φ = (tr(C_bound⁻¹ C) − (p − d)) / d,   d = tr(C_bound S)
 ///
-/// of p parameters, S the views' information: a prior's part, p − d, is not inflated. The
-/// residuals of a frame cannot show how wrong its own pose is (Bᵀr = 0 at the minimum, whatever the
-/// noise), so no sandwich covers that part, and it is taken to be as inflated as the rig.
+/// for p parameters, S the views' information: the prior's part, p − d, is not inflated. The
+/// residuals of a frame cannot show the error of its own pose (Bᵀr = 0 at the minimum for any
+/// noise), so no sandwich covers that part; it is assumed to be inflated like the rig.
 struct RigAndBoards {
   Rig rig;
   std::vector<int> frames;          ///< ascending
-  std::vector<Pose> T_first_board;  ///< one a frame
+  std::vector<Pose> T_first_board;  ///< one per frame
   Eigen::MatrixXd rig_covariance;
   ConditionalBoardPoses given_rig;
   double board_sigma_px = 0;
 };
 
-/// Throws Error(`place`) where the estimate has no evidence, pixel noise or covariance.
+/// Throws Error(`place`) if the estimate has no evidence, pixel noise or covariance.
 RigAndBoards rig_and_boards(const RigEstimate& estimate,
                             CovarianceChoice choice,
                             const std::string& place = "rig");

@@ -11,12 +11,12 @@
 
 namespace vernier {
 
-/// One parameter of two rigs.
+/// The difference in one parameter of two rigs.
 struct ParameterDifference {
   std::string name;
   double a = 0, b = 0;  ///< of a rotation, its rotation vector
   double delta = 0;     ///< b against a in the tangent of calib/rig.h
-  double sigma = 0;     ///< standard deviation of delta if both rigs are right
+  double sigma = 0;     ///< standard deviation of delta if both rigs are correct
   bool held = false;    ///< neither rig gives it a variance
 };
 
@@ -26,38 +26,38 @@ struct DirectionDifference {
   std::string description;
 };
 
-/// Whether two calibrations agree within their uncertainties. With δ = b ⊖ a over the parameters
-/// that both have by name and meaning, in the tangent of calib/rig.h (a rotation of which both hold
-/// a part, by its rotation vector),
+/// Tests whether two calibrations agree within their uncertainties. With δ = b ⊖ a over the
+/// parameters common to both by name and meaning, in the tangent of calib/rig.h (a rotation partly
+/// held in both: by its rotation vector),
 ///
 ///     d² = δᵀ (C_a + C_b)⁻¹ δ     (Mahalanobis 1936)
 ///
-/// chi-squared with as many degrees of freedom as C_a + C_b has rank, if both are right, normal and
-/// independent. It is evaluated by the eigenvectors of the scaled matrix: directions without
-/// variance (below 1e-12 of the largest) stand apart.
+/// chi-squared with the rank of C_a + C_b as degrees of freedom, if both are correct, normal and
+/// independent. Evaluated with the eigenvectors of the scaled matrix; directions without variance
+/// (below 1e-12 of the largest) are treated separately.
 struct RigDifference {
   std::vector<ParameterDifference> parameters;    ///< those that both have
   std::vector<std::string> only_in_a, only_in_b;  ///< the others
   std::vector<DirectionDifference> directions;    ///< largest first
   std::vector<std::string>
-      fixed_at_different_values;  ///< in words: no variance, and yet not the same
-  double mahalanobis2 = 0;        ///< d²; infinite where something is held apart
+      fixed_at_different_values;  ///< descriptions: no variance, but different values
+  double mahalanobis2 = 0;        ///< d²; infinite if a fixed value differs
   int dof = 0;
   double p_value = 1;  ///< of a d² this large or larger
 };
 
-/// Throws Error (naming `place_b`) where the rigs are not of the same cameras: their number, their
-/// names or their image sizes.
+/// Throws Error (naming `place_b`) if the rigs differ in the number, names or image sizes of their
+/// cameras.
 void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b);
 
-/// Throws Error as above, or where a covariance is not one of its rig's parameters.
+/// Throws Error as above, or if a covariance is not over its rig's parameters.
 RigDifference rig_difference(const Rig& a,
                              const Covariance& covariance_a,
                              const Rig& b,
                              const Covariance& covariance_b);
 
-/// How many views (of one camera in one frame) of `a` are the same image in `b`: the pixels of the
-/// corners that both found are the same, or the image's name is and they lie within 2 px (rms, per
+/// Number of views (one camera in one frame) of `a` that are the same image in `b`: the pixels of
+/// the common corners are equal, or the image's name is and they differ by less than 2 px (rms, per
 /// coordinate).
 int shared_views(const CalibrationEvidence& a,
                  const Rig& rig_a,

@@ -17,15 +17,15 @@
 
 namespace vernier {
 
-/// A corner left out of a calibration.
+/// A corner excluded from a calibration.
 struct CornerOutlier {
   int frame = 0, camera = 0, id = 0;
   std::string image;
   Eigen::Vector2d pixel_px{0, 0};
-  double residual_px = 0;  ///< its distance from where the final calibration predicts it
+  double residual_px = 0;  ///< its distance from the prediction of the final calibration
 };
 
-/// A matched pair left out of a calibration.
+/// A matched pair excluded from a calibration.
 struct PairOutlier {
   int image_pair = 0;
   std::size_t row = 0;  ///< among the pairs of the evidence
@@ -33,7 +33,7 @@ struct PairOutlier {
   double residual_px = 0;  ///< its Sampson distance
 };
 
-/// How a calibration went.
+/// Summary of a calibration.
 struct CalibrationSummary {
   std::string source = "board";         ///< board, pairs or combined
   double pixel_sigma_px = 0;            ///< standard deviation of a pixel coordinate
@@ -41,61 +41,59 @@ struct CalibrationSummary {
   double chi2 = 0;                      ///< sum of squared residuals over pixel_sigma_px²
   int dof = 0;                          ///< residuals less parameters, board poses included
   int views = 0;                        ///< frames used
-  double prior_chi2 = 0;                ///< the priors' part of the cost; 0 without one
-  int prior_dof = 0;                    ///< parameters that the priors know
+  double prior_chi2 = 0;                ///< the priors' part of the cost; 0 without a prior
+  int prior_dof = 0;                    ///< number of parameters with a prior
   std::vector<std::string> held;        ///< parameters that were not estimated
-  std::vector<CornerOutlier> outliers;  ///< corners left out
+  std::vector<CornerOutlier> outliers;  ///< excluded corners
   std::vector<PairOutlier> pair_outliers;
   std::vector<std::string> warnings;
-  std::vector<std::string> trust_warnings;  ///< why the result may be wrong, and what to do
+  std::vector<std::string> trust_warnings;  ///< why the result may be wrong, with a remedy
 };
 
-/// All that is needed to solve again, to propagate with the board poses, to compare and combine.
+/// Everything needed to solve again, to propagate with the board poses, to compare and to combine.
 struct CalibrationEvidence {
   BoardObservations observations;
   std::vector<int> frames;               ///< ascending
-  std::vector<Pose> T_first_board;       ///< one a frame
+  std::vector<Pose> T_first_board;       ///< one per frame
   Eigen::Vector2d warp_m{0, 0};          ///< of the board (calib/board/board_warp.h)
-  PairObservations pairs;                ///< matched corners, outliers and all
-  std::vector<GaussianRigPrior> priors;  ///< what was known before the rest
+  PairObservations pairs;                ///< matched corners, including outliers
+  std::vector<GaussianRigPrior> priors;  ///< priors
 };
 
-/// A rig and how well it is known: the content of a rig.json.
+/// A rig with its uncertainty: the content of a rig.json.
 struct RigEstimate {
   Rig rig;
-  std::optional<Covariance> covariance;           ///< what is sampled
-  std::optional<Eigen::MatrixXd> covariance_mvb;  ///< the minimum variance bound beside it
+  std::optional<Covariance> covariance;           ///< used for sampling
+  std::optional<Eigen::MatrixXd> covariance_mvb;  ///< the minimum variance bound
   std::optional<CalibrationSummary> calibration;
   std::optional<CalibrationEvidence> evidence;
-  std::string other_keys;  ///< keys of the file that this version does not know, as JSON text
+  std::string other_keys;  ///< unknown keys of the file, as JSON text
 };
 
-/// The covariance to sample from. Throws Error(`place`) where the estimate has none.
+/// The covariance used for sampling. Throws Error(`place`) if the estimate has none.
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place);
 
-/// One flag a parameter of the rig that was held: those that the calibration says, and those
-/// without a variance. A component of a rotation has its variance as one of the rotation vector.
-/// Where the estimate has no covariance none is. A rig file lists the others.
+/// One flag per parameter of the rig that was held: those listed by the calibration, and those
+/// without a variance. The variance of a rotation component is that of the rotation vector's. If
+/// the estimate has no covariance, none is held. A rig file lists the others.
 std::vector<bool> held_parameters(const RigEstimate& estimate);
 
-/// The covariance over the parameters that are not held. Throws Error(`place`) where there is
-/// none.
+/// The covariance over the parameters that are not held. Throws Error(`place`) if there is none.
 GaussianRigPrior gaussian_prior_of(const RigEstimate& estimate, const std::string& place);
 
-/// Names the cameras otherwise, one name a camera, wherever the estimate says them: the
-/// covariance and the held parameters too. Throws Error where they are too few or many, or not
-/// different.
+/// Renames the cameras, one name per camera, in the rig, the covariance and the held parameters.
+/// Throws Error if the number of names is wrong or names are repeated.
 void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names);
 
-/// Which of an estimate's two covariances is meant: the honest one (what is sampled) or the
-/// minimum variance bound (what mrcal reports).
+/// Selects one of an estimate's two covariances: the honest one (used for sampling) or the minimum
+/// variance bound (reported by mrcal).
 enum class CovarianceChoice { honest, mvb };
 
-/// honest is the estimate's `covariance`, mvb its `covariance_mvb` (or the former where that is
-/// of kind mvb); nothing where it has no such.
+/// honest is the estimate's `covariance`, mvb its `covariance_mvb` (or the former if that is of
+/// kind mvb); std::nullopt if it is missing.
 std::optional<Covariance> chosen_covariance(const RigEstimate& estimate, CovarianceChoice choice);
 
-/// The same; throws Error(`place`) where it has no such.
+/// The same; throws Error(`place`) if it is missing.
 Covariance required_covariance(const RigEstimate& estimate,
                                CovarianceChoice choice,
                                const std::string& place);

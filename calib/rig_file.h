@@ -11,34 +11,34 @@
 
 namespace vernier {
 
-/// A rig file as read, with what deserves a warning: unknown keys, which are kept, and
-/// what its calibration doubts.
+/// A rig file as read, with its warnings: unknown keys, which are kept, and the trust warnings of
+/// its calibration.
 struct RigFile {
   RigEstimate estimate;
   std::vector<std::string> warnings;
   std::vector<std::string> listed;  ///< its parameter_names; the rest of the rig has no variance
-  std::vector<Eigen::Index> listed_places;  ///< where they stand among the rig's parameters
+  std::vector<Eigen::Index> listed_places;  ///< their indices among the rig's parameters
 };
 
-/// "rig.json says of itself: ", how a warning begins that repeats a doubt of the file's
-/// calibration.
+/// "rig.json: stored warning: ", the beginning of a warning that repeats a trust warning of the
+/// file's calibration.
 std::string stored_warning_prefix(const std::string& place);
 
-/// What the file says about the parameters it lists, as a prior. Throws Error(`place`) where it
-/// has no covariance.
+/// The parameters that the file lists, with their covariance, as a prior. Throws Error(`place`) if
+/// it has no covariance.
 GaussianRigPrior gaussian_rig_prior(const RigFile& file, const std::string& place);
 
-/// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Needed are format,
+/// Reads a rig.json (format "vernier/rig", version 1; docs/file-formats.md). Required are format,
 /// version and cameras; parameter_names, parameters and covariance come together and must agree
-/// with the cameras. Parameters that are not listed have no variance; what is held must be one of
-/// the rig's. Throws Error naming file and key, and the line for malformed JSON.
+/// with the cameras. Parameters that are not listed have no variance; held parameters must be
+/// parameters of the rig. Throws Error naming file and key, and the line for malformed JSON.
 RigFile read_rig(const std::filesystem::path& file);
 RigFile parse_rig(const std::string& text, const std::string& place);
 
 enum class KeepEvidence { yes, no };
 
 /// Text of a rig.json; numbers in the shortest form that reads back equal. Throws Error naming the
-/// key where a number is not finite, which JSON cannot say.
+/// key if a number is not finite, which JSON cannot represent.
 std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence = KeepEvidence::yes);
 void write_rig(const RigEstimate& estimate,
                const std::filesystem::path& file,

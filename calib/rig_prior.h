@@ -10,36 +10,35 @@
 
 namespace vernier {
 
-/// What was known of some or all parameters of a rig before the data: the first term of the
-/// unified cost (Tina Memo 2017-001, Eq. 1),
+/// A Gaussian prior of some or all parameters of a rig: the first term of the unified cost (Tina
+/// Memo 2017-001, Eq. 1),
 ///
 ///     χ²_prior(a) = δᵀ P δ,   δ = difference(a, mean)
 ///
 /// with rotations in the left tangent about the mean's, in which it is exactly quadratic.
 struct RigPrior {
   Rig mean;
-  Eigen::MatrixXd information;  ///< P, parameters x parameters; zero where nothing is known
+  Eigen::MatrixXd information;  ///< P, parameters x parameters; zero for unknown parameters
 };
 
-/// What is known of a rig from elsewhere: `covariance` is over the parameters it names, any subset
-/// of those of `rig`, whose other values say nothing. Over a whole rotation it is in the left
-/// tangent; over a part of one it is of these components of the rotation vector, as held ones are
-/// (calib/held_parameters.h), and says nothing of the others.
+/// A prior from another source: `covariance` is over the parameters it names, any subset of those
+/// of `rig`; the other values of `rig` are ignored. For a whole rotation it is in the left tangent;
+/// for a part of one it is of these components of the rotation vector, like held ones
+/// (calib/held_parameters.h), and does not constrain the others.
 struct GaussianRigPrior {
   Rig rig;
   Covariance covariance;
 };
 
-/// Its covariance over all parameters of its rig, in the tangent: zero along what it does not name.
+/// Its covariance over all parameters of its rig, in the tangent: zero for those it does not name.
 Covariance full_covariance(const GaussianRigPrior& known);
 
-/// The same as a prior for a rig like `like`, whose models may be others (the named parameters
-/// must be there). Throws Error where the covariance is not symmetric or not positive
-/// semi-definite, naming the direction, and where it is singular: a direction known exactly is to
-/// be held instead.
+/// The same as a prior for a rig like `like`, whose models may differ (the named parameters must
+/// exist). Throws Error if the covariance is not symmetric or not positive semi-definite, naming
+/// the direction, and if it is singular: a direction known exactly must be held instead.
 RigPrior rig_prior(const Rig& like, const GaussianRigPrior& known);
 
-/// The prior of single parameters, independent of each other.
+/// The prior of a single parameter, independent of the others.
 struct ParameterPrior {
   std::string name;
   double value = 0, sigma = 0;
@@ -47,10 +46,10 @@ struct ParameterPrior {
 GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterPrior>& known);
 RigPrior rig_prior(const Rig& like, const std::vector<ParameterPrior>& known);
 
-/// δ at `rig` and its derivative by the left tangent at `rig`.
+/// δ at `rig` and its derivative with respect to the left tangent at `rig`.
 struct PriorOffset {
   Eigen::VectorXd delta;
-  Eigen::MatrixXd by_rig;  ///< the identity but for rotations, where it is J_l⁻¹
+  Eigen::MatrixXd by_rig;  ///< the identity except for rotations, where it is J_l⁻¹
 };
 PriorOffset prior_offset(const RigPrior& prior, const Rig& rig);
 

@@ -11,14 +11,14 @@
 
 namespace vernier {
 
-/// How to sample. Draw i of a seed is one rig and, given it, one pose of the board a frame.
+/// Sampling options. Draw i of a seed is one rig and, given it, one board pose per frame.
 struct SamplingOptions {
   double psi_c = 1;  ///< factor on all standard deviations of the calibration
   int samples = 2000;
   std::uint64_t seed = 1;
 };
 
-/// RandomStream rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
+/// Samples rigs around an estimate by the SVD of its scaled covariance (Tina Memo 2017-001):
 ///
 ///     a = â ⊕ ψ_c D U √s z,   z ~ N(0, I),   D⁻¹ C D⁻¹ = U diag(s) Uᵀ
 ///
@@ -26,7 +26,7 @@ struct SamplingOptions {
 /// exactly twice that at ψ_c = 1 under the same seed.
 class RigSampler {
  public:
-  /// Throws Error where the estimate has no covariance or one that is not positive semi-definite.
+  /// Throws Error if the estimate has no covariance or one that is not positive semi-definite.
   explicit RigSampler(const RigEstimate& estimate, const std::string& place = "rig");
 
   /// Deviation in the tangent of draw `trial` under `seed`.

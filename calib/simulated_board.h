@@ -23,10 +23,10 @@ struct SimulatedBoard {
   BoardState truth;
 };
 
-/// Views of a chessboard that every camera of `rig` sees in full, with white noise: what a
-/// calibration is tested and planned with. The same seed and trial give the same poses; noise is
-/// drawn by (trial, frame, camera), poses by (seed) alone, so trials differ in noise only. Throws
-/// Error where no such view can be found in 1000 tries.
+/// Views of a chessboard that every camera of `rig` sees completely, with white noise, for tests
+/// and planning. The same seed and trial give the same poses; noise is drawn by (trial, frame,
+/// camera), poses by (seed) alone, so trials differ in noise only. Throws Error if no such view
+/// can be found in 1000 tries.
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
                               std::uint64_t seed,

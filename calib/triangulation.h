@@ -22,16 +22,16 @@ struct PointTriangulation {
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_rig;  ///< in the tangent and order of calib/rig.h
 };
 
-/// The point that a pixel pair is of, by the "Mid2" of Lee and Civera, "Triangulation: why
-/// optimize?" (BMVC 2019), which is also mrcal's default. With the rays v0 and v1 and the other
-/// camera's centre t, all in the first camera's frame,
+/// The point of a pixel pair by the "Mid2" method of Lee and Civera, "Triangulation: why optimize?"
+/// (BMVC 2019), mrcal's default. With the rays v0 and v1 and the other camera's centre t, all in
+/// the first camera's frame,
 ///
 ///     l0 = |v1 × t| / |v0 × v1|,   l1 = |v0 × t| / |v0 × v1|,   x = (l0 v0 + t + l1 v1) / 2
 ///
-/// the middle of the two points that would meet were both rays turned into one epipolar plane.
-/// Nothing where a pixel has no ray, or where another sign of l0 or l1 brings the two points
-/// closer: the rays part in front of the rig (their cheirality test). Throws Error unless `other`
-/// is a camera of the rig and not its first.
+/// the midpoint of the two points that would meet if both rays were turned into one epipolar plane.
+/// std::nullopt if a pixel has no ray, or if another sign of l0 or l1 brings the two points closer:
+/// the rays diverge in front of the rig (their cheirality test). Throws Error unless `other` is a
+/// camera of the rig and not its first.
 std::optional<Eigen::Vector3d> triangulate_point(const Rig& rig,
                                                  const PixelPair& pair,
                                                  int other = 1);
@@ -41,8 +41,8 @@ std::optional<PointTriangulation> triangulate_point_with_jacobian(const Rig& rig
                                                                   const PixelPair& pair,
                                                                   int other = 1);
 
-/// Where both cameras see a point of the first camera's frame, inside their images or not. Nothing
-/// where it is not in front of both.
+/// The pixels of a point in the first camera's frame in both cameras, inside their images or not.
+/// std::nullopt if it is not in front of both.
 std::optional<PixelPair> pixel_pair(const Rig& rig, const Eigen::Vector3d& x_m, int other = 1);
 
 }  // namespace vernier

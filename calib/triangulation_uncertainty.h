@@ -11,41 +11,42 @@
 
 namespace vernier {
 
-/// Which frame a triangulated point's error is told in.
+/// The frame in which the error of a triangulated point is expressed.
 enum class TriangulationFrame {
-  rig,         ///< the first camera's: what a robot that knows its camera's place sees
-  stabilised,  ///< that of the boards' mean, in which the room stands still (mrcal's default)
+  rig,         ///< the first camera's frame
+  stabilised,  ///< the mean frame of the boards, fixed to the scene (mrcal's default)
 };
 
 /// A point and the covariances (m²) of its two independent errors.
 struct TriangulatedPoint {
   Eigen::Vector3d x_m;          ///< first camera's frame
-  Eigen::Matrix3d calibration;  ///< of the rig's errors, the same at every look
-  Eigen::Matrix3d observation;  ///< of the pair's own pixel noise, new at every look
+  Eigen::Matrix3d calibration;  ///< due to the rig's errors, common to all observations
+  Eigen::Matrix3d observation;  ///< due to the pair's pixel noise, independent per observation
 };
 
 /// Linear propagation through Mid2 (calib/triangulation.h), x = x(q, a):
 ///
 ///     observation = σ² J_q J_qᵀ,   calibration = J_a C J_aᵀ
 ///
-/// in the rig's frame. Stabilised, δx loses what the boards' mean motion (w, u) explains,
+/// in the rig's frame. Stabilised, the boards' mean motion (w, u) is subtracted from δx,
 ///
 ///     δx = J_a δa − (w × x + u)
 ///
-/// because a rig whose frame turns with its errors sees the room turn too: this is mrcal's
-/// stabilize_coords=True, through the six numbers of calib/uncertainty/pose_covariance.h.
+/// because a rig whose frame turns with its errors sees the scene turn too: this is mrcal's
+/// stabilize_coords=True, computed from the six numbers of calib/uncertainty/pose_covariance.h.
 class TriangulationUncertainty {
  public:
   TriangulationUncertainty(const RigAndBoards& joint, TriangulationFrame frame, int other = 1);
-  /// In the rig's frame. Throws Error where the covariance is of other parameters.
+  /// In the rig's frame. Throws Error if the covariance does not match the rig's parameters.
   TriangulationUncertainty(const Rig& rig, const Eigen::MatrixXd& rig_covariance, int other = 1);
 
-  /// With pixel noise σ = pair_sigma_px on each coordinate of the pair. Nothing where the pair has
-  /// no point.
+  /// With pixel noise σ = pair_sigma_px on each coordinate of the pair. std::nullopt if the pair
+  /// cannot be triangulated.
   std::optional<TriangulatedPoint> at(const PixelPair& pair, double pair_sigma_px) const;
 
-  /// Covariance (m²) between the calibration errors of two points: they move together, so a length
-  /// between them is better known than they are. Nothing where either has no point.
+  /// Cross-covariance (m²) of the calibration errors of two points: these are correlated, so a
+  /// length between the points is better known than the points. std::nullopt if either cannot be
+  /// triangulated.
   std::optional<Eigen::Matrix3d> between(const PixelPair& a, const PixelPair& b) const;
 
  private:

@@ -16,7 +16,7 @@ namespace vernier::internal {
 
 namespace {
 
-/// A file written beside its place; removed again unless it has been put there.
+/// A temporary file that replaces its target on commit; removed if it is not committed.
 class Staged {
  public:
   Staged(const std::filesystem::path& named, std::string_view content);
@@ -33,15 +33,15 @@ class Staged {
 };
 
 Staged::Staged(const std::filesystem::path& named, std::string_view content) : file_(named) {
-  // A rename would replace a link by a file, and a device or pipe too: links are followed, what is
-  // no file is refused.
+  // rename() would replace a link, a device or a pipe by a regular file: follow links and refuse
+  // anything that is not a regular file.
   std::error_code unknown;
   for (int links = 0; links < 40 && std::filesystem::is_symlink(file_, unknown); ++links) {
     file_ = file_.parent_path() / std::filesystem::read_symlink(file_, unknown);
   }
   if (std::filesystem::exists(file_, unknown) &&
       !std::filesystem::is_regular_file(file_, unknown)) {
-    throw Error(named.string(), "is there and is no regular file", "name a file");
+    throw Error(named.string(), "exists and is not a regular file", "choose another name");
   }
   temporary_ = file_.string() + "." + std::to_string(::getpid()) + ".tmp";
   std::ofstream out(temporary_, std::ios::binary);
@@ -50,7 +50,8 @@ Staged::Staged(const std::filesystem::path& named, std::string_view content) : f
   if (!out) {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
-    throw Error(file_.string(), "cannot be written", "check that its folder exists and has room");
+    throw Error(file_.string(), "cannot be written",
+                "check that its folder exists and has free space");
   }
 }
 

@@ -10,16 +10,16 @@
 
 namespace vernier::internal {
 
-/// Writes `content` to `file`, which appears whole, by rename, or not at all: an interrupted run
-/// leaves the old file as it was. Throws Error where the folder is missing or not writable.
+/// Writes `content` to `file` atomically (temporary file and rename): an interrupted run leaves the
+/// old file unchanged. Throws Error if the folder is missing or not writable.
 void write_atomically(const std::filesystem::path& file, std::string_view content);
 
-/// The same for files that belong together, each a name and its content: all of them are written
-/// beside their places before the first rename, so that what can go wrong leaves every old file.
+/// The same for several files, each a name and its content: all temporary files are written before
+/// the first rename, so a failed write leaves every old file unchanged.
 void write_atomically(
     const std::vector<std::pair<std::filesystem::path, std::string>>& named_contents);
 
-/// The whole content of a file. Throws Error where it cannot be read.
+/// The whole content of a file. Throws Error if it cannot be read.
 std::string read_whole(const std::filesystem::path& file);
 
 }  // namespace vernier::internal

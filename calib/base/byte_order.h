@@ -12,7 +12,7 @@
 
 namespace vernier::internal {
 
-/// The number whose bytes stand at `at`, in either order.
+/// The number stored in the bytes at `at`, in either byte order.
 template <typename Value>
 Value number_at(std::string_view bytes, std::size_t at, bool big_endian) {
   std::array<char, sizeof(Value)> own;
@@ -23,7 +23,7 @@ Value number_at(std::string_view bytes, std::size_t at, bool big_endian) {
   return std::bit_cast<Value>(own);
 }
 
-/// Appends the bytes of a number, in either order.
+/// Appends the bytes of a number in either byte order.
 template <typename Value>
 void append_number(std::string& bytes, Value value, bool big_endian) {
   auto own = std::bit_cast<std::array<char, sizeof(Value)>>(value);

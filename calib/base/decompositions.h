@@ -10,8 +10,8 @@ namespace vernier::internal {
 // Decompositions of dense matrices of any size, compiled once. Eigen's templates cost several
 // seconds in every source file that names them.
 
-/// Eigenvalues, ascending, and unit eigenvectors of a symmetric matrix, of which the lower triangle
-/// is read (Eigen::SelfAdjointEigenSolver).
+/// Eigenvalues (ascending) and unit eigenvectors of a symmetric matrix, of which only the lower
+/// triangle is read (Eigen::SelfAdjointEigenSolver).
 class SymmetricEigen {
  public:
   explicit SymmetricEigen(const Eigen::MatrixXd& A);
@@ -27,7 +27,7 @@ class SymmetricEigen {
   Eigen::MatrixXd vectors_;
 };
 
-/// The same of the 9 x 9 matrices of the direct linear transform.
+/// The same for the 9 x 9 matrices of the direct linear transform.
 struct SymmetricEigen9 {
   Eigen::Matrix<double, 9, 1> eigenvalues;
   Eigen::Matrix<double, 9, 9> eigenvectors;
@@ -35,7 +35,7 @@ struct SymmetricEigen9 {
   explicit SymmetricEigen9(const Eigen::Matrix<double, 9, 9>& A);
 };
 
-/// The eigenvalues alone, which is faster; their last digits may differ from SymmetricEigen's.
+/// Eigenvalues only. Faster; the last digits may differ from SymmetricEigen's.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& A);
 
 /// Cholesky decomposition A = L Lᵀ of a symmetric positive definite matrix (Eigen::LLT).
@@ -43,7 +43,7 @@ class Cholesky {
  public:
   explicit Cholesky(const Eigen::MatrixXd& A);
 
-  /// Whether the decomposition succeeded; if not, nothing below is to be used.
+  /// Whether the decomposition succeeded. If not, no other member is valid.
   bool is_positive_definite() const { return factor_.info() == Eigen::Success; }
   /// Estimate of the reciprocal condition number.
   double rcond() const;
@@ -61,8 +61,8 @@ class Cholesky {
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
-/// A⁻¹ b by the pivoted decomposition L D Lᵀ, which stands a singular or slightly indefinite
-/// symmetric A (Eigen::LDLT).
+/// A⁻¹ b by the pivoted decomposition L D Lᵀ (Eigen::LDLT), which also handles a singular or
+/// slightly indefinite symmetric A.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
@@ -74,10 +74,11 @@ struct RightSingularVectors {
   explicit RightSingularVectors(const Eigen::MatrixXd& A);
 };
 
-/// The upper triangle R of A = Q R, of at least as many rows as columns (Eigen::HouseholderQR).
+/// The upper triangle R of A = Q R (Eigen::HouseholderQR). A has at least as many rows as columns.
 Eigen::MatrixXd qr_triangle(Eigen::MatrixXd A);
 
-/// An orthonormal basis of the columns of X, which must be independent (Eigen::HouseholderQR).
+/// An orthonormal basis of the columns of X, which must be linearly independent
+/// (Eigen::HouseholderQR).
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& X);
 
 }  // namespace vernier::internal

@@ -6,7 +6,7 @@
 
 namespace vernier::internal {
 
-/// A short fingerprint of a text (FNV-1a, 64 bits, hexadecimal), to tell contents apart.
+/// FNV-1a hash (64 bits, hexadecimal) of a text, to compare contents.
 std::string fingerprint(const std::string& text);
 
 }  // namespace vernier::internal

@@ -7,18 +7,17 @@
 
 namespace vernier::internal {
 
-/// Frames of images by the numbers in their names: the numbers themselves where all of them are
-/// below 2147483648; else (time stamps in nanoseconds) their places, from 0, in ascending order of
-/// all that differ.
+/// Frame numbers of images from the numbers in their names: the numbers themselves if all are below
+/// 2147483648, else (time stamps in nanoseconds) their ranks from 0 in ascending order.
 class FrameNumbering {
  public:
   explicit FrameNumbering(std::vector<std::int64_t> numbers);
 
-  /// Of one of the numbers given.
+  /// The frame of one of the numbers given to the constructor.
   int frame(std::int64_t number) const;
 
  private:
-  std::vector<std::int64_t> in_order_;  ///< empty where numbers are frames
+  std::vector<std::int64_t> in_order_;  ///< empty if the numbers are the frames
 };
 
 }  // namespace vernier::internal

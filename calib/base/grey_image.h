@@ -7,9 +7,9 @@
 
 namespace vernier::internal {
 
-/// An image file as 8-bit grey values; deeper ones are scaled from their own largest value. Throws
-/// Error for what is no image and for PNG, JPEG and Netpbm files that are cut off or damaged: their
-/// decoders would fill in the rest or print to standard error.
+/// Reads an image file as 8-bit grey values; deeper images are scaled by their own maximum. Throws
+/// Error for files that are not images, and for truncated or damaged PNG, JPEG and Netpbm files,
+/// whose decoders would fill in the rest or print to standard error.
 cv::Mat read_grey_image(const std::filesystem::path& file);
 
 }  // namespace vernier::internal

@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstring>
 
-// libjpeg's headers need <cstddef> and <cstdio> before them.
+// libjpeg's headers need <cstddef> and <cstdio> first.
 #include <jpeglib.h>
 
 #include <jerror.h>
@@ -21,19 +21,19 @@ namespace {
 
 constexpr std::uint64_t most_pixels = 1u << 30;  // more than OpenCV decodes
 
-/// libjpeg's and libpng's errors leave their functions by longjmp. So nothing that is alive across
-/// one of their calls has a destructor.
+/// libjpeg and libpng report errors by longjmp, so no object with a destructor may be alive across
+/// their calls.
 struct JpegCheck {
-  jpeg_error_mgr errors{};  // first: libjpeg knows no more of this than its address
+  jpeg_error_mgr errors{};  // first member: libjpeg is given only its address
   std::jmp_buf at_error{};
   jpeg_decompress_struct decoder{};
   bool cut_off = false;
-  std::array<char, JMSG_LENGTH_MAX> damage{};  ///< the first, in libjpeg's words
+  std::array<char, JMSG_LENGTH_MAX> damage{};  ///< libjpeg's first message
 };
 
 JpegCheck& check_of(j_common_ptr decoder) { return *reinterpret_cast<JpegCheck*>(decoder->err); }
 
-/// Whether a warning of libjpeg says that pixels are lost, and not only that something is unusual.
+/// Whether a libjpeg warning means lost pixels, not just an unusual file.
 bool loses_pixels(int code) {
   return code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_ARITH_BAD_CODE ||
          code == JWRN_MUST_RESYNC;
@@ -76,7 +76,7 @@ struct PngCheck {
   const unsigned char* next = nullptr;
   std::size_t left = 0;
   bool cut_off = false;
-  std::array<char, 200> damage{};  ///< in libpng's words
+  std::array<char, 200> damage{};  ///< libpng's message
 };
 
 void read_png_bytes(png_structp decoder, png_bytep to, std::size_t count) {

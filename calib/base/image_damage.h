@@ -7,13 +7,13 @@
 
 namespace vernier::internal {
 
-/// What is wrong with the bytes of a JPEG file: "is cut off …" or "is damaged …", as libjpeg finds
-/// when it decodes the pixels at an eighth of their size, which reads all of the data; empty where
-/// nothing is. Bytes between the pixels' data and the next marker harm nothing. Empty as well for
-/// what libjpeg cannot decode at all, such as another colour space: that is no damage.
+/// The fault of the bytes of a JPEG file, "is cut off …" or "is damaged …", as reported by libjpeg
+/// when it decodes the pixels at an eighth of their size, which reads all data. Empty if there is
+/// none. Extra bytes between the pixel data and the next marker are no fault. Also empty for files
+/// that libjpeg cannot decode at all, such as an unsupported colour space: they are not damaged.
 std::string jpeg_damage(std::string_view bytes);
 
-/// The same of a PNG file, by libpng: "is cut off …" where it has no end, "is damaged …" for every
+/// The same for a PNG file, by libpng: "is cut off …" if its end is missing, "is damaged …" for any
 /// other error, such as a wrong checksum.
 std::string png_damage(std::string_view bytes);
 

@@ -23,10 +23,10 @@ bool is_netpbm(std::string_view bytes) {
   return bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6";
 }
 
-/// The head of a binary Netpbm file.
+/// The header of a binary Netpbm file.
 struct NetpbmHead {
   std::size_t width = 0, height = 0, largest = 0;
-  std::size_t end = 0;  ///< of its text; 0 where it cannot be read
+  std::size_t end = 0;  ///< of the header; 0 if it is invalid
 };
 
 NetpbmHead netpbm_head(std::string_view bytes) {
@@ -45,10 +45,10 @@ NetpbmHead netpbm_head(std::string_view bytes) {
   return head;
 }
 
-/// Whether a binary Netpbm file holds as many pixels as its header says.
+/// The fault of a binary Netpbm file that has fewer pixels than its header declares; empty if none.
 std::string netpbm_fault(std::string_view bytes) {
   const NetpbmHead head = netpbm_head(bytes);
-  if (head.end == 0) return "has no Netpbm header that can be read";
+  if (head.end == 0) return "has an invalid Netpbm header";
   const std::size_t pixel = (bytes[1] == '6' ? 3 : 1) * (head.largest > 255 ? 2 : 1);
   const bool whole = head.width <= 1u << 20 && head.height <= 1u << 20 &&
                      bytes.size() >= head.end + 1 + head.width * head.height * pixel;
@@ -79,7 +79,7 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     try {
       pixels = cv::imdecode(buffer, flags);
-    } catch (const cv::Exception&) {  // told below
+    } catch (const cv::Exception&) {  // reported below
     }
   }
   if (pixels.empty()) {
@@ -91,7 +91,7 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
 bool is_png(std::string_view bytes) { return bytes.substr(0, 8) == png_signature; }
 
 int largest_grey_value(std::string_view bytes) {
-  constexpr std::size_t depth_at = 24;  // of the header chunk, which comes first
+  constexpr std::size_t depth_at = 24;  // in the header chunk, which comes first
   if (is_png(bytes) && bytes.size() > depth_at) return (1 << (bytes[depth_at] & 31)) - 1;
   if (is_netpbm(bytes))
     return static_cast<int>(std::min<std::size_t>(netpbm_head(bytes).largest, 65535));

@@ -9,18 +9,18 @@
 
 namespace vernier::internal {
 
-/// The bytes of an image file. Throws Error for PNG, JPEG and Netpbm files that are cut off or
-/// damaged: their decoders would fill in the rest or print to standard error.
+/// The bytes of an image file. Throws Error for truncated or damaged PNG, JPEG and Netpbm files,
+/// whose decoders would fill in the rest or print to standard error.
 std::string read_image_bytes(const std::filesystem::path& file);
 
-/// Its pixels, with the flags of cv::imread. Throws Error(file) for what is no image.
+/// The decoded pixels, with the flags of cv::imread. Throws Error(file) if it is not an image.
 cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::path& file);
 
 bool is_png(std::string_view bytes);
 
 /// The largest grey value that the header of a PNG (1, 3, 15, 255, 65535) or binary Netpbm file
-/// allows; 0 for other formats. The decoder stretches the first three of PNG to 255, and Netpbm's
-/// none.
+/// allows; 0 for other formats. OpenCV's decoder scales the first three of PNG to 255, and does not
+/// scale Netpbm.
 int largest_grey_value(std::string_view bytes);
 
 }  // namespace vernier::internal

@@ -6,9 +6,8 @@
 
 namespace vernier::internal {
 
-/// The instruction set that SIMD kernels run on here, such as "AVX3": the best that was compiled in
-/// and that this processor has. Results on two machines are the same to the bit only where this is
-/// the same.
+/// The instruction set used by the SIMD kernels, such as "AVX3": the best one that was compiled in
+/// and that this processor supports. Results of two machines are bitwise equal only if this is.
 std::string_view instruction_set();
 
 }  // namespace vernier::internal

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view magic{"\x93NUMPY", 6};
 constexpr double max_side = 1 << 20;
 
-/// The head of a .npy file and where its data begin.
+/// The header of a .npy file and the offset of its data.
 struct Head {
   std::string type;
   bool column_major = false;
@@ -50,7 +50,7 @@ std::size_t side_of(const PythonLiteral& side, const std::string& place) {
   const double length = side.number;
   if (side.kind != PythonLiteral::Kind::number || !(length >= 1 && length <= max_side) ||
       length != std::floor(length)) {
-    throw Error(place, "has a side of " + side.text + " pixels", "give a map of an image");
+    throw Error(place, "has a dimension of " + side.text, "give an array of image size");
   }
   return static_cast<std::size_t>(length);
 }
@@ -66,8 +66,7 @@ Head head_of(std::string_view bytes, const std::string& place) {
                 "write it with numpy.save");
   }
   if (order->text != "False") {
-    throw Error(place, "has its values in Fortran order, columns first",
-                "save numpy.ascontiguousarray of it");
+    throw Error(place, "is in Fortran (column-major) order", "save numpy.ascontiguousarray of it");
   }
   if (shape->items.size() != 2) {
     throw Error(place, fmt::format("has {} dimensions, not 2", shape->items.size()),
@@ -90,7 +89,7 @@ std::vector<double> decode(std::string_view data, std::size_t count, bool big_en
 
 using Decode = std::vector<double> (*)(std::string_view, std::size_t, bool);
 
-/// How numbers of a kind (f, i, u) and size in bytes are read; none for others.
+/// The decoder for numbers of a kind (f, i, u) and size in bytes; null if unsupported.
 Decode decoder(std::string_view type) {
   if (type == "f4") return decode<float>;
   if (type == "f8") return decode<double>;
@@ -114,8 +113,8 @@ NumpyArray parse_numpy(std::string_view bytes, const std::string& place) {
   const bool marked = head.type.size() == 3 && std::string_view("<>|=").find(head.type[0]) <= 3;
   const Decode read = marked ? decoder(head.type.substr(1)) : nullptr;
   if (!read) {
-    throw Error(place, "has numbers of type " + head.type,
-                "save float32, float64 or whole numbers of 1 to 8 bytes");
+    throw Error(place, "has the data type " + head.type,
+                "supported: float32, float64 and integers of 1 to 8 bytes");
   }
   const std::size_t count = head.rows * head.columns;
   const std::size_t wanted = count * static_cast<std::size_t>(head.type[2] - '0');

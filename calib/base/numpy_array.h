@@ -9,7 +9,7 @@
 
 namespace vernier::internal {
 
-/// A NumPy array of two dimensions.
+/// A two-dimensional NumPy array.
 struct NumpyArray {
   std::size_t rows = 0, columns = 0;
   bool of_whole_numbers = false;
@@ -19,7 +19,7 @@ struct NumpyArray {
 bool is_numpy(std::string_view bytes);
 
 /// Decodes the bytes of a .npy file (NumPy Enhancement Proposal 1), versions 1 to 3. Throws
-/// Error(place) for anything but two dimensions in C order of real or whole numbers.
+/// Error(place) unless the array has two dimensions, C order and real or integer values.
 NumpyArray parse_numpy(std::string_view bytes, const std::string& place);
 
 /// The bytes of a .npy file of float32, little-endian.

@@ -7,10 +7,10 @@
 
 namespace vernier::internal {
 
-/// Calls work(i) once for every i in [0, count) on at most `threads` threads (0: as many as the
-/// machine has), this one among them. Work on different i must be independent and write to its own
-/// place; then results do not depend on the number of threads. The first exception by i is thrown
-/// here after all threads are done.
+/// Calls work(i) once for every i in [0, count) on at most `threads` threads, the calling one
+/// included (0: the number of hardware threads). Calls must be independent and write to separate
+/// memory; results then do not depend on the number of threads. The exception with the lowest i is
+/// rethrown after all threads have finished.
 void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
 
 }  // namespace vernier::internal

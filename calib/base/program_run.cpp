@@ -27,7 +27,7 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Starts a program with its standard input empty and its output in files. Returns errno.
+/// Starts a program with empty standard input and its output redirected to files. Returns errno.
 int start(const std::vector<std::string>& words,
           const std::string& output,
           const std::string& error_output,
@@ -70,7 +70,7 @@ bool ends_within(double time_limit_s, pid_t child, int& status) {
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "vernier-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
-    throw Error(name, "no temporary folder can be made", "set TMPDIR to a folder to write in");
+    throw Error(name, "a temporary folder cannot be created", "set TMPDIR to a writable folder");
   }
   path_ = name;
 }
@@ -84,7 +84,7 @@ std::string ProgramRun::last_output_line() const {
   const std::string& text =
       error_output.find_first_not_of(" \r\n\t") == std::string::npos ? output : error_output;
   const std::size_t end = text.find_last_not_of(" \r\n\t");
-  if (end == std::string::npos) return "no word of why";
+  if (end == std::string::npos) return "no output";
   const std::size_t before = text.find_last_of("\r\n", end);
   constexpr std::size_t max_letters = 300;
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;

@@ -8,10 +8,10 @@
 
 namespace vernier::internal {
 
-/// A folder of its own below the system's temporary one, gone with the object.
+/// A temporary folder, removed by the destructor.
 class TemporaryFolder {
  public:
-  TemporaryFolder();  ///< throws Error where none can be made
+  TemporaryFolder();  ///< throws Error if it cannot be created
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -22,21 +22,21 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// How a program ended and what it wrote.
+/// Exit state and output of a program.
 struct ProgramRun {
-  int exit_code = -1;      ///< -1: it was not there, was ended by a signal or took too long
-  int signal = 0;          ///< that ended it; 0: none
-  int start_error = 0;     ///< errno of why it could not be run; 0: it was
-  bool timed_out = false;  ///< it was ended because of the time limit
+  int exit_code = -1;      ///< -1: not found, ended by a signal or timed out
+  int signal = 0;          ///< that terminated it; 0: none
+  int start_error = 0;     ///< errno if it could not be started; 0: started
+  bool timed_out = false;  ///< killed at the time limit
   std::string output, error_output;
 
-  /// The last line that it wrote, of its complaint if there is one, on one line of text.
+  /// The last line of its standard error, or of its standard output if that is empty.
   std::string last_output_line() const;
 };
 
-/// Runs a program, found by the path, with nothing on its standard input; no shell takes part. With
-/// a time limit (0: none) it is ended after that, and what it started too: it then runs in a
-/// process group of its own, which the terminal's interrupt does not reach.
+/// Runs a program, searched in PATH, with empty standard input and without a shell. With a time
+/// limit (0: none) the program and its children are killed when it expires; the program then runs
+/// in its own process group, which the terminal's interrupt does not reach.
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s = 0);
 
 }  // namespace vernier::internal

@@ -29,7 +29,7 @@ class Parser {
 
   void advance() { line_ += text_[at_++] == '\n'; }
 
-  /// Blanks and comments.
+  /// Skips blanks and comments.
   void skip() {
     while (at_ < text_.size()) {
       if (text_[at_] == '#') {
@@ -83,7 +83,7 @@ class Parser {
     value.kind = PythonLiteral::Kind::dictionary;
     ++at_;
     while (!take('}')) {
-      if (!text_begins()) fail("has a key that is no text in quotes");
+      if (!text_begins()) fail("has a key that is not a quoted string");
       std::string key = quoted();
       if (value.find(key)) fail("has the key '" + key + "' twice");
       if (!take(':')) fail("has no colon after the key '" + key + "'");
@@ -101,7 +101,7 @@ class Parser {
     }
   }
 
-  /// One text; Python joins those that follow each other.
+  /// One string. Adjacent strings are joined, as in Python.
   std::string quoted() {
     std::string joined;
     while (next(), text_begins()) {
@@ -119,7 +119,7 @@ class Parser {
     return joined;
   }
 
-  /// A number or a word.
+  /// A number or a bare word.
   void bare(PythonLiteral& value) {
     const std::size_t begin = at_;
     while (at_ < text_.size() &&
@@ -128,7 +128,8 @@ class Parser {
       ++at_;
     }
     value.text = text_.substr(begin, at_ - begin);
-    if (value.text.empty()) fail(std::string("has a \"") + text_[at_] + "\" where a value belongs");
+    if (value.text.empty())
+      fail(std::string("has a \"") + text_[at_] + "\" where a value is expected");
     const char* first = value.text.data() + (value.text[0] == '+');
     const char* last = value.text.data() + value.text.size();
     const auto parsed = std::from_chars(first, last, value.number);

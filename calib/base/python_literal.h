@@ -7,25 +7,24 @@
 #include <utility>
 #include <vector>
 
-/// What Python's ast.literal_eval reads, as far as the files of mrcal and NumPy use it. Not
-/// installed.
+/// The subset of Python's ast.literal_eval that the files of mrcal and NumPy need. Not installed.
 namespace vernier::internal {
 
-/// A number, text (bytes too), list (tuple too), dictionary, or None, True, False as a word.
+/// A number, string (or bytes), list (or tuple), dictionary, or the words None, True, False.
 struct PythonLiteral {
   enum class Kind { number, text, word, list, dictionary };
   Kind kind = Kind::word;
   double number = 0;
-  std::string text;  ///< of a text or word, escapes left as they are
+  std::string text;  ///< of a string or word, escapes not decoded
   std::vector<PythonLiteral> items;
   std::vector<std::pair<std::string, PythonLiteral>> entries;  ///< of a dictionary
   int line = 0;
 
-  /// The entry called `key`, or nothing. Repeated keys are refused on reading.
+  /// The value of `key`, or null. Repeated keys are rejected when parsing.
   const PythonLiteral* find(std::string_view key) const;
 };
 
-/// Reads one literal; comments (#) may stand anywhere. Throws Error("place:line").
+/// Parses one literal; comments (#) are allowed anywhere. Throws Error("place:line").
 PythonLiteral parse_python_literal(std::string_view text, const std::string& place);
 
 }  // namespace vernier::internal

@@ -11,10 +11,10 @@
 
 namespace vernier::internal {
 
-/// Lines of a text file with the number of each, for messages.
+/// Lines of a text file with their numbers, for messages.
 class TextLines {
  public:
-  /// Throws Error where the file cannot be read.
+  /// Throws Error if the file cannot be read.
   explicit TextLines(const std::filesystem::path& file);
 
   /// The next line without its end (LF or CRLF); false at the end of the file.
@@ -23,7 +23,7 @@ class TextLines {
   /// Bytes of the whole file.
   std::size_t size() const { return text_.size(); }
 
-  /// "pairs.csv:37", the line last given out.
+  /// Location of the last line returned, such as "pairs.csv:37".
   std::string place() const;
 
  private:
@@ -33,14 +33,15 @@ class TextLines {
   std::size_t number_ = 0;
 };
 
-/// Fields of a line between separators; with a blank among these, repeated ones count once.
+/// Fields of a line between separators. If the separators include a blank, repeated ones count as
+/// one.
 std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);
 
-/// The number that all of `text` is, or nothing: the decimal point is a point whatever the locale
-/// says. Infinities and "nan" are numbers; a sign may lead, a blank may not.
+/// The number that all of `text` represents, or std::nullopt. The decimal separator is a point in
+/// every locale. Infinities and "nan" are accepted, a leading sign too, a leading blank not.
 std::optional<double> to_real(std::string_view text);
 
-/// Throws Error(`place`) where `field` is no number, naming `what` it should have been.
+/// Parses a number. Throws Error(`place`), naming `what`, if `field` is not one.
 double parse_real(std::string_view field, const std::string& place, std::string_view what);
 int parse_whole(std::string_view field, const std::string& place, std::string_view what);
 

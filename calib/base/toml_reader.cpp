@@ -12,7 +12,7 @@
 namespace vernier::internal {
 namespace {
 
-/// Levenshtein's distance: insertions, deletions and replacements from one word to the other.
+/// Levenshtein distance: insertions, deletions and replacements between two words.
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
   for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
@@ -35,7 +35,7 @@ toml::table parse_toml(std::string_view text, const std::string& place) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     throw Error(place + ":" + std::to_string(error.source().begin.line),
-                "not TOML: " + std::string(error.description()), "mend the syntax");
+                "not TOML: " + std::string(error.description()), "correct the syntax");
   }
 }
 
@@ -127,7 +127,8 @@ std::vector<const toml::table*> TomlReader::tables(const toml::table& root, cons
 }
 
 std::int64_t TomlReader::integer(const toml::node& node, const std::string& what) const {
-  if (!node.is_integer()) fail(node, what + " is not a whole number", "write it without a point");
+  if (!node.is_integer())
+    fail(node, what + " is not a whole number", "write it without a decimal point");
   return node.as_integer()->get();
 }
 

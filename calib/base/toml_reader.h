@@ -12,20 +12,20 @@
 #include <utility>
 #include <vector>
 
-/// Reading TOML with complaints that name file and line. Not installed.
+/// TOML reading with error messages that give file and line. Not installed.
 namespace vernier::internal {
 
 /// Parses TOML; throws Error(place:line) for bad syntax.
 toml::table parse_toml(std::string_view text, const std::string& place);
 
-/// The known word with the least edit distance.
+/// The known word with the smallest edit distance.
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known);
 
-/// Typed access to parsed TOML. Every complaint carries the file and the line.
+/// Typed access to parsed TOML. Every error gives the file and the line.
 class TomlReader {
  public:
-  /// With a line given, every complaint names that one: for values that stand in another place
-  /// than where they take effect.
+  /// If `line` is given, every error reports that line: for values defined in another place than
+  /// where they are used.
   explicit TomlReader(std::string place, toml::source_index line = 0)
       : place_(std::move(place)), line_(line) {}
 
@@ -38,7 +38,7 @@ class TomlReader {
                          const std::string& fault,
                          const std::string& remedy) const;
 
-  /// Refuses keys that are not known, naming the nearest that is.
+  /// Rejects unknown keys and suggests the nearest known one.
   void check_keys(const toml::table& table, const Keys& known, const std::string& owner) const;
   const toml::node& required(const toml::table& table,
                              const char* key,
@@ -48,7 +48,7 @@ class TomlReader {
   std::int64_t integer(const toml::node& node, const std::string& what) const;
   const toml::array& list(const toml::node& node, const std::string& what) const;
   const toml::table& table(const toml::node& node, const std::string& what) const;
-  /// The tables of [[key]], none where the key is absent.
+  /// The tables of [[key]]; empty if the key is absent.
   std::vector<const toml::table*> tables(const toml::table& root, const char* key) const;
 
   template <int N>

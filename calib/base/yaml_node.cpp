@@ -17,7 +17,7 @@ namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// A scalar as a complaint may quote it: short, on one line.
+/// A scalar as quoted in error messages: short, on one line.
 std::string quoted(std::string scalar) {
   for (char& c : scalar) c = is_control(c) ? '?' : c;
   return '"' + (scalar.size() > 40 ? scalar.substr(0, 40) + "..." : scalar) + '"';
@@ -72,10 +72,10 @@ std::vector<std::string> YamlNode::keys() const {
 }
 
 std::string YamlNode::text() const {
-  if (!node_.IsScalar()) throw Error(place(), "is not a text", "");
+  if (!node_.IsScalar()) throw Error(place(), "is not a string", "");
   const std::string& scalar = node_.Scalar();
   if (std::any_of(scalar.begin(), scalar.end(), is_control)) {
-    throw Error(place(), quoted(scalar) + " is not one line of text", "correct it");
+    throw Error(place(), quoted(scalar) + " is not a single-line string", "correct it");
   }
   return scalar;
 }

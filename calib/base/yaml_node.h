@@ -11,19 +11,19 @@
 #include <utility>
 #include <vector>
 
-/// Internal to calib/: YAML as other tools write it. Not installed.
+/// Internal to calib/: YAML as written by other tools. Not installed.
 namespace vernier::internal {
 
-/// A node of a YAML file with the place it stands in, so that every complaint names file, line and
-/// key. All members but has() throw Error.
+/// A node of a YAML file with its location, so that every error gives file, line and key. All
+/// members but has() throw Error.
 class YamlNode {
  public:
-  /// Reads a text; OpenCV's first line (%YAML:1.0, which is no YAML) is allowed.
+  /// Parses a text. OpenCV's first line (%YAML:1.0, which is not valid YAML) is accepted.
   static YamlNode parse(const std::string& text, const std::string& file);
 
   bool has(const std::string& key) const;
   YamlNode at(const std::string& key) const;
-  /// The key of these that is there, the first one first; complains of the first one otherwise.
+  /// The first of these keys that is present; Error about the first one if none is.
   YamlNode at_any(const std::vector<std::string>& keys) const;
   std::vector<std::string> keys() const;
 
@@ -32,9 +32,10 @@ class YamlNode {
   std::string text() const;
   std::vector<double> numbers() const;
   std::vector<double> numbers(std::size_t count) const;
-  /// rows x cols, as a list of rows, one flat list, or rows, cols and data (OpenCV's and ROS's).
+  /// rows x cols, as a list of rows, one flat list, or rows, cols and data (OpenCV's and ROS's
+  /// layout).
   Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index cols) const;
-  /// A vector however it is laid out: a flat list, or rows, cols and data with one of them 1.
+  /// A vector as a flat list, or as rows, cols and data with one of them 1.
   std::vector<double> vector() const;
 
   /// [width, height], whole numbers above 0.
@@ -52,11 +53,11 @@ class YamlNode {
   std::string file_, path_;
 };
 
-/// "a, b, c" in the shortest form that reads back equal, for a YAML list.
+/// "a, b, c" for a YAML list, in the shortest form that reads back equal.
 std::string yaml_list(const std::vector<double>& values);
 std::string yaml_list(const Eigen::MatrixXd& row_by_row);
 
-/// A text in the quotes that YAML wants.
+/// A string in YAML quotes.
 std::string yaml_text(const std::string& text);
 
 }  // namespace vernier::internal

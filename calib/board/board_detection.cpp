@@ -31,14 +31,14 @@ BoardView view_of(const BoardDetection& found) {
   BoardView view;
   view.frame = found.frame;
   view.camera = found.camera;
-  view.image = found.image.string();  // with its folder, which may be what tells the cameras apart
+  view.image = found.image.string();  // with its folder, which may identify the camera
   view.ids = found.ids;
   view.pixels_px = found.corners_px;
   return view;
 }
 
-/// The images' numbers. Throws Error where a camera has no frame number in common with the cameras
-/// before it, or two images of one.
+/// The frame numbers of the images. Throws Error if a camera shares no frame number with the
+/// cameras before it, or has a number twice.
 std::vector<std::int64_t> frame_numbers(
     const std::vector<std::vector<std::filesystem::path>>& images) {
   std::set<std::int64_t> before;
@@ -47,17 +47,18 @@ std::vector<std::int64_t> frame_numbers(
     for (const auto& image : images[camera]) {
       const std::int64_t number = parse_image_name(image).frame;
       if (frames.insert(number).second) continue;
-      throw Error(image.string(),
-                  "another image of its camera has the number " + std::to_string(number) + " too",
-                  "the last number in a name is the frame: name images like cam0_frame01.png");
+      throw Error(
+          image.string(),
+          "another image of this camera has the frame number " + std::to_string(number) + " too",
+          "the last number in a name is the frame: name images like cam0_frame01.png");
     }
     const auto met = [&](std::int64_t frame) { return before.count(frame) > 0; };
     if (camera > 0 && std::none_of(frames.begin(), frames.end(), met)) {
       const auto& first = images.front().front();
       const auto& own = images[camera].front();
       throw Error(own.string(),
-                  "no image of its camera has the frame number of an image before it (here " +
-                      std::to_string(parse_image_name(own).frame) + ", " +
+                  "its camera shares no frame number with the cameras before it (here " +
+                      std::to_string(parse_image_name(own).frame) + ", but " +
                       std::to_string(parse_image_name(first).frame) + " in " + first.string() + ")",
                   "the last number in a name is the frame; give simultaneous images the same");
     }
@@ -66,8 +67,8 @@ std::vector<std::int64_t> frame_numbers(
   return {before.begin(), before.end()};
 }
 
-/// The board of an image. One that cannot be read is refused with the reason, and its Error is kept
-/// where it is the first.
+/// The board of an image. An image that cannot be read is recorded as refused, with the reason; the
+/// first such Error is kept.
 BoardDetection detect_or_refuse(const std::filesystem::path& image,
                                 const BoardTarget& target,
                                 std::optional<Error>& first_fault) {
@@ -94,7 +95,7 @@ void add_detection(const BoardDetection& found, ImageDetections& result) {
                 "its size " + std::to_string(found.size_px[0]) + "x" +
                     std::to_string(found.size_px[1]) + " differs from the images before it (" +
                     std::to_string(size[0]) + "x" + std::to_string(size[1]) + ")",
-                "give images of one size a camera");
+                "give images of one size per camera");
   }
   if (found.ids.empty()) {
     result.refused.push_back(found);
@@ -116,8 +117,9 @@ void check_found(const ImageDetections& found, const std::string& place, const s
                 "count them again");
   }
   if (found.used.empty()) {
-    throw Error(place, "no " + name + " in any image",
-                "of the first, " + refused.front().image.string() + ": " + refused.front().reason);
+    throw Error(
+        place, "no " + name + " in any image",
+        "reason for the first, " + refused.front().image.string() + ": " + refused.front().reason);
   }
 }
 
@@ -128,11 +130,11 @@ std::string text_of(CornerRejection refusal) {
     case CornerRejection::at_border:
       return "at the image's border";
     case CornerRejection::not_crossing:
-      return "covered or unlike a crossing of squares";
+      return "occluded or not a crossing of squares";
     case CornerRejection::moved_too_far:
-      return "moved out of its window by refinement";
+      return "moved out of its search window by refinement";
     case CornerRejection::off_neighbours:
-      return "not where its neighbours put it";
+      return "inconsistent with its neighbours";
   }
   return "";
 }

@@ -64,7 +64,7 @@ void check_flat(const std::vector<Eigen::Vector3d>& target_m) {
   }
   const Eigen::Vector3d extent = high - low;
   if (!(extent.z() <= 0.1 * extent.head<2>().maxCoeff())) {
-    throw Error("target", "its corners lie in no plane z = 0, so no start can be found",
+    throw Error("target", "its corners are not in the plane z = 0, which initialisation needs",
                 "give the corners of a flat board with z = 0");
   }
 }

@@ -19,7 +19,7 @@ std::string view_label(const BoardView& view) {
 void check_view(const BoardView& view, const BoardObservations& observations) {
   const std::string place = view_label(view);
   if (view.camera < 0 || view.camera >= static_cast<int>(observations.size_px.size())) {
-    throw Error(place, "no image size is known for this camera", "give one size a camera");
+    throw Error(place, "the image size of this camera is unknown", "give one size per camera");
   }
   if (view.ids.size() != view.pixels_px.size() || view.ids.size() < 4) {
     throw Error(place, "fewer than four corners", "leave the view out");
@@ -42,10 +42,10 @@ void check_view(const BoardView& view, const BoardObservations& observations) {
     }
   }
   if (!determines_pose(observations.target_m, view.ids)) {
-    throw Error(place,
-                "its corners, all but one at most, lie on one line of the board, which fixes no "
-                "pose of it",
-                "leave the view out");
+    throw Error(
+        place,
+        "all its corners, or all but one, are collinear, which does not determine the board's pose",
+        "leave the view out");
   }
 }
 
@@ -61,7 +61,7 @@ std::vector<int> frames_of(const BoardObservations& observations) {
 
 bool determines_pose(const std::vector<Eigen::Vector3d>& target_m, const std::vector<int>& ids) {
   if (ids.size() < 4) return false;
-  // A line that all but one are on holds two of the first three, whichever that one is.
+  // If all but one corner are on a line, it contains two of the first three.
   for (int without = 0; without < 3; ++without) {
     const Eigen::Vector3d& a = target_m[ids[(without + 1) % 3]];
     const Eigen::Vector3d along = target_m[ids[(without + 2) % 3]] - a;

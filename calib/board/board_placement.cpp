@@ -35,18 +35,18 @@ struct Target {
     middle_m = 0.5 * (low + high);
     extent_m = high - low;
     if (!(extent_m[0] > 0 && extent_m[1] > 0)) {
-      throw Error("board", "its corners lie on a line", "give a board of two rows and columns");
+      throw Error("board", "its corners are collinear", "give a board of two rows and columns");
     }
   }
 };
 
-/// i-th of n values from `low` to `high`; the middle where n is 1.
+/// i-th of n values from `low` to `high`; the middle if n is 1.
 double step_between(double low, double high, int i, int n) {
   return n > 1 ? low + (high - low) * i / (n - 1) : 0.5 * (low + high);
 }
 
-/// What a camera sees of the board; nothing where that is less than `least` corners, or slanted
-/// too much.
+/// The board as seen by a camera; std::nullopt if fewer than `least` corners are visible or the
+/// slant is too large.
 std::optional<BoardView> seen_by(const Rig& rig,
                                  int camera,
                                  const Pose& T_first_board,
@@ -65,7 +65,7 @@ std::optional<BoardView> seen_by(const Rig& rig,
     if (!(x.z() > 0)) return std::nullopt;
     const Eigen::Vector2d pixel = project(c, x);
     if ((pixel.array() < options.border_px).any() || (pixel.array() > last).any()) continue;
-    // beyond a fold of the distortion a point far outside seems to be inside
+    // beyond a fold of the distortion, a point far outside may project into the image
     const auto ray = try_unproject(c, pixel);
     if (!ray || (*ray - x / x.z()).norm() > 1e-6) return std::nullopt;
     view.ids.push_back(static_cast<int>(i));
@@ -126,7 +126,7 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
   const int n = options.places;
   std::vector<PlacedBoard> boards;
   for (int place = 0; place < n * n; ++place) {
-    // the middles of the outermost cells of a grid
+    // the centres of the outermost cells of a grid
     const Eigen::Vector2d centre((place % n + 0.5) / n * size[0] - 0.5,
                                  (place / n + 0.5) / n * size[1] - 0.5);
     const auto ray = try_unproject(left, centre);
@@ -154,9 +154,8 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
     }
   }
   if (boards.empty()) {
-    throw Error("board", "nowhere do all cameras see it whole",
-                "give a larger board, which is held farther away, or let one camera see a part of "
-                "it (--partly)");
+    throw Error("board", "no placement shows it whole in all cameras",
+                "use a larger board farther away, or let one camera see a part of it (--partly)");
   }
   return boards;
 }

@@ -15,10 +15,10 @@
 
 namespace vernier::internal {
 
-/// A way to hold a board before a rig.
+/// A pose of a board in front of a rig.
 struct BoardPlacement {
-  Eigen::Vector2d centre_px;  ///< of the board's middle, in the left image
-  double distance_m = 0;      ///< from the left camera to the board's middle
+  Eigen::Vector2d centre_px;  ///< of the board's centre, in the left image
+  double distance_m = 0;      ///< from the left camera to the board's centre
   double turn_rad = 0;        ///< about the image's vertical; above 0 the right edge is nearer
   double tilt_rad = 0;        ///< about the image's horizontal; above 0 the upper edge is nearer
   Pose T_first_board;
@@ -27,26 +27,27 @@ struct BoardPlacement {
 
 /// Which placements are considered.
 struct PlacementOptions {
-  int places = 5;          ///< of the middle along each side of the left image
+  int places = 5;          ///< of the centre along each side of the left image
   int fills = 5;           ///< steps of the size
-  double min_fill = 0.25;  ///< of the image's width or height that the facing board takes up
+  double min_fill = 0.25;  ///< size of the fronto-parallel board over the image's width or height
   double greatest_fill = 0.95;
   int angles = 5;  ///< steps of turn and of tilt
   double greatest_angle_rad = std::numbers::pi / 4;
   double greatest_slant_rad = std::numbers::pi / 3;  ///< between its normal and the line of sight
-  double border_px = 5;                              ///< that corners keep from the image's edge
-  bool partly = false;  ///< of several, one camera may see but a quarter of the corners
+  double border_px = 5;  ///< minimum distance of corners from the image's edge
+  bool partly = false;   ///< one of several cameras may see only a quarter of the corners
 };
 
-/// A placement with the corners that each camera sees of it (noise-free, frame 0).
+/// A placement with the corners that each camera sees (noise-free, frame 0).
 struct PlacedBoard {
   BoardPlacement placement;
   std::vector<BoardView> views;
 };
 
-/// All placements of the target that the rig's cameras see whole (but see `partly`), in an order
-/// that depends on the options alone. `target_m` lies near the plane z = 0, x to the right and y
-/// down; a facing board has its axes along the left camera's. Throws Error where there is none.
+/// All placements of the target that all cameras of the rig see completely (except with `partly`),
+/// in an order that depends only on the options. `target_m` is near the plane z = 0, x right and y
+/// down; a fronto-parallel board has its axes along the left camera's. Throws Error if there is
+/// none.
 std::vector<PlacedBoard> placed_boards(const Rig& rig,
                                        const std::vector<Eigen::Vector3d>& target_m,
                                        const PlacementOptions& options = {});

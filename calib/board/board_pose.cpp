@@ -23,7 +23,7 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// Sum of squares and, where wanted, the normal equations of the board's pose.
+/// Sum of squares and, if requested, the normal equations of the board's pose.
 struct PoseEquations {
   Matrix6 N = Matrix6::Zero();
   Vector6 g = Vector6::Zero();
@@ -64,7 +64,7 @@ PoseEquations pose_equations(const std::vector<Eigen::Vector3d>& target_m,
   return equations;
 }
 
-/// Normalised coordinates without distortion; as the pinhole sees them beyond the model's fold.
+/// Normalised coordinates without distortion; beyond the fold of the model, those of the pinhole.
 cv::Point2d undistorted(const Camera& camera, const Eigen::Vector2d& pixel) {
   if (const auto ray = try_unproject(camera, pixel)) return {ray->x(), ray->y()};
   return {(pixel.x() - camera.ox_px()) / (camera.f_px() * camera.ax()),

@@ -12,21 +12,20 @@
 
 namespace vernier::internal {
 
-/// Where a board stood by one view and a camera taken as known, T_camera_board: the plane's
-/// homography on the undistorted corners, refined in normalised coordinates (OpenCV's solvePnP).
-/// Throws Error where no pose fits.
+/// T_camera_board from one view and a known camera: the plane's homography on the undistorted
+/// corners, refined in normalised coordinates (OpenCV's solvePnP). Throws Error if no pose fits.
 Pose board_pose(const std::vector<Eigen::Vector3d>& target_m,
                 const BoardView& view,
                 const Camera& camera);
 
-/// The pose of a board in a frame by all the views given, the rig taken as known.
+/// The pose of a board in a frame from all given views, with the rig known.
 struct BoardPoseFit {
   Pose T_first_board;
-  double rms_px = 0;  ///< per coordinate; infinite where the board is nowhere in front
+  double rms_px = 0;  ///< per coordinate; infinite if the board is behind a camera
 };
 
 /// Minimises Σ |project(T_camera_first T_first_board X) − q|² over T_first_board from a start, by
-/// Levenberg and Marquardt's method in the left tangent.
+/// Levenberg–Marquardt in the left tangent.
 BoardPoseFit fit_board_pose(const std::vector<Eigen::Vector3d>& target_m,
                             std::span<const BoardView> views,
                             const Rig& rig,

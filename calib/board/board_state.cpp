@@ -13,8 +13,8 @@ namespace vernier {
 std::size_t frame_index(const std::vector<int>& frames, int frame) {
   const auto at = std::lower_bound(frames.begin(), frames.end(), frame);
   if (at != frames.end() && *at == frame) return static_cast<std::size_t>(at - frames.begin());
-  throw Error("frame " + std::to_string(frame), "a view is of it, but no pose of the board is",
-              "give a pose for every frame of the views");
+  throw Error("frame " + std::to_string(frame), "it has a view but no board pose",
+              "give one board pose for every frame with views");
 }
 
 BoardState at_frames(const BoardState& state, const std::vector<int>& frames) {

@@ -17,7 +17,7 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
-/// Beyond it a number is a slip of the pen, and its square too many corners.
+/// A larger number is a typing error, and its square too many corners.
 constexpr int max_along_a_side = 1000;
 
 void require_few(int columns, int rows, const std::string& place) {
@@ -52,8 +52,10 @@ void check(const Chessboard& board, const std::string& place) {
   if (board.row_m == 0) return;
   require_length(board.row_m, place, "the distance between rows");
   if (board.columns == board.rows && board.row_m != board.square_m) {
-    throw Error(place, "with as many columns as rows, nothing tells its long sides from its short",
-                "use a board whose squares are square, or one of unequal sides");
+    throw Error(
+        place,
+        "its orientation is ambiguous: as many columns as rows, and squares that are not square",
+        "use square squares, or different numbers of columns and rows");
   }
 }
 
@@ -79,11 +81,11 @@ void check(const AprilTagGrid& grid, const std::string& place) {
   require_length(grid.tag_m, place, "the side of a tag");
   if (!(grid.spacing > 0) || !std::isfinite(grid.spacing)) {
     throw Error(place, "the spacing of its tags is not above 0",
-                "it is the gap between tags over the side of a tag");
+                "give the gap between tags divided by the side of a tag");
   }
   if (grid.border_bits < 0 || grid.border_bits > 2) {
-    throw Error(place, "a border of " + std::to_string(grid.border_bits) + " bits",
-                "it is 1, or 2 as on Kalibr's");
+    throw Error(place, "its border is " + std::to_string(grid.border_bits) + " bits wide",
+                "use 1, or 2 as Kalibr does");
   }
   require_markers(grid.columns * grid.rows, "apriltag_" + grid.family, place);
 }

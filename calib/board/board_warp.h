@@ -7,15 +7,16 @@
 
 namespace vernier::internal {
 
-/// The out-of-plane shape of a board that is not quite flat, as two parabolas (the model of mrcal
-/// 2.2's calobject_warp):
+/// Out-of-plane shape of a slightly bent board as two parabolas (the model of calobject_warp in
+/// mrcal 2.2):
 ///
 ///     z(x, y) = warp_x (1 - x²) + warp_y (1 - y²),   x, y in [-1, 1] over the target's extent
 ///
-/// One row a target point: the derivatives of its z by (warp_x, warp_y), no unit.
+/// Returns one row per target point: the derivatives of z with respect to (warp_x, warp_y),
+/// dimensionless.
 Eigen::Matrix<double, Eigen::Dynamic, 2> warp_shapes(const std::vector<Eigen::Vector3d>& target_m);
 
-/// The target's points with the warp (metres) added to their z.
+/// The target's points with the warp (metres) added to z.
 std::vector<Eigen::Vector3d> warped_target(std::vector<Eigen::Vector3d> target_m,
                                            const Eigen::Vector2d& warp_m);
 

@@ -27,8 +27,8 @@ struct CornerGrid {
   const cv::Point2f& at(int column, int row) const { return corners[row * columns + column]; }
 };
 
-/// Mean grey value of the middle of a square given by its corners in turn; nothing where it is not
-/// all in the image.
+/// Mean grey value in the middle of a square given by its corners in order; std::nullopt if it is
+/// not completely inside the image.
 std::optional<double> brightness(const cv::Mat& grey, const std::array<cv::Point2d, 4>& square) {
   double sum = 0;
   int count = 0;
@@ -45,8 +45,8 @@ std::optional<double> brightness(const cv::Mat& grey, const std::array<cv::Point
   return sum / count;
 }
 
-/// The corner of a grid, or where one would be on going beyond its sides, by whole or broken steps:
-/// second differences along rows and columns stay what they are at the side.
+/// A corner of the grid, or its extrapolation beyond the grid by whole or fractional steps, with
+/// the second differences along rows and columns at the border kept constant.
 cv::Point2d beyond(const CornerGrid& grid, double column, double row) {
   const auto extend = [](auto at, double i, int n) -> cv::Point2d {
     if (i >= 0 && i <= n - 1) return at(static_cast<int>(i));
@@ -61,7 +61,7 @@ cv::Point2d beyond(const CornerGrid& grid, double column, double row) {
   return extend(along_row, row, grid.rows);
 }
 
-/// A piece of a square, from one place of the grid to another.
+/// A part of a square, between two positions of the grid.
 struct Piece {
   int column, row;  ///< its square's upper left corner; (-1, -1) is the board's first
   double left, top, right, bottom;
@@ -91,9 +91,8 @@ std::array<double, 2> colours(const cv::Mat& grey, const CornerGrid& grid) {
   return {sum[0] / std::max(count[0], 1.0), sum[1] / std::max(count[1], 1.0)};
 }
 
-/// The halves of the squares next to the board's own outer squares, on its four sides. Outer
-/// squares are often cut narrow, so only the nearer halves are looked at, and not those at the
-/// ends.
+/// The inner halves of the squares next to the board's outer squares, on its four sides. Outer
+/// squares are often narrow, so only the nearer halves are used, without those at the ends.
 std::array<std::vector<Piece>, 4> pieces_beyond(const CornerGrid& grid) {
   std::array<std::vector<Piece>, 4> sides;
   for (int c = 0; c + 1 < grid.columns; ++c) {
@@ -108,7 +107,7 @@ std::array<std::vector<Piece>, 4> pieces_beyond(const CornerGrid& grid) {
   return sides;
 }
 
-/// Whether squares of the right colours follow beyond the board's own outer squares, on any side.
+/// Whether squares of the expected colours continue beyond the board's outer squares on any side.
 bool goes_on(const cv::Mat& grey, const CornerGrid& grid) {
   const std::array<double, 2> colour = colours(grey, grid);
   const double middle = 0.5 * (colour[0] + colour[1]);
@@ -120,13 +119,13 @@ bool goes_on(const cv::Mat& grey, const CornerGrid& grid) {
       ++seen;
       right += (*value > middle) == (colour[(piece.column + piece.row + 4) % 2] > middle);
     }
-    return seen >= 3 && right >= 0.8 * seen;  // a plain margin gets two thirds right at most
+    return seen >= 3 && right >= 0.8 * seen;  // a plain margin gets at most two thirds right
   };
   const auto sides = pieces_beyond(grid);
   return std::any_of(sides.begin(), sides.end(), follow);
 }
 
-/// Makes the first square dark by a half turn where that changes its colour.
+/// Rotates the order by a half turn, if that changes its colour, so that the first square is dark.
 void make_order_unique(const cv::Mat& grey, CornerGrid& grid) {
   if ((grid.columns + grid.rows) % 2 == 0) return;
   const auto first = brightness(grey, grid, whole_square(0, 0));
@@ -156,7 +155,7 @@ bool find_corners(const cv::Mat& grey, CornerGrid& grid) {
                                      cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
 }
 
-/// The largest grid of corners that can be followed in the image, 3 x 3 at least.
+/// The largest grid of corners found in the image, at least 3 x 3.
 std::optional<CornerGrid> find_any_grid(const cv::Mat& grey) {
   CornerGrid grid;
   cv::Mat meta;
@@ -177,8 +176,7 @@ std::string grid_text(int columns, int rows) {
   return std::to_string(columns) + "x" + std::to_string(rows);
 }
 
-/// Whether the squares around the next corners beyond one of the grid's sides would not be all in
-/// the image.
+/// Whether the squares around the next corners beyond one side of the grid would leave the image.
 bool cut_by_border(const cv::Mat& grey, const CornerGrid& grid) {
   constexpr double step = 1.5;  // to the next corner, and half a square around it
   const auto outside = [&](double column, double row) {
@@ -198,7 +196,7 @@ std::string bigger(const Chessboard& board) {
   return "the board seems to have more inner corners than " + grid_text(board.columns, board.rows);
 }
 
-/// Why no board of this size was found, by what is there instead.
+/// The reason why no board of this size was found, from what was found instead.
 std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetection& result) {
   std::string reason = "no " + grid_text(board.columns, board.rows) + " board found";
   if (const auto grid = find_any_grid(grey)) {
@@ -209,12 +207,11 @@ std::string fault_of(const cv::Mat& grey, const Chessboard& board, BoardDetectio
       result.goes_on = true;
       return reason + "; " + bigger(board) + ": " + seen + " are seen";
     }
-    reason += "; only " + seen + " of its corners can be followed";
-    // A few corners may be of something else; those of a board larger than 3x4 are not.
+    reason += "; only " + seen + " of its corners were found";
+    // A few corners may belong to something else, those of a grid larger than 3x4 do not.
     if (grid->columns * grid->rows > std::max(12, board.columns * board.rows / 4)) {
-      reason += cut_by_border(grey, *grid)
-                    ? ", the image's border cuts the board off"
-                    : ", something covers the others, or the board has fewer";
+      reason += cut_by_border(grey, *grid) ? ", the board is cut off by the image's border"
+                                           : ", the others are occluded or the board has fewer";
     }
     const double spacing = smallest_spacing(*grid);
     if (spacing < 10) reason += ", and they are only " + std::to_string(int(spacing)) + " px apart";
@@ -246,7 +243,7 @@ void detect_chessboard(const cv::Mat& grey, const Chessboard& board, BoardDetect
   const auto astray = std::count_if(
       result.rejected_corners.begin(), result.rejected_corners.end(),
       [](const RejectedCorner& corner) { return corner.why != CornerRejection::at_border; });
-  // The finders find whole boards only: several corners that are none are a board of another size.
+  // The finders find whole boards only: several wrong corners mean a board of another size.
   const bool wrong = 10 * astray > static_cast<long>(grid.corners.size());
   if (!wrong && 2 * result.ids.size() >= grid.corners.size()) return;
   const std::string fault = image_fault(grey);

@@ -8,13 +8,13 @@
 
 namespace vernier::internal {
 
-/// Difference of the corners that two views share, by id; infinite where these are fewer than four.
+/// Difference between the corners common to two views, by id; infinite for fewer than four.
 struct CornerDifference {
   double largest_px = std::numeric_limits<double>::infinity();  ///< of a coordinate
   double rms_px = std::numeric_limits<double>::infinity();      ///< per coordinate
 };
 
-/// Infinite as well as soon as the sum of squares tells that rms_px would be above `max_px`.
+/// Also infinite as soon as the sum of squares shows that rms_px would exceed `max_px`.
 CornerDifference corner_difference(const BoardView& a, const BoardView& b, double max_px);
 
 }  // namespace vernier::internal

@@ -9,19 +9,19 @@
 
 #include "calib/board_observations.h"
 
-/// Internal to calib/: what the readers of files with a corner a line share. Not installed.
+/// Internal to calib/: common code of the readers of files with one corner per line. Not installed.
 namespace vernier::internal::corner_lines {
 
-/// Throws Error for a pixel that is not finite or, where their size is known, outside its camera's
-/// images; one size stands for all. `corner` names it in a person's words.
+/// Throws Error for a pixel that is not finite or, if the sizes are known, outside the image of its
+/// camera; a single size applies to all cameras. `corner` describes it in messages.
 void check_pixel(const Eigen::Vector2d& pixel_px,
                  std::size_t camera,
                  const std::vector<Eigen::Vector2i>& size_px,
                  const std::string& place,
                  const std::string& corner);
 
-/// Gives all cameras their size where one stands for them, then check_and_sort; what that says
-/// begins with the file.
+/// Gives all cameras the size if only one is given, then calls check_and_sort; its errors are
+/// prefixed with the file.
 BoardObservations finished(BoardObservations observations,
                            std::size_t cameras,
                            const std::filesystem::path& file);

@@ -34,7 +34,7 @@ double grey_at(const cv::Mat& grey, const Eigen::Vector2d& p) {
          t * ((1 - s) * below[x] + s * below[x + 1]);
 }
 
-/// A crossing of squares looks the same after half a turn: compares opposite points on a circle.
+/// A crossing of squares is symmetric under a half turn: compares opposite points on a circle.
 bool is_crossing(const cv::Mat& grey, const Eigen::Vector2d& corner, double radius) {
   constexpr int points = 24;  // on half of the circle
   double difference = 0, low = 255, high = 0;
@@ -49,9 +49,12 @@ bool is_crossing(const cv::Mat& grey, const Eigen::Vector2d& corner, double radi
   return high - low > min_contrast && difference / points < max_asymmetry * (high - low);
 }
 
-/// cornerSubPix of one corner. OpenCV puts a corner that left its window back to where it began, so
-/// one that did not move is tried again from beside: nothing where it then does not move either.
-std::optional<Eigen::Vector2d> settle(const cv::Mat& grey, const Eigen::Vector2d& from, int half) {
+/// cornerSubPix for one corner. OpenCV resets a corner that left its window to its start, so one
+/// that did not move is tried again from a displaced start: std::nullopt if it does not move then
+/// either.
+std::optional<Eigen::Vector2d> refine_once(const cv::Mat& grey,
+                                           const Eigen::Vector2d& from,
+                                           int half) {
   for (const float nudge : {0.0f, 0.03f}) {
     const cv::Point2f start(float(from.x()) + nudge, float(from.y()) - nudge);
     std::vector<cv::Point2f> corner{start};
@@ -62,24 +65,24 @@ std::optional<Eigen::Vector2d> settle(const cv::Mat& grey, const Eigen::Vector2d
   return std::nullopt;
 }
 
-/// The refined place and the window it was found in, or why there is none.
+/// The refined position and its window, or the reason for a rejection.
 std::optional<CornerRejection> refine(const cv::Mat& grey, CornerGuess& guess) {
   const Eigen::Vector2d far(grey.cols - 1 - guess.pixel_px.x(), grey.rows - 1 - guess.pixel_px.y());
   const double room = std::min(guess.pixel_px.minCoeff(), far.minCoeff()) - 1;
   const int half = std::min(guess.half_window_px, static_cast<int>(std::floor(room)));
   if (half < min_half_window) return CornerRejection::at_border;
-  const auto moved_to = settle(grey, guess.pixel_px, half);
+  const auto moved_to = refine_once(grey, guess.pixel_px, half);
   if (!moved_to) return CornerRejection::moved_too_far;
   guess.pixel_px = *moved_to;
   guess.half_window_px = half;
   return std::nullopt;
 }
 
-/// How far a corner lies from where its nearest neighbours put it, over what is tolerable; 0 where
-/// they say nothing.
-double strangeness(const std::vector<CornerGuess>& corners,
-                   const std::vector<Eigen::Vector3d>& target_m,
-                   std::size_t index) {
+/// Distance of a corner from the position predicted by its nearest neighbours, relative to the
+/// tolerance; 0 if they do not predict one.
+double relative_deviation(const std::vector<CornerGuess>& corners,
+                          const std::vector<Eigen::Vector3d>& target_m,
+                          std::size_t index) {
   const Eigen::Vector2d own = target_m[corners[index].id].head<2>();
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -95,7 +98,7 @@ double strangeness(const std::vector<CornerGuess>& corners,
   }
   const auto H = fit_homography(from, to);
   if (!H) return 0;
-  // Distortion bends the neighbourhood: what the neighbours themselves deviate by is no fault.
+  // Distortion bends the neighbourhood: allow for the neighbours' own deviation.
   double squares = 0, apart = 0;
   for (std::size_t k = 0; k < count; ++k) {
     squares += (map_point(*H, from[k]) - to[k]).squaredNorm();
@@ -106,7 +109,7 @@ double strangeness(const std::vector<CornerGuess>& corners,
   return (map_point(*H, own) - corners[index].pixel_px).norm() / tolerable;
 }
 
-/// Takes out the corners where no squares cross, if squares are to cross there.
+/// Removes corners without a crossing of squares, if the board has crossings at its corners.
 void drop_covered_corners(const cv::Mat& grey,
                           CornerKind kind,
                           std::vector<CornerGuess>& corners,
@@ -126,17 +129,17 @@ void drop_covered_corners(const cv::Mat& grey,
   refused.insert(refused.end(), others.begin(), others.end());
 }
 
-/// Takes out the strangest corner until none is strange.
-void drop_strange_corners(std::vector<CornerGuess>& corners,
-                          const std::vector<Eigen::Vector3d>& target_m,
-                          std::vector<RejectedCorner>& refused) {
+/// Removes the most deviating corner until none deviates.
+void drop_deviating_corners(std::vector<CornerGuess>& corners,
+                            const std::vector<Eigen::Vector3d>& target_m,
+                            std::vector<RejectedCorner>& refused) {
   while (true) {
     double most = 1;
     std::size_t worst = corners.size();
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const double strange = strangeness(corners, target_m, i);
-      if (strange > most) {
-        most = strange;
+      const double relative = relative_deviation(corners, target_m, i);
+      if (relative > most) {
+        most = relative;
         worst = i;
       }
     }
@@ -164,7 +167,7 @@ void refine_corners(const cv::Mat& grey,
     }
   }
   drop_covered_corners(grey, kind, refined, result.rejected_corners);
-  drop_strange_corners(refined, target_m, result.rejected_corners);
+  drop_deviating_corners(refined, target_m, result.rejected_corners);
   for (const CornerGuess& corner : refined) {
     result.ids.push_back(corner.id);
     result.corners_px.push_back(corner.pixel_px);

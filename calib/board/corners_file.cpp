@@ -31,7 +31,7 @@ namespace {
 
 using corner_lines::check_pixel;
 
-/// The images' cameras in order of first appearance, which is how a corners file numbers them.
+/// Numbers the cameras of the images in order of first appearance, as a corners file does.
 class CameraOrder {
  public:
   int index(const std::string& camera) {
@@ -46,7 +46,7 @@ class CameraOrder {
   std::vector<std::string> cameras_;
 };
 
-/// Throws Error for an image whose name read_corners would not take for the same image.
+/// Throws Error if read_corners would assign the image's name to another view.
 void check_image_name(const BoardView& view, CameraOrder& cameras) {
   if (view.image.empty()) {
     throw Error(fmt::format("frame {}, camera {}", view.frame, view.camera),
@@ -66,13 +66,13 @@ void check_image_name(const BoardView& view, CameraOrder& cameras) {
   }
 }
 
-/// The fourth column, 0 where there is none; below 0, as "-", it says that there is no corner.
+/// The fourth column, 0 if absent; below 0 ("-") means that there is no corner.
 int level_of(const std::vector<std::string_view>& fields, const std::string& place) {
   if (fields.size() < 4) return 0;
   return fields[3] == "-" ? -1 : parse_whole(fields[3], place, "level");
 }
 
-/// What a corners file has said so far.
+/// Collects the lines of a corners file.
 class CornerReader {
  public:
   CornerReader(const BoardTarget& target, const std::vector<Eigen::Vector2i>& size_px)
@@ -87,7 +87,7 @@ class CornerReader {
     const int id = count_[image]++;
     if (id >= grid_.prod()) {
       throw Error(place, fmt::format("{} has more than {} corners", image, grid_.prod()),
-                  fmt::format("the board is said to be a {}", name_of(target_)));
+                  fmt::format("the board was given as a {}", name_of(target_)));
     }
     if (fields[1] == "-" || level_of(fields, place) < 0) return;
     const Eigen::Vector2d pixel_px(parse_real(fields[1], place, "x"),
@@ -100,7 +100,7 @@ class CornerReader {
 
   BoardObservations take(const std::filesystem::path& file) {
     for (const auto& [image, read] : count_) {
-      // An image without a board has one line of dashes.
+      // An image without a board has a single line of dashes.
       if (read == grid_.prod() || read == 1) continue;
       throw Error(file.string(),
                   fmt::format("{} has {} corners, the {} has {}", image, read, name_of(target_),
@@ -110,7 +110,7 @@ class CornerReader {
     number_frames(file);
     std::erase_if(views_, [](const BoardView& view) { return view.ids.size() < 4; });
     if (views_.empty()) {
-      throw Error(file.string(), "no board in it", "give a corners file with data");
+      throw Error(file.string(), "it contains no board", "give a corners file with data");
     }
     return corner_lines::finished({size_px_, target_points(target_), std::move(views_)},
                                   cameras_.size(), file);
@@ -133,7 +133,7 @@ class CornerReader {
   BoardView& view_of(const std::string& image, const std::string& place) {
     if (count_.try_emplace(image, 0).second) {
       const ImageName name = parse_image_name(image);
-      // Images without a board count too, or a first one would hand its camera's place to another.
+      // Images without a board are counted too, to keep the numbering of the cameras.
       views_.push_back({0, cameras_.index(name.camera), image, {}, {}});
       numbers_.push_back(name.frame);
     } else if (views_.back().image != image) {
@@ -146,7 +146,7 @@ class CornerReader {
   Eigen::Vector2i grid_;  // columns, rows
   const std::vector<Eigen::Vector2i>& size_px_;
   std::vector<BoardView> views_;
-  std::vector<std::int64_t> numbers_;  // one a view, in its image's name
+  std::vector<std::int64_t> numbers_;  // one per view, in its image's name
   CameraOrder cameras_;
   std::map<std::string, int> count_;  // corners read of each image, found or not
 };
@@ -157,7 +157,7 @@ ImageName parse_image_name(const std::filesystem::path& image) {
   const std::string stem = image.stem().string();
   const std::size_t last = stem.find_last_of("0123456789");
   if (last == std::string::npos) {
-    throw Error(image.string(), "no number in its name says which frame it is",
+    throw Error(image.string(), "its name has no frame number",
                 "name images like left01.png, right01.png");
   }
   std::size_t first = last;

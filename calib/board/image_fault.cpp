@@ -23,7 +23,7 @@ std::array<int, 256> histogram(const cv::Mat& grey) {
   return count;
 }
 
-/// The smallest grey value that at least this share of the pixels do not exceed.
+/// The smallest grey value that at least this fraction of the pixels do not exceed.
 int percentile(const std::array<int, 256>& count, double share, double pixels) {
   double sum = 0;
   for (int value = 0; value < 256; ++value) {
@@ -33,7 +33,7 @@ int percentile(const std::array<int, 256>& count, double share, double pixels) {
   return 255;
 }
 
-/// Grey values a pixel of the steepest edges, by Sobel's operator.
+/// Steepest edges, grey values per pixel, by the Sobel operator.
 double steepest(const cv::Mat& grey) {
   cv::Mat dx, dy, gradient;
   cv::Sobel(grey, dx, CV_32F, 1, 0, 3, 1.0 / 8);

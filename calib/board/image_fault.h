@@ -7,8 +7,7 @@
 
 namespace vernier::internal {
 
-/// What is measurably wrong with a grey image for finding a board in it, with the measure; empty
-/// where nothing is:
+/// A measurable fault of a grey image for board detection, with its value; empty if none:
 ///  - low contrast: the grey values between the 1st and the 99th percentile span less than 40;
 ///  - over-exposed: more than half of the pixels at 254 or 255; under-exposed: nine tenths below
 ///  16;

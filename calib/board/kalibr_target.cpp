@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// What stands before a comment: a # at the beginning or after a blank, outside quotes.
+/// The part of a line before a comment: a # at the beginning or after a blank, outside quotes.
 std::string_view without_comment(std::string_view line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -44,7 +44,7 @@ std::string_view unquoted(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-/// The keys of a flat YAML file, each taken once.
+/// The keys of a flat YAML file. Each key can be taken once.
 class FlatYaml {
  public:
   struct Entry {
@@ -109,7 +109,7 @@ class FlatYaml {
     const std::string key(trimmed(line.substr(0, colon)));
     const std::string value(unquoted(trimmed(line.substr(colon + 1))));
     if (!entries_.insert({key, {value, number}}).second) {
-      throw Error(place(number), key + " is said a second time", "remove one of the lines");
+      throw Error(place(number), key + " appears a second time", "remove one of the lines");
     }
   }
 
@@ -127,7 +127,7 @@ AprilTagGrid april_grid(FlatYaml& yaml) {
   const FlatYaml::Entry offset = yaml.take("codeOffset");
   if (offset.value != "0") {
     throw Error(yaml.place(offset.line), "codeOffset is \"" + offset.value + "\"",
-                "Vernier counts tags from 0: give a board that does");
+                "only codeOffset 0 is supported");
   }
   return grid;
 }
@@ -152,11 +152,11 @@ BoardTarget read_kalibr_target(const std::filesystem::path& file) {
   } else if (type.value == "checkerboard") {
     target = checkerboard(yaml);
   } else if (type.value == "circlegrid") {
-    throw Error(yaml.place(type.line), "a circlegrid is not detected by Vernier",
+    throw Error(yaml.place(type.line), "circlegrid targets are not supported",
                 "use a checkerboard, a ChArUco board or an aprilgrid");
   } else {
     throw Error(yaml.place(type.line), "target_type is \"" + type.value + "\"",
-                "it is aprilgrid or checkerboard");
+                "supported: aprilgrid, checkerboard");
   }
   yaml.expect_no_more();
   check_target(target);

@@ -8,15 +8,16 @@
 
 namespace vernier::internal {
 
-/// Reads Kalibr's target file: flat YAML, `key: value` a line, `#` begins a comment. Known are
+/// Reads Kalibr's target file: flat YAML, one `key: value` per line, `#` begins a comment.
+/// Supported:
 ///
 ///     target_type: 'aprilgrid'      tagCols, tagRows, tagSize (m), tagSpacing (over tagSize),
-///                                   codeOffset: 0 (may be left out)
+///                                   codeOffset: 0 (optional)
 ///     target_type: 'checkerboard'   targetCols, targetRows (inner corners),
 ///                                   rowSpacingMeters, colSpacingMeters
 ///
-/// Throws Error with file and line, also for a circlegrid, which Vernier does not detect, and for
-/// keys that are unknown, missing or said twice.
+/// Throws Error with file and line, also for a circlegrid, which is not supported, and for keys
+/// that are unknown, missing or repeated.
 BoardTarget read_kalibr_target(const std::filesystem::path& file);
 
 }  // namespace vernier::internal

@@ -27,15 +27,15 @@ namespace {
 
 constexpr std::size_t min_corners = 6;
 
-/// The largest window that holds nothing but the corner: `free_m` is the distance to the next edge
-/// of the pattern.
+/// The largest window that contains nothing but the corner: `free_m` is the distance to the next
+/// edge of the pattern.
 int window_at(const Eigen::Matrix3d& H, const Eigen::Vector2d& corner_m, double free_m) {
   const Eigen::Vector2d stretch =
       Eigen::JacobiSVD<Eigen::Matrix2d>(map_derivative(H, corner_m)).singularValues();
   return std::clamp(static_cast<int>(std::floor(0.9 * free_m * stretch[1] - 0.5)), 2, 11);
 }
 
-/// Whether the corners span the plane: no line within a tenth of their extent holds them all.
+/// Whether the corners span the plane: not all within a tenth of their extent from a line.
 bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>& target_m) {
   Eigen::MatrixX2d x(ids.size(), 2);
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -47,10 +47,10 @@ bool span_plane(const std::vector<int>& ids, const std::vector<Eigen::Vector3d>&
   return s[1] > 0.01 * s[0];  // of squares
 }
 
-/// Takes all corners back where they are too few to use.
-void judge(const std::vector<Eigen::Vector3d>& target_m,
-           const std::string& name,
-           BoardDetection& result) {
+/// Rejects all corners if there are too few.
+void reject_too_few(const std::vector<Eigen::Vector3d>& target_m,
+                    const std::string& name,
+                    BoardDetection& result) {
   const std::size_t corners = result.ids.size();
   if (corners < min_corners) {
     result.reason = "only " + std::to_string(corners) + " good corners of the " + name +
@@ -58,7 +58,7 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
     if (!result.rejected_corners.empty())
       result.reason += "; not used: " + rejected_corners_text(result);
   } else if (!span_plane(result.ids, target_m) || !determines_pose(target_m, result.ids)) {
-    result.reason = "all good corners of the " + name + ", or all but one, lie on one line";
+    result.reason = "all good corners of the " + name + ", or all but one, are collinear";
   } else {
     return;
   }
@@ -66,36 +66,36 @@ void judge(const std::vector<Eigen::Vector3d>& target_m,
   result.corners_px.clear();
 }
 
-/// Why there are no markers to work with, by what was seen instead.
+/// The reason why no usable markers were found.
 std::string marker_fault(const cv::Mat& grey,
                          const DetectedMarkers& seen,
                          const MarkerLayout& layout,
                          const std::string& name) {
   std::string reason = "no " + name + " found";
   if (seen.repeated > 0) {
-    reason += "; " + std::to_string(seen.repeated) + " markers are there more than once";
+    reason += "; " + std::to_string(seen.repeated) + " markers appear more than once";
   }
   if (seen.foreign > 0) {
-    reason += "; " + std::to_string(seen.foreign) + " markers have numbers that it has not";
+    reason += "; " + std::to_string(seen.foreign) + " markers have ids that are not on this board";
   }
   if (seen.markers.size() == 1) {
     reason += "; only marker " + std::to_string(seen.markers[0].id) + " of " +
               std::to_string(layout.corners_m.size()) + " is seen";
   } else if (seen.markers.empty() && seen.undecoded > 0) {
-    reason += "; " + std::to_string(seen.undecoded) +
-              " outlines of four sides, none with a pattern of " + layout.dictionary;
+    reason += "; " + std::to_string(seen.undecoded) + " quadrilaterals, none with a pattern of " +
+              layout.dictionary;
   }
   const std::string fault = image_fault(grey);
   return fault.empty() ? reason : reason + "; " + fault;
 }
 
-/// A board that people mistake for another, and what to say then.
+/// A board commonly mistaken for another, and the remedy.
 struct Mistake {
   std::vector<MarkerLayout> layouts;
   std::string remedy;
 };
 
-/// The layout that most markers agree with, and those that do.
+/// The layout that most markers are consistent with, and these markers.
 std::pair<std::size_t, std::vector<DetectedMarker>> best_layout(
     const std::vector<DetectedMarker>& markers, const std::vector<MarkerLayout>& layouts) {
   std::pair<std::size_t, std::vector<DetectedMarker>> best;
@@ -111,8 +111,8 @@ struct FoundLayout {
   DetectedMarkers seen;
 };
 
-/// The markers that lie as one of the layouts has them; nothing, and the reason in `result`, where
-/// there are no two such.
+/// The markers that match one of the layouts; std::nullopt, with the reason in `result`, for fewer
+/// than two.
 std::optional<FoundLayout> find_layout(const cv::Mat& grey,
                                        const std::vector<MarkerLayout>& layouts,
                                        const std::vector<Mistake>& mistakes,
@@ -134,14 +134,15 @@ std::optional<FoundLayout> find_layout(const cv::Mat& grey,
   }
   if (!remedy.empty()) {
     result.reason = std::to_string(seen.markers.size()) +
-                    " markers are seen, but they do not lie as on the " + name + "; " + remedy;
+                    " markers are seen, but their arrangement does not match the " + name + "; " +
+                    remedy;
     return std::nullopt;
   }
   seen.markers = std::move(good);
   return FoundLayout{layouts[index], std::move(seen)};
 }
 
-/// A tag may stand on the sheet at any quarter turn: its neighbours tell which.
+/// A tag may be printed at any quarter turn, which is determined from its neighbours.
 std::vector<MarkerLayout> turned_layouts(const AprilTagGrid& grid) {
   std::vector<MarkerLayout> layouts;
   for (int turns = 0; turns < 4; ++turns) layouts.push_back(layout_of(grid, turns));
@@ -156,7 +157,7 @@ Board swapped(Board board) {
 
 template <class Board>
 std::string swap_remedy(const Board& board) {
-  return "they lie as on one of " + std::to_string(board.rows) + "x" +
+  return "they match a board of " + std::to_string(board.rows) + "x" +
          std::to_string(board.columns) + ": swap the columns and rows";
 }
 
@@ -166,9 +167,9 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
     CharucoBoard other = board;
     other.legacy = !board.legacy;
     mistakes.push_back({{layout_of(other)},
-                        board.legacy ? "they lie as OpenCV 4.6 and later draws it: leave out "
-                                       "--legacy"
-                                     : "they lie as OpenCV before 4.6 drew it: give --legacy"});
+                        board.legacy
+                            ? "they match the layout of OpenCV 4.6 and later: leave out --legacy"
+                            : "they match the layout of OpenCV before 4.6: give --legacy"});
   }
   mistakes.push_back({{layout_of(swapped(board))}, swap_remedy(board)});
   return mistakes;
@@ -177,9 +178,9 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
 std::vector<Mistake> mistakes_for(const AprilTagGrid& grid) {
   AprilTagGrid other = grid;
   other.top_row_first = !grid.top_row_first;
-  return {{turned_layouts(other), grid.top_row_first
-                                      ? "they count from the lowest row: leave out --top-row-first"
-                                      : "they count from the upper row: give --top-row-first"},
+  return {{turned_layouts(other),
+           grid.top_row_first ? "they are numbered from the bottom row: leave out --top-row-first"
+                              : "they are numbered from the top row: give --top-row-first"},
           {turned_layouts(swapped(grid)), swap_remedy(grid)}};
 }
 
@@ -212,13 +213,13 @@ void detect_marker_board(const cv::Mat& grey, const CharucoBoard& board, BoardDe
     const auto near = [&](std::size_t count, double squares) {
       return homography_near(markers, found->layout, points[id], count, squares * board.square_m);
     };
-    if (!near(1, 0.8)) continue;  // neither marker beside it is seen
+    if (!near(1, 0.8)) continue;  // neither adjacent marker was detected
     const auto H = near(4, 1.7);
     if (!H) continue;
     guesses.push_back({id, map_point(*H, points[id]), window_at(*H, points[id], free_m)});
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::crossing, result);
-  judge(target_m, name, result);
+  reject_too_few(target_m, name, result);
 }
 
 void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDetection& result) {
@@ -242,7 +243,7 @@ void detect_marker_board(const cv::Mat& grey, const AprilTagGrid& grid, BoardDet
     }
   }
   refine_corners(grey, std::move(guesses), target_m, CornerKind::as_most, result);
-  judge(target_m, name, result);
+  reject_too_few(target_m, name, result);
 }
 
 }  // namespace vernier::internal

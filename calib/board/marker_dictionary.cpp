@@ -26,7 +26,7 @@ cv::Ptr<cv::aruco::Dictionary> marker_dictionary(const std::string& name) {
   if (at == names.end()) {
     std::string known;
     for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
-    throw Error("dictionary", "\"" + name + "\" is not known", "it is one of " + known);
+    throw Error("dictionary", "\"" + name + "\" is unknown", "supported: " + known);
   }
   return cv::aruco::getPredefinedDictionary(static_cast<int>(at - names.begin()));
 }

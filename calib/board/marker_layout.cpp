@@ -16,7 +16,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr double min_side_px = 10;  // below, no marker's pattern can be read
+constexpr double min_side_px = 10;  // smaller patterns cannot be read
 
 Eigen::Vector2d centre(const MarkerCorners& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
@@ -58,7 +58,7 @@ DetectedMarkers find_at(const cv::Mat& grey, const MarkerLayout& layout, int bor
   return seen;
 }
 
-/// Markers by their distance on the board from a point.
+/// Markers sorted by their distance on the board from a point.
 std::vector<std::pair<double, const DetectedMarker*>> by_distance(
     const std::vector<DetectedMarker>& markers,
     const MarkerLayout& layout,
@@ -71,7 +71,7 @@ std::vector<std::pair<double, const DetectedMarker*>> by_distance(
   return sorted;
 }
 
-/// Whether b lies where a puts it.
+/// Whether b is where a predicts it.
 bool agree(const DetectedMarker& a, const DetectedMarker& b, const MarkerLayout& layout) {
   const auto& am = layout.corners_m[a.id];
   const auto& bm = layout.corners_m[b.id];
@@ -110,7 +110,7 @@ std::vector<double> read_cells(const cv::Mat& grey, const MarkerCorners& corners
   return values;
 }
 
-/// Whether the pattern of marker `id` stands at these corners.
+/// Whether the pattern of marker `id` is found at these corners.
 bool reads_as(const cv::Mat& grey,
               const cv::aruco::Dictionary& dictionary,
               const DetectedMarker& marker,
@@ -145,8 +145,8 @@ bool inside(const cv::Mat& grey, const MarkerCorners& corners) {
   });
 }
 
-/// The corners moved to where the image has them, in windows of a tenth of the marker.
-MarkerCorners settled(const cv::Mat& grey, const MarkerCorners& corners) {
+/// The corners refined in the image, in windows of a tenth of the marker.
+MarkerCorners refined(const cv::Mat& grey, const MarkerCorners& corners) {
   double side = 1e9;
   std::vector<cv::Point2f> points;
   for (int k = 0; k < 4; ++k) {
@@ -161,7 +161,8 @@ MarkerCorners settled(const cv::Mat& grey, const MarkerCorners& corners) {
   return moved;
 }
 
-/// Marker `id` where the nearest few, or more, of those seen put it, if its pattern stands there.
+/// Marker `id` at the position predicted by its nearest detected neighbours, if its pattern is
+/// found there.
 std::optional<DetectedMarker> read_at_prediction(const cv::Mat& grey,
                                                  const cv::aruco::Dictionary& dictionary,
                                                  const MarkerLayout& layout,
@@ -175,7 +176,7 @@ std::optional<DetectedMarker> read_at_prediction(const cv::Mat& grey,
     for (int k = 0; k < 4; ++k) marker.corners_px[k] = map_point(*H, layout.corners_m[id][k]);
     for (int attempt = 0; attempt < 2 && inside(grey, marker.corners_px); ++attempt) {
       if (reads_as(grey, dictionary, marker, seen.border_bits)) return marker;
-      marker.corners_px = settled(grey, marker.corners_px);
+      marker.corners_px = refined(grey, marker.corners_px);
     }
   }
   return std::nullopt;

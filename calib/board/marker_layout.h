@@ -16,18 +16,18 @@ namespace vernier::internal {
 /// The corners of a marker clockwise from the one that OpenCV's own drawing has in the upper left.
 using MarkerCorners = std::array<Eigen::Vector2d, 4>;
 
-/// Where the markers of a board are on it, by their number.
+/// The positions of the markers on a board, by id.
 struct MarkerLayout {
   std::string dictionary;
-  std::vector<int> border_bits;  ///< to be tried in turn
+  std::vector<int> border_bits;  ///< tried in turn
   double pitch_m = 0;            ///< from marker to marker
   std::vector<MarkerCorners> corners_m;
 };
 
 MarkerLayout layout_of(const CharucoBoard& board);
 
-/// Tags as they stand on Kalibr's sheets, which is half a turn from OpenCV's drawings of them, and
-/// turned further by `quarter_turns`.
+/// Tags as on Kalibr's sheets, rotated by half a turn from OpenCV's drawings, and by further
+/// `quarter_turns`.
 MarkerLayout layout_of(const AprilTagGrid& grid, int quarter_turns = 0);
 
 struct DetectedMarker {
@@ -38,24 +38,25 @@ struct DetectedMarker {
 struct DetectedMarkers {
   std::vector<DetectedMarker> markers;  ///< ascending by id, each id once
   int border_bits = 1;
-  int repeated = 0;   ///< ids left out because they were seen more than once
-  int foreign = 0;    ///< ids left out because the board has none such
-  int undecoded = 0;  ///< outlines of four sides without a known pattern
+  int repeated = 0;   ///< ids ignored because they were detected more than once
+  int foreign = 0;    ///< ids ignored because they are not on the board
+  int undecoded = 0;  ///< quadrilaterals without a known pattern
 };
 
-/// All markers of the layout's dictionary, at whichever border shows more of them.
+/// All markers of the layout's dictionary, with the border width that yields more of them.
 DetectedMarkers find_markers(const cv::Mat& grey, const MarkerLayout& layout);
 
-/// The markers at least half of whose up to four nearest neighbours lie where the layout has them.
+/// The markers for which at least half of the up to four nearest neighbours are consistent with the
+/// layout.
 std::vector<DetectedMarker> consistent_markers(const std::vector<DetectedMarker>& markers,
                                                const MarkerLayout& layout);
 
-/// Adds markers of the layout that the detector missed (the squares between Kalibr's tags run into
-/// their outlines): predicted from those around, and taken where their pattern is read there.
+/// Adds markers of the layout that the detector missed (the squares between Kalibr's tags touch
+/// their outlines): predicted from their neighbours, and accepted if the pattern is found there.
 void add_missed_markers(const cv::Mat& grey, const MarkerLayout& layout, DetectedMarkers& seen);
 
-/// The homography of the up to `count` markers nearest to a point of the board, all within
-/// `reach_m`; nothing where there is none.
+/// The homography of the up to `count` markers nearest to a point of the board, within `reach_m`;
+/// std::nullopt if it cannot be determined.
 std::optional<Eigen::Matrix3d> homography_near(const std::vector<DetectedMarker>& markers,
                                                const MarkerLayout& layout,
                                                const Eigen::Vector2d& point_m,

@@ -39,7 +39,7 @@ struct CornerRow {
 CornerRow parse_row(std::string_view line, const std::string& place) {
   const auto fields = split_fields(line, ",");
   if (fields.size() < 9) {
-    throw Error(place, fmt::format("{} columns where at least 9 are needed", fields.size()),
+    throw Error(place, fmt::format("{} columns, at least 9 are needed", fields.size()),
                 fmt::format("the columns are {}", observation_header));
   }
   CornerRow r{};
@@ -62,7 +62,7 @@ CornerRow parse_row(std::string_view line, const std::string& place) {
   return r;
 }
 
-/// What a file of observations has said so far.
+/// Collects the lines of a file of observations.
 class ObservationRows {
  public:
   explicit ObservationRows(const std::vector<Eigen::Vector2i>& size_px) : size_px_(size_px) {}
@@ -90,7 +90,7 @@ class ObservationRows {
     BoardObservations observations{size_px_, std::move(target_m_), {}};
     for (auto& [key, view] : views_) observations.views.push_back(std::move(view));
     if (observations.views.empty()) {
-      throw Error(file.string(), "no corner in it", "give an observations file with data");
+      throw Error(file.string(), "it contains no corner", "give an observations file with data");
     }
     return corner_lines::finished(std::move(observations), cameras_, file);
   }
@@ -102,10 +102,11 @@ class ObservationRows {
     if (is_new) {
       target_m_.push_back(row.target_m);
     } else if (target_m_[id->second] != row.target_m) {
-      throw Error(place,
-                  fmt::format("corner (row {}, col {}) has another place on the target than before",
-                              row.row, row.col),
-                  "one target a file");
+      throw Error(
+          place,
+          fmt::format("corner (row {}, col {}) has another position on the target than before",
+                      row.row, row.col),
+          "use one target per file");
     }
     return id->second;
   }
@@ -136,7 +137,7 @@ BoardObservations read_observations(const std::filesystem::path& file,
 }
 
 void write_observations(const BoardObservations& observations, const std::filesystem::path& file) {
-  // A target without a grid of its own gets one row.
+  // A target without a grid of its own is written as one row.
   const auto& target = observations.target_m;
   std::vector<double> xs, ys;
   for (const auto& point : target) {

@@ -9,8 +9,8 @@
 
 namespace vernier::internal {
 
-/// The homography that takes points of a plane to pixels, by the normalised direct linear transform
-/// (Hartley 1997). Nothing where there are fewer than four points or they determine none.
+/// The homography from points of a plane to pixels, by the normalised direct linear transform
+/// (Hartley 1997). std::nullopt for fewer than four points or a degenerate configuration.
 std::optional<Eigen::Matrix3d> fit_homography(const std::vector<Eigen::Vector2d>& from,
                                               const std::vector<Eigen::Vector2d>& to);
 
@@ -18,7 +18,7 @@ inline Eigen::Vector2d map_point(const Eigen::Matrix3d& H, const Eigen::Vector2d
   return (H * x.homogeneous()).hnormalized();
 }
 
-/// The derivative of map_point by the point.
+/// The derivative of map_point with respect to the point.
 Eigen::Matrix2d map_derivative(const Eigen::Matrix3d& H, const Eigen::Vector2d& x);
 
 }  // namespace vernier::internal

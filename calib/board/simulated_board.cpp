@@ -43,7 +43,7 @@ Pose draw_pose(RandomStream& draws,
   return T_first_board;
 }
 
-/// What a camera sees of the board without noise; nothing where a corner leaves the image.
+/// The noise-free view of the board; std::nullopt if a corner is outside the image.
 std::optional<BoardView> view_of(const Rig& rig,
                                  int camera,
                                  const Pose& T_first_board,

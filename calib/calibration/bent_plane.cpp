@@ -20,7 +20,7 @@ Eigen::Vector2d misfit(const Parameters& a, const PointPair& p) {
          bent(p.right, a[9]);
 }
 
-/// Gauss and Newton's steps over the points with a misfit below `near`.
+/// Gauss–Newton steps over the points with a misfit below `near`.
 Parameters refined(Parameters a, const std::vector<PointPair>& points, double near) {
   for (int round = 0; round < 10; ++round) {
     Eigen::Matrix<double, 10, 10> N = 1e-9 * Eigen::Matrix<double, 10, 10>::Identity();
@@ -52,7 +52,7 @@ double fraction_on_distorted_plane(const std::vector<PointPair>& points, double 
     left.emplace_back(p.left.x(), p.left.y());
     right.emplace_back(p.right.x(), p.right.y());
   }
-  // What a rough lens bends a plane by; a scene with depth shows beyond it already.
+  // The bending of a plane by an approximate lens model; a scene with depth already exceeds it.
   const double near = limit + 0.02;
   const auto parameters = [](const cv::Mat& H) {
     Parameters a = Parameters::Zero();

@@ -12,9 +12,9 @@ struct PointPair {
   Eigen::Vector2d left, right;
 };
 
-/// The share of points that one plane explains within `limit` (normalised units, in the right
-/// image), where each image may be bent by x (1 + c r²) besides: a homography, fitted robustly,
-/// then with the two c by least squares over what is near it. 0 where there is no homography.
+/// The fraction of points that one plane explains within `limit` (normalised units, in the right
+/// image), if each image may also be distorted by x (1 + c r²): a homography, fitted robustly, then
+/// with the two c by least squares over the points near it. 0 if there is no homography.
 double fraction_on_distorted_plane(const std::vector<PointPair>& points, double limit);
 
 }  // namespace vernier::internal

@@ -44,10 +44,10 @@ using namespace internal;
 
 namespace {
 
-constexpr double largest_corner_noise_px = 1;  // beyond, something is wrong
-constexpr int few_frames = 8;                  // below, their scatter says little
+constexpr double largest_corner_noise_px = 1;  // larger residuals indicate a fault
+constexpr int few_frames = 8;                  // fewer give an uncertain scatter
 
-/// A minimum of the cost and what surrounds it.
+/// A minimum of the cost and related quantities.
 struct Solution {
   BoardObservations observations;  // without the outliers
   BoardState state;
@@ -55,8 +55,8 @@ struct Solution {
   ReprojectionProblem problem;
   ObservationDiagnosis diagnosis;  // of the observations, before they were solved
   LinearisedCost cost;             // at the state
-  Eigen::MatrixXd bound;           // of what is free
-  double data_parameters = 0;      // how many of that the corners determine, tr(C S_data)
+  Eigen::MatrixXd bound;           // of the free parameters
+  double data_parameters = 0;      // number determined by the corners, tr(C S_data)
 };
 
 /// The normal equations and the bound at the solution's state.
@@ -92,7 +92,7 @@ double estimated_sigma(const Solution& s) {
   return s.problem.pixel_sigma_px * std::sqrt(s.cost.equations.chi2 / dof);
 }
 
-/// The rig with opencv5 in place of poorer models, or nothing where there is none.
+/// The rig with opencv5 in place of simpler models; std::nullopt if there is none to replace.
 std::optional<Rig> with_richer_lenses(const Rig& rig) {
   std::vector<CameraModel> rich = models_of(rig);
   bool richer = false;
@@ -113,7 +113,7 @@ std::vector<BoardView> views_in_frame(const BoardObservations& observations, int
   return views;
 }
 
-/// Puts the boards where `other` has them, at the frames that both have.
+/// Copies the board poses of `other` at the frames that both have.
 void replace_poses(BoardState& state, const BoardState& other) {
   for (std::size_t f = 0; f < state.frames.size(); ++f) {
     const auto at = std::lower_bound(other.frames.begin(), other.frames.end(), state.frames[f]);
@@ -122,13 +122,13 @@ void replace_poses(BoardState& state, const BoardState& other) {
   }
 }
 
-/// What a lens model rich enough takes for outliers, once it is fitted to what `fit` left in, and
-/// where its boards stand; frames that are out whole get a pose by that lens first, from `robust`.
-/// Nothing where there is no such lens or the views do not determine it.
-std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
-                                                 const BoardState& robust,
-                                                 const RobustFit& fit,
-                                                 const CalibrationOptions& options) {
+/// The outliers under a sufficiently rich lens model, fitted to the corners that `fit` kept, and
+/// its board poses; frames excluded as a whole first get a pose from `robust`. std::nullopt if
+/// there is no such model or the views do not determine it.
+std::optional<RobustFit> outliers_by_richer_lenses(const Solution& s,
+                                                   const BoardState& robust,
+                                                   const RobustFit& fit,
+                                                   const CalibrationOptions& options) {
   const std::optional<Rig> rig = with_richer_lenses(robust.rig);
   if (!rig) return {};
   BoardState whole = robust;
@@ -155,15 +155,15 @@ std::optional<RobustFit> judged_by_richer_lenses(const Solution& s,
   return outliers_at(s.observations, whole);
 }
 
-/// Leaves outliers out. Corners are judged by a lens model rich enough that what the wanted one
-/// cannot fit is not taken for wrong corners. The wanted one's own robust minimum is where least
-/// squares begins then: without outliers, plain least squares may be in another valley.
+/// Excludes outliers. Corners are assessed with a rich lens model, so that the misfit of a simple
+/// model is not mistaken for wrong corners. Least squares then starts at the robust minimum of the
+/// requested model, since without outliers plain least squares may reach another local minimum.
 void reject_outliers(Solution& s, const CalibrationOptions& options) {
   const std::optional<BoardState> robust = robust_minimum(s.observations, s.state, s.problem);
   if (!robust) return;
   RobustFit fit = outliers_at(s.observations, *robust);
   if (fit.outliers.empty()) return;
-  if (std::optional<RobustFit> judged = judged_by_richer_lenses(s, *robust, fit, options)) {
+  if (std::optional<RobustFit> judged = outliers_by_richer_lenses(s, *robust, fit, options)) {
     judged->state.rig = fit.state.rig;
     judged->state.warp_m = fit.state.warp_m;
     replace_poses(judged->state, fit.state);
@@ -179,12 +179,12 @@ void reject_outliers(Solution& s, const CalibrationOptions& options) {
   s.outliers = std::move(fit.outliers);
 }
 
-/// From the start to the minimum, without outliers.
+/// From the start to the minimum, outliers excluded.
 void descend(Solution& s, const CalibrationOptions& options) {
   try {
     s.state = minimise_reprojection(s.observations, s.state, s.problem);
   } catch (const Error&) {
-    // Steps of Gauss and Newton creep where residuals are large, as those of wrong corners are.
+    // Gauss–Newton converges slowly when residuals are large, as with wrong corners.
     if (!options.reject_outliers) throw;
     ReprojectionProblem hasty = s.problem;
     hasty.must_converge = false;
@@ -202,7 +202,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   if (models.size() != observations.size_px.size()) {
     throw Error("calibration",
                 fmt::format("{} models for {} cameras", models.size(), observations.size_px.size()),
-                "give one model, or one a camera");
+                "give one model, or one per camera");
   }
   Solution s;
   if (options.check_input) s.diagnosis = check_observations(observations);
@@ -217,7 +217,7 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   try {
     descend(s, options);
     linearise(s);
-  } catch (const Error& error) {  // what was found before may be the reason
+  } catch (const Error& error) {  // the earlier findings may be the reason
     if (s.diagnosis.trust_warnings.empty()) throw;
     throw Error(error.what(), fmt::format("{}", fmt::join(s.diagnosis.trust_warnings, "; ")), "");
   }
@@ -240,9 +240,9 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
   return s;
 }
 
-/// Why residuals are larger than any corner noise, as far as that can be found.
-std::string doubt_of_residuals(const Solution& s, double rms_px, bool look_for_causes) {
-  std::string words = fmt::format("residuals of {:.2f} px are no corner noise", rms_px);
+/// The warning for residuals larger than corner noise, with their likely causes.
+std::string residual_warning(const Solution& s, double rms_px, bool look_for_causes) {
+  std::string words = fmt::format("residuals of {:.2f} px exceed corner noise", rms_px);
   std::vector<ResidualFinding> findings;
   if (look_for_causes) {
     findings = diagnose_residuals(s.observations, s.state, s.problem, {.outliers = s.outliers});
@@ -271,7 +271,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   summary.warnings = s.diagnosis.warnings;
   summary.trust_warnings = s.diagnosis.trust_warnings;
   if (summary.rms_px > largest_corner_noise_px) {
-    summary.trust_warnings.push_back(doubt_of_residuals(s, summary.rms_px, options.check_input));
+    summary.trust_warnings.push_back(residual_warning(s, summary.rms_px, options.check_input));
   }
   for (const HeldParameter& held : options.held) summary.held.push_back(held.name);
   for (const RigPrior& prior : s.problem.priors) {
@@ -283,7 +283,7 @@ CalibrationSummary summary_of(const Solution& s, const CalibrationOptions& optio
   return summary;
 }
 
-/// What the result says against itself.
+/// Warnings about the result.
 std::vector<std::string> warnings_of(const CalibrationSummary& summary,
                                      const Eigen::MatrixXd& honest,
                                      const Solution& s) {
@@ -292,35 +292,36 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
   const double typical = std::exp(ratio.log().mean());
   if (typical >= 1.3) {
     warnings.push_back(fmt::format(
-        "residuals of one view depend on each other: standard deviations are {:.1f} times those "
+        "residuals within a view are correlated: standard deviations are {:.1f} times those "
         "of the minimum variance bound",
         typical));
   }
   const auto out = summary.outliers.size();
   const auto all = out + static_cast<std::size_t>(s.cost.equations.residuals) / 2;
   if (out > 0) {
-    warnings.push_back(fmt::format("{} of {} corners were left out as outliers{}", out, all,
-                                   100 * out > 2 * all
-                                       ? ": so many are rather a wrong model, a bent board or "
-                                         "blurred images"
-                                       : ""));
+    warnings.push_back(fmt::format(
+        "{} of {} corners were left out as outliers{}", out, all,
+        100 * out > 2 * all ? ": so many suggest a wrong model, a bent board or blurred images"
+                            : ""));
   }
   const auto frames = static_cast<double>(s.state.frames.size());
   if (frames < few_frames && frames > 1) {
     warnings.push_back(
         fmt::format("only {:.0f} views: the standard deviations themselves are uncertain by about "
                     "{:.0f} %, and "
-                    "lean on the shape of the minimum variance bound; take 15 or more",
+                    "rely on the shape of the minimum variance bound; use 15 or more",
                     frames, 100 / std::sqrt(2 * (frames - 1))));
   }
   return warnings;
 }
 
-/// What the result says against itself, more strongly.
-void add_doubts(const Solution& s, const CalibrationOptions& options, RigEstimate& estimate) {
+/// Trust warnings about the result.
+void add_trust_warnings(const Solution& s,
+                        const CalibrationOptions& options,
+                        RigEstimate& estimate) {
   std::vector<std::string>& trust_warnings = estimate.calibration->trust_warnings;
-  const auto add = [&](const std::optional<std::string>& doubt) {
-    if (doubt) trust_warnings.push_back(*doubt);
+  const auto add = [&](const std::optional<std::string>& warning) {
+    if (warning) trust_warnings.push_back(*warning);
   };
   add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
   const int clusters = options.white_noise ? 0 : estimate.calibration->views;
@@ -353,7 +354,7 @@ RigEstimate calibrate(BoardObservations observations, const CalibrationOptions& 
   if (options.check_input) {
     const auto folds = inversion_warnings(estimate.rig);
     warnings.insert(warnings.end(), folds.begin(), folds.end());
-    add_doubts(s, options, estimate);
+    add_trust_warnings(s, options, estimate);
   }
   estimate.evidence = CalibrationEvidence{
       std::move(s.observations), s.state.frames, s.state.T_first_board, s.state.warp_m, {}, {}};

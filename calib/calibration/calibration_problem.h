@@ -8,9 +8,9 @@
 
 namespace vernier::internal {
 
-/// The cost that these options describe for a rig like `rig`: held parameters, priors, warp. Its
-/// noise is that of the options, 1 px where they leave it to the residuals. Throws Error where a
-/// held or known parameter is none of the rig's.
+/// The cost described by these options for a rig like `rig`: held parameters, priors, warp. Its
+/// noise is that of the options, or 1 px if it is to be estimated. Throws Error for a held or known
+/// parameter that the rig does not have.
 ReprojectionProblem problem_of(const CalibrationOptions& options, const Rig& rig);
 
 }  // namespace vernier::internal

@@ -10,10 +10,10 @@
 
 namespace vernier::internal {
 
-/// The covariance that is true on real images, where residuals of one frame (or image pair) depend
-/// on each other: the clustered sandwich with at least three clusters a parameter, its small-sample
-/// form (calib/calibration/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the
-/// inverse of the equations' information. Throws Error below three clusters.
+/// Covariance for real images, where residuals of one frame (or image pair) are correlated: the
+/// clustered sandwich with at least three clusters per parameter, its small-sample form
+/// (calib/calibration/small_sample_covariance.h, kind jackknife) with fewer. `bound` is the inverse
+/// of the equations' information. Throws Error for fewer than three clusters.
 Covariance cluster_robust_covariance(const ReducedNormalEquations& equations,
                                      const Eigen::MatrixXd& bound,
                                      const std::vector<std::string>& names);

@@ -48,7 +48,7 @@ std::string kind_of(const CombineInput& input) {
   return "prior";
 }
 
-/// The same knowledge but for the rounding of a file.
+/// Whether the priors are equal up to the rounding of a file.
 bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
   constexpr double rounding = 1e-9;
   if (a.covariance.names != b.covariance.names) return false;
@@ -62,7 +62,7 @@ bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
   }
   const std::vector<std::string> all = parameter_names(a.rig);
   const Eigen::VectorXd x = parameters(a.rig), y = parameters(b.rig);
-  for (const std::string& name : a.covariance.names) {  // the others it says nothing of
+  for (const std::string& name : a.covariance.names) {  // the others are not covered
     const auto i = std::find(all.begin(), all.end(), name) - all.begin();
     if (!(std::abs(x[i] - y[i]) <= rounding * (1e-3 + std::abs(x[i])))) return false;
   }
@@ -79,7 +79,7 @@ std::set<std::array<double, 4>> first_matches(const PairObservations& pairs) {
   return first;
 }
 
-/// Data that stand twice would count twice.
+/// Rejects repeated data, which would count twice.
 void refuse_repeated(const JointEvidence& so_far,
                      const JointEvidence& more,
                      const Rig& rig,
@@ -87,14 +87,13 @@ void refuse_repeated(const JointEvidence& so_far,
   const auto before = first_matches(so_far.pairs);
   for (const auto& first : first_matches(more.pairs)) {
     if (!before.count(first)) continue;
-    throw Error(name, "it holds image pairs that an input before it holds",
-                "give every batch once, by itself or within a rig file");
+    throw Error(name, "it repeats image pairs of a previous input",
+                "give every batch once, on its own or in a rig file");
   }
   for (const BoardTerm& b : more.boards) {
     for (const BoardTerm& a : so_far.boards) {
       if (shared_views(a.evidence, rig, b.evidence, rig) == 0) continue;
-      throw Error(name, "it holds views of a board that an input before it holds",
-                  "give every view once");
+      throw Error(name, "it repeats board views of a previous input", "give every view once");
     }
   }
 }
@@ -126,10 +125,11 @@ void check_models(const Rig& first, const CombineInput& input) {
   check_same_cameras(first, rig, input.name);
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     if (rig.cameras[c].model.index() == first.cameras[c].model.index()) continue;
-    throw Error(input.name,
-                fmt::format("its {} lens is {}, that of the first input {}", rig.cameras[c].name,
-                            model_name(rig.cameras[c].model), model_name(first.cameras[c].model)),
-                "calibrate with the same model");
+    throw Error(
+        input.name,
+        fmt::format("its {} lens model is {}, in the first input it is {}", rig.cameras[c].name,
+                    model_name(rig.cameras[c].model), model_name(first.cameras[c].model)),
+        "calibrate with the same model");
   }
 }
 
@@ -138,13 +138,13 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
   return gaussian_prior_of(joint.estimate, "combination");
 }
 
-/// Pairs against what was known before them.
+/// Consistency of the pairs with the previous inputs.
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
                                     const JointOptions& options) {
-  // Against a prior so much wider that, wrong, it does not hold the rig away from the pairs; as it
-  // is where they do not determine the rig against so little knowledge.
+  // Compare with a solution under a ten times wider prior, so that a wrong prior does not bias the
+  // rig; with the prior itself if the pairs do not determine the rig under the wide one.
   constexpr double wider = 10;
   GaussianRigPrior loose = before;
   loose.covariance.matrix *= wider * wider;
@@ -181,28 +181,27 @@ PriorConsistency agreement_of(const GaussianRigPrior& before,
   return agreement_of_rigs(before, *input.estimate, input.name);
 }
 
-/// Priors that are themselves calibrations: what they were made of may be among the inputs.
+/// Warns of priors that are themselves calibrations, whose data may be among the inputs too.
 void warn_of_priors(const JointEvidence& evidence, CalibrationSummary& summary) {
   for (const GaussianRigPrior& prior : evidence.priors) {
     if (prior.covariance.kind == CovarianceKind::prior) continue;
-    summary.warnings.push_back(fmt::format(
-        "a prior among the inputs is itself a calibration ({}): if what that was made of is "
-        "among them too, it counts twice",
-        name(prior.covariance.kind)));
+    summary.warnings.push_back(
+        fmt::format("a prior among the inputs is itself a calibration ({}): if its data are among "
+                    "the inputs too, they count twice",
+                    name(prior.covariance.kind)));
     return;
   }
 }
 
-/// What the inputs said against themselves, and the pairs of all say of their scene and of what was
-/// left out.
-void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
+/// Collects the warnings of the inputs, of the scene of all pairs, and about excluded inputs.
+void add_warnings(const std::vector<CombineInput>& inputs, Combination& combination) {
   CalibrationSummary& summary = *combination.joint.estimate.calibration;
   warn_of_priors(combination.evidence, summary);
   const bool first_is_prior = kind_of(inputs.front()) == "prior";
   if (first_is_prior && !combination.options.held.empty()) {
     std::string names;
     for (const HeldParameter& held : combination.options.held) names += " " + held.name;
-    summary.warnings.push_back("held as known exactly, since " + inputs.front().name +
+    summary.warnings.push_back("fixed, since " + inputs.front().name +
                                " gives them no variance:" + names);
   }
   const PairObservations& pairs = combination.evidence.pairs;
@@ -220,35 +219,35 @@ void judge(const std::vector<CombineInput>& inputs, Combination& combination) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const CombinedInput& input = combination.inputs[i];
     if (input.used && inputs[i].estimate && inputs[i].estimate->calibration) {
-      for (const std::string& doubt : inputs[i].estimate->calibration->trust_warnings) {
+      for (const std::string& trust_warning : inputs[i].estimate->calibration->trust_warnings) {
         const auto& listed = summary.trust_warnings;
-        const bool again = std::find(listed.begin(), listed.end(), doubt) != listed.end();
+        const bool again = std::find(listed.begin(), listed.end(), trust_warning) != listed.end();
         if (!again && inputs.size() > 1)
-          summary.trust_warnings.push_back(input.name + ": " + doubt);
+          summary.trust_warnings.push_back(input.name + ": " + trust_warning);
       }
     }
     if (input.used) {
-      constexpr double worth_saying = 0.01;
-      if (i > 0 && input.agreement.p_value < worth_saying) {
+      constexpr double low_p = 0.01;
+      if (i > 0 && input.agreement.p_value < low_p) {
         summary.warnings.push_back(
-            fmt::format("{} hardly agrees with what stands before it (p {:.1g})", input.name,
+            fmt::format("{} is barely consistent with the previous inputs (p {:.1g})", input.name,
                         input.agreement.p_value));
       }
       continue;
     }
     if (input.agreement.dof == 0) {
       summary.trust_warnings.push_back(input.name +
-                                       " was left out: " + input.agreement.description);
+                                       " was excluded: " + input.agreement.description);
       continue;
     }
     summary.trust_warnings.push_back(fmt::format(
-        "{} disagrees with what stands before it (chi² {:.1f} for {}, p {:.1g}) and was left out: "
-        "the rig has changed, or one of them states too little uncertainty",
+        "{} is inconsistent with the previous inputs (chi² {:.1f} for {}, p {:.1g}) and was "
+        "excluded: the rig has changed, or one of them understates its uncertainty",
         input.name, input.agreement.chi2, input.agreement.dof, input.agreement.p_value));
   }
 }
 
-/// Parameters that no input may move: those that the first does not know.
+/// Parameters that no input may change: those without variance in the first.
 JointOptions with_held(JointOptions options, const CombineInput& first) {
   if (!first.estimate) return options;
   for (const HeldParameter& held : held_by(gaussian_prior_of(*first.estimate, first.name))) {
@@ -257,8 +256,7 @@ JointOptions with_held(JointOptions options, const CombineInput& first) {
   return options;
 }
 
-/// Evidence of the inputs, without priors that are another input's calibration: they are among the
-/// inputs themselves.
+/// Evidence of the inputs, without priors that are the calibration of another input.
 std::vector<JointEvidence> evidence_of_all(const std::vector<CombineInput>& inputs) {
   std::vector<GaussianRigPrior> calibrations;
   std::vector<JointEvidence> all;
@@ -306,7 +304,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   if (inputs.empty()) throw Error("combination", "there is no input", "give rig files or pairs");
   if (!inputs.front().estimate) {
     throw Error(inputs.front().name, "pairs alone do not determine a rig",
-                "put a prior or a board calibration first");
+                "give a prior or a board calibration first");
   }
   const Rig& start = inputs.front().estimate->rig;
   const JointOptions joint = with_held(options.joint, inputs.front());
@@ -324,7 +322,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
     if (before) {
       try {
         combined.agreement = agreement_of(*before, result.evidence, input, evidence, joint);
-      } catch (const Error& error) {  // it tells nothing by itself, so it is not taken in
+      } catch (const Error& error) {  // it cannot be compared, so it is not used
         combined.agreement = {0, 0, 0, 0, 0, error.what()};
       }
       combined.used = options.keep_disagreeing || combined.agreement.p_value >= options.min_p;
@@ -337,7 +335,7 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
                  : gaussian_prior_of(calibrate_jointly(result.evidence, before->rig, joint));
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
-  judge(inputs, result);
+  add_warnings(inputs, result);
   return result;
 }
 

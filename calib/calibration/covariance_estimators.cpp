@@ -15,12 +15,12 @@ namespace vernier::internal {
 
 Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
                                        const std::vector<std::string>& names) {
-  // Scaled by what the views would say were the board's poses known: a direction that the poses
-  // can imitate then shows as a small eigenvalue, however its parameters are measured.
+  // Scaled by the information with known board poses: a direction that the poses can imitate then
+  // has a small eigenvalue, whatever the units of its parameters.
   const Eigen::VectorXd& diagonal = equations.held_poses_diagonal;
   for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
     if (!(diagonal[i] > 0)) {
-      throw Error(names[i], "the observations say nothing about it", "use views that move it");
+      throw Error(names[i], "the observations do not constrain it", "add views that do");
     }
   }
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
@@ -28,7 +28,7 @@ Eigen::MatrixXd minimum_variance_bound(const ReducedNormalEquations& equations,
   const SymmetricEigen eigen(scaled);
   if (!(eigen.eigenvalues()[0] > 1e-13 * eigen.eigenvalues()[diagonal.size() - 1])) {
     throw Error("calibration",
-                "the views leave a direction free: " +
+                "the views leave a direction undetermined: " +
                     describe_direction(eigen.eigenvectors().col(0), names),
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }
@@ -51,7 +51,8 @@ Eigen::MatrixXd clustered_sandwich(const ReducedNormalEquations& equations,
     const Eigen::MatrixXd influence = bound * equations.scores;
     return frames / (frames - 1) * influence * influence.transpose();
   }
-  // With a prior the scores sum to its pull, which is no scatter, and it adds its own information.
+  // With a prior, the scores sum to its gradient, which is no scatter, and it adds its own
+  // information.
   const Eigen::MatrixXd centred =
       equations.scores.colwise() - equations.scores.rowwise().mean().eval();
   const Eigen::MatrixXd influence = bound * centred;

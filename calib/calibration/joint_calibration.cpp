@@ -55,7 +55,7 @@ ReducedNormalEquations data_equations(const JointMinimum& joint,
   return sum;
 }
 
-/// The same in the free directions, with the priors.
+/// The same in the free directions, with priors.
 ReducedNormalEquations free_equations(const JointMinimum& joint,
                                       const PairObservations& pairs,
                                       const Loss& loss,
@@ -71,7 +71,7 @@ PairObservations inliers_of(const JointMinimum& joint) {
   return selected(joint.cost.pairs, kept);
 }
 
-/// Clusters of the scores: image pairs, or cells of them where they are fewer than three.
+/// Clusters of the scores: image pairs, or cells of them if there are fewer than three.
 PairObservations clustered_pairs(const JointMinimum& joint) {
   const PairObservations& pairs = joint.cost.pairs;
   if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
@@ -90,7 +90,7 @@ std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
   return outliers;
 }
 
-/// The prior's χ² of the parameters that are held elsewhere than it has them, and their number.
+/// χ² of the prior over the held parameters whose value differs from its own, and their number.
 std::pair<double, int> of_held(const GaussianRigPrior& prior, const JointMinimum& joint) {
   const std::vector<std::string> all = parameter_names(joint.state.rig);
   const Eigen::VectorXd x = parameters(joint.state.rig), mean = parameters(prior.rig);
@@ -149,7 +149,7 @@ CalibrationSummary summary_of(const JointMinimum& joint,
   return summary;
 }
 
-/// What the result says against itself.
+/// Adds warnings about the result.
 void warn(const JointCalibration& joint,
           std::size_t pairs,
           double fixed_scale,
@@ -157,41 +157,40 @@ void warn(const JointCalibration& joint,
           CalibrationSummary& summary) {
   const std::size_t out = summary.pair_outliers.size();
   if (3 * out > pairs) {
-    summary.trust_warnings.push_back(fmt::format(
-        "{} of {} pairs were left out as outliers: the matches are poor, or the rig is not one",
-        out, pairs));
+    summary.trust_warnings.push_back(
+        fmt::format("{} of {} pairs were left out as outliers: the matches are poor, or the rig "
+                    "changed between image pairs",
+                    out, pairs));
   } else if (out > 0) {
     summary.warnings.push_back(fmt::format("{} of {} pairs were left out as outliers", out, pairs));
   }
   if (joint.observability && static_cast<double>(pairs) < 3 * joint.observability->from_data) {
-    summary.trust_warnings.push_back(fmt::format(
-        "{} pairs are few for the {:.1f} parameters they determine: neither their noise nor wrong "
-        "ones among them can be told; match more corners",
-        pairs, joint.observability->from_data));
+    summary.trust_warnings.push_back(
+        fmt::format("{} pairs are few for the {:.1f} parameters they determine: neither their "
+                    "noise nor outliers can be estimated; match more corners",
+                    pairs, joint.observability->from_data));
   }
   const double scale = joint.pair_sigma_scale;
   if (fixed_scale == 0 && pairs > 0 && scale > 2) {
     constexpr double incredible = 5;
     (scale > incredible ? summary.trust_warnings : summary.warnings)
-        .push_back(fmt::format(
-            "the residuals of the pairs are {:.2g} times as large as the noise they state: they "
-            "are not of one rig, the prior holds the rig away from them, or their noise is larger; "
-            "the result goes by the residuals",
-            scale));
+        .push_back(fmt::format("the residuals of the pairs are {:.2g} times their stated noise: "
+                               "they are not from one rig, they conflict with the prior, or their "
+                               "noise is larger; the noise was estimated from the residuals",
+                               scale));
   } else if (fixed_scale == 0 && pairs > 0 && scale < 0.5) {
     summary.warnings.push_back(
-        fmt::format("the residuals of the pairs are {:.2g} times as large as the noise they state; "
-                    "the result goes by the residuals",
+        fmt::format("the residuals of the pairs are {:.2g} times their stated noise; the noise was "
+                    "estimated from the residuals",
                     scale));
   }
   if (summary.prior_dof > 0) {  // shrunk by the data's pull: no right prior exceeds it more often
     const double p = chi_squared_survival(summary.prior_chi2, summary.prior_dof);
     if (p < 1e-4) {
-      summary.trust_warnings.push_back(fmt::format(
-          "the data move the rig farther from what was known than that allows (chi² {:.1f} for {}, "
-          "p {:.1g}): the prior is of another rig or states too little uncertainty, or the data "
-          "are wrong",
-          summary.prior_chi2, summary.prior_dof, p));
+      summary.trust_warnings.push_back(
+          fmt::format("data and prior are inconsistent (chi² {:.1f} for {}, p {:.1g}): the prior "
+                      "is of another rig or understates its uncertainty, or the data are wrong",
+                      summary.prior_chi2, summary.prior_dof, p));
     }
   }
   if (pairs > 0 && joint.estimate.covariance->kind == CovarianceKind::mvb && !white_noise) {
@@ -201,8 +200,7 @@ void warn(const JointCalibration& joint,
   }
   if (joint.observability && joint.observability->is_prior_dominated()) {
     summary.warnings.push_back(fmt::format(
-        "the answer is mostly what was known before the pairs: they determine {:.1f} "
-        "of {} parameters",
+        "the result is dominated by the prior: the pairs determine {:.1f} of {} parameters",
         std::max(0.0, joint.observability->from_data), joint.observability->directions.size()));
   }
 }
@@ -227,7 +225,7 @@ JointMinimum start_of(const JointEvidence& evidence,
   return joint;
 }
 
-/// What the pairs brought beyond priors and boards, where these alone determine the rig.
+/// The information added by the pairs, if priors and boards alone determine the rig.
 std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
                                                 const JointEvidence& evidence,
                                                 const Eigen::MatrixXd& free,
@@ -242,7 +240,7 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
   }
 }
 
-/// Clusters of the pairs' scatter (clustered_pairs), 0 where their noise was known.
+/// Number of clusters of the pairs' scatter (clustered_pairs); 0 if their noise was known.
 int clusters_of(const RigEstimate& estimate) {
   if (estimate.covariance->kind == CovarianceKind::mvb) return 0;
   const PairObservations& pairs = estimate.evidence->pairs;
@@ -264,7 +262,7 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   std::vector<Eigen::Index> free, given;
   for (std::size_t i = 0; i < held.size(); ++i) {
     const bool is_known = std::find(known.begin(), known.end(), all[i]) != known.end();
-    if (!held[i] && !is_known) return {};  // data alone say it
+    if (!held[i] && !is_known) return {};  // determined by the data alone
     if (is_known) (held[i] ? given : free).push_back(static_cast<Eigen::Index>(i));
   }
   const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
@@ -272,7 +270,7 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
   const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
   Eigen::MatrixXd covariance = C(free, free);
   Eigen::VectorXd offset = moved(free);
-  if (!given.empty()) {  // where the rest of what the prior knows has the values it was held at
+  if (!given.empty()) {  // condition the prior on the values of its held parameters
     const Eigen::MatrixXd white = ScaledRoot(C(given, given)).white;
     const Eigen::MatrixXd by_given = C(free, given) * white.transpose();
     offset -= by_given * (white * moved(given));
@@ -336,7 +334,7 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   }
   if (joint.boards.warps_assumed_known) {
     estimate.calibration->warnings.push_back(
-        "the views are of different boards, and the bend each was found to have is taken as known");
+        "the views are of different boards; the warp estimated for each is taken as known");
   }
   warn(result, evidence.pairs.size(), options.pair_sigma_scale, options.white_noise,
        *estimate.calibration);
@@ -361,7 +359,7 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
     unlisted.push_back(held.name);
   }
   const std::vector<std::string> names = parameter_names(prior.rig);
-  for (HeldParameter& held : with_held.held) {  // where the prior has them
+  for (HeldParameter& held : with_held.held) {  // at the prior's values
     const auto at = std::find(names.begin(), names.end(), held.name);
     if (held.value || at == names.end()) continue;
     held.value = parameters(prior.rig)[at - names.begin()];
@@ -371,7 +369,7 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
   if (pairs.size() < free) {
     throw Error(place.empty() ? "pairs" : place,
                 fmt::format("{} pairs for {} free parameters", pairs.size(), free),
-                "match more corners, or hold parameters");
+                "match more corners, or fix parameters");
   }
   check_sides(pairs, prior.rig, full_covariance(prior).matrix, place);
   JointEvidence evidence;
@@ -385,16 +383,15 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
   auto& summary = *result.estimate.calibration;
   const PriorConsistency agreement = consistency_with(prior, result.estimate);
   if (agreement.p_value < 1e-4) {
-    summary.trust_warnings.push_back(fmt::format(
-        "pairs and prior disagree (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma where {}): the rig "
-        "has changed, or one of them states too little uncertainty",
-        agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma,
-        agreement.description));
+    summary.trust_warnings.push_back(
+        fmt::format("pairs and prior are inconsistent (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma "
+                    "where {}): the rig has changed, or one of them understates its uncertainty",
+                    agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma,
+                    agreement.description));
   }
   if (!unlisted.empty()) {
-    summary.warnings.push_back(
-        fmt::format("held as known exactly, since the prior gives them no variance: {}",
-                    fmt::join(unlisted, ", ")));
+    summary.warnings.push_back(fmt::format("fixed, since the prior gives them no variance: {}",
+                                           fmt::join(unlisted, ", ")));
   }
   const auto folds = inversion_warnings(result.estimate.rig);
   summary.warnings.insert(summary.warnings.end(), folds.begin(), folds.end());

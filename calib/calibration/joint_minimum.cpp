@@ -30,7 +30,7 @@ namespace {
 
 constexpr double huber_limit = 1.345, tukey_limit = 5;  // standard deviations
 constexpr int huber_rounds = 12, tukey_rounds = 40;
-constexpr double min_scale = 0.01;  // of the stated noise: no corner is better than that
+constexpr double min_scale = 0.01;  // of the stated noise: lower bound of the scale
 
 double median_length(std::vector<double> values) {
   for (double& v : values) v = std::abs(v);
@@ -39,8 +39,8 @@ double median_length(std::vector<double> values) {
 
 constexpr double normal_median = 0.6744897501960817;  // of |z|
 
-/// Ceres goes by the cost, which rounding hides within 1e-6 standard deviations of its minimum;
-/// these steps go by the gradient. Of pairs and priors alone.
+/// Ceres compares costs, which rounding limits to 1e-6 standard deviations from the minimum; these
+/// steps use the gradient. For pairs and priors only.
 void polish(JointMinimum& joint) {
   if (joint.cost.pairs.size() == 0 || !joint.state.frames.empty()) return;
   const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
@@ -55,7 +55,7 @@ void polish(JointMinimum& joint) {
     const Cholesky factor(scaled);
     if (!factor.is_positive_definite() || !(factor.rcond() > 1e-12)) return;
     const Eigen::VectorXd z = factor.solve(Eigen::VectorXd(d.cwiseProduct(system.gradient)));
-    constexpr double near = 0.01;  // standard deviations: elsewhere Ceres was not done
+    constexpr double near = 0.01;  // standard deviations; farther away Ceres did not converge
     if (!(z.dot(scaled * z) < near * near)) return;
     joint.state.rig = retract(joint.state.rig, E * (-d.cwiseProduct(z)));
   }
@@ -89,7 +89,7 @@ ReducedNormalEquations of_nothing(int unknowns) {
   return sum;
 }
 
-/// How many parameters the pairs determine at this scale, tr(C H).
+/// The number of parameters that the pairs determine at this scale, tr(C H).
 double determined_by_pairs(const JointMinimum& joint) {
   const Eigen::MatrixXd E = free_directions(joint.state.rig, joint.cost.held);
   ReducedNormalEquations equations = restricted(
@@ -126,9 +126,9 @@ void minimise_robust(JointMinimum& joint, double fixed_scale) {
     return std::max(min_scale, median_length(joint.residuals) / normal_median);
   };
   joint.residuals = joint.packed.residuals(joint.state.rig);
-  joint.cost.must_converge = false;  // before the weights have settled
-  // From the residuals of the start down to the stated noise: a scale that stayed with the
-  // residuals would let a prior that is wrong hold the rig where all pairs look noisy.
+  joint.cost.must_converge = false;  // until the weights have converged
+  // From the residuals of the start down to the stated noise: a scale kept at the residuals would
+  // let a wrong prior hold the rig where all pairs look noisy.
   const double stated = fixed_scale > 0 ? fixed_scale : 1;
   double scale = std::max(stated, median_scale());
   for (int round = 0; round < huber_rounds; ++round, scale = std::max(stated, 0.5 * scale)) {
@@ -157,7 +157,7 @@ void minimise_robust(JointMinimum& joint, double fixed_scale) {
 
 void minimise_least_squares(JointMinimum& joint, double fixed_scale) {
   joint.cost.pair_sigma_scale = fixed_scale > 0 ? fixed_scale : 1;
-  constexpr int polish_rounds = 2;  // Ceres stops where χ² falls no more: 1e-6 σ off
+  constexpr int polish_rounds = 2;  // Ceres stops about 1e-6 σ from the minimum
   for (int round = 0; round < 20; ++round) {
     minimise(joint);
     if (fixed_scale > 0 || joint.residuals.empty()) {

@@ -15,8 +15,8 @@
 
 namespace vernier::internal {
 
-/// The minimum of the joint cost of boards, pairs and priors (calib/joint_calibration.h), and while
-/// it is sought the state of the search.
+/// The minimum of the joint cost of boards, pairs and priors (calib/joint_calibration.h), and the
+/// state of the search for it.
 struct JointMinimum {
   MergedBoards boards;
   std::vector<BoardTerm> terms;  // those merged
@@ -27,18 +27,18 @@ struct JointMinimum {
   std::vector<double> residuals;  // of the pairs there, in their stated standard deviations
 };
 
-/// The minimum of the robust cost: Huber's loss, whose minimum is unique, leads Tukey's to its own.
-/// The scale of the pairs' noise is `fixed_scale`, or where that is 0 comes from their residuals.
+/// Minimises the robust cost: Huber's loss, whose minimum is unique, gives the start for Tukey's.
+/// The scale of the pairs' noise is `fixed_scale`, or is estimated from the residuals if that is 0.
 void minimise_robust(JointMinimum& joint, double fixed_scale);
 
-/// Least squares, with the scale likewise.
+/// Least squares, with the scale as above.
 void minimise_least_squares(JointMinimum& joint, double fixed_scale);
 
-/// The equations of the boards at the state, in all parameters of the rig; a bend that is free is
-/// common to them.
+/// The equations of the boards at the state, in all parameters of the rig; a free warp is shared by
+/// all of them.
 ReducedNormalEquations board_equations(const JointMinimum& joint);
 
-/// Whether a pair does not count at the minimum.
+/// Whether a pair has no weight at the minimum.
 bool is_outlier(const JointMinimum& joint, std::size_t row);
 
 }  // namespace vernier::internal

@@ -29,11 +29,11 @@ void check_sizes(const BoardObservations& observations, const Rig& rig) {
     same = observations.size_px[c] == rig.cameras[c].size_px;
   }
   if (same) return;
-  throw Error("combination", "views of a board are of other cameras than the rig",
+  throw Error("combination", "its board views are of other cameras than the rig's",
               "combine calibrations of one rig");
 }
 
-/// Where the term's target stands in the merged one, adding it if it is not there yet.
+/// Index of the term's target in the merged one; added if it is new.
 int place_target(const std::vector<Eigen::Vector3d>& target_m,
                  std::vector<Eigen::Vector3d>& merged_m) {
   const auto found =
@@ -45,7 +45,8 @@ int place_target(const std::vector<Eigen::Vector3d>& target_m,
 
 bool is_bent(const BoardTerm& term) { return term.evidence.warp_m != Eigen::Vector2d::Zero(); }
 
-/// What the targets are as one: the same, with the mean bend to start from, or several.
+/// Whether all targets are equal. If so, they become one, starting from the mean warp; else
+/// several.
 bool take_one_board(const std::vector<BoardTerm>& terms, MergedBoards& merged) {
   const bool bent = std::any_of(terms.begin(), terms.end(), is_bent);
   for (const BoardTerm& term : terms) {

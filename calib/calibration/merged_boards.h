@@ -13,12 +13,12 @@
 
 namespace vernier::internal {
 
-/// Board views of several calibrations as those of one: their targets side by side, their frames
-/// numbered on, and the noise of each as weights. Where all are of one target they are of one
-/// board, and its bend stays an unknown if a calibration found one; of different targets, each is
-/// as its calibration found it bent, and that is taken as known.
+/// Board views of several calibrations merged into one: targets concatenated, frames renumbered,
+/// noise expressed as weights. Terms with the same target are views of one board, whose warp
+/// remains free if a calibration estimated it. With different targets, the warp estimated for each
+/// is taken as known.
 struct MergedBoards {
-  BoardObservations observations;                   ///< no views where there is no term
+  BoardObservations observations;                   ///< no views if there is no term
   BoardState state;                                 ///< at the start
   std::vector<std::vector<double>> corner_weights;  ///< in [0, 1], or empty
   double pixel_sigma_px = 1;                        ///< of weight 1
@@ -27,10 +27,10 @@ struct MergedBoards {
   struct Part {
     std::size_t first_frame = 0, frames = 0;
   };
-  std::vector<Part> parts;  ///< one a term, places in state.frames
+  std::vector<Part> parts;  ///< one per term, indices into state.frames
 };
 
-/// Throws Error where the terms are of other cameras than `rig`.
+/// Throws Error if the terms are of other cameras than `rig`.
 MergedBoards merge_boards(const std::vector<BoardTerm>& terms, const Rig& rig);
 
 /// The part of `state` that belongs to a term, in that term's own frames.

@@ -25,8 +25,8 @@ constexpr double same_cameras_px = 0.05;  // of two cameras: a copy, perhaps com
 constexpr double repeated_view_px = 0.3;  // rms: the board has not moved
 constexpr double grid_misfit_spacings = 0.5, grid_misfit_px = 5;
 
-/// Distance of neighbouring corners in the image: that on the target, times the root of how areas
-/// grow at the centre of the view's corners.
+/// Distance between neighbouring corners in the image: that on the target, times the square root of
+/// the area magnification at the centre of the view's corners.
 double corner_spacing_px(const BoardHomography& view,
                          const std::vector<Eigen::Vector3d>& target_m) {
   double least = std::numeric_limits<double>::infinity();
@@ -45,15 +45,15 @@ void check_grids(const BoardObservations& observations,
       continue;
     throw Error(
         view_label(observations.views[i]),
-        fmt::format("its corners do not lie like those of a flat board (they miss by {:.0f} px, at "
-                    "{:.0f} px from corner to corner)",
+        fmt::format("its corners do not fit a flat board (residual {:.0f} px at a corner spacing "
+                    "of {:.0f} px)",
                     homographies[i].rms_px, spacing),
         "check that rows and columns of the board are not exchanged and how corners are numbered");
   }
 }
 
-/// Whether the corners stand in evenly spaced columns, as a chessboard's. Corners of tags do not;
-/// these are told one by one, so no such view can be mirrored, and their y may point up.
+/// Whether the corners form evenly spaced columns, as on a chessboard. Corners of tags do not; they
+/// are identified individually, so their views cannot be mirrored, and their y may point up.
 bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
   std::vector<double> columns;
   for (const Eigen::Vector3d& X : target_m) columns.push_back(X.x());
@@ -69,7 +69,7 @@ bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
   return most < 1.1 * least;
 }
 
-/// Throws for views mirrored against the others; a doubt where all are.
+/// Throws Error for views mirrored relative to the others; a trust warning if all are.
 void check_mirrored(const BoardObservations& observations,
                     const std::vector<BoardHomography>& homographies,
                     ObservationDiagnosis& diagnosis) {
@@ -84,8 +84,8 @@ void check_mirrored(const BoardObservations& observations,
   }
   if (mirrored.empty()) return;
   const std::string cure =
-      "corners run row by row, x right and y down as seen: turn the mirrored images or their "
-      "numbering round";
+      "corners must run row by row, x right and y down as seen: flip the mirrored images or "
+      "reverse their numbering";
   if (others.empty()) {
     if (!evenly_spaced(observations.target_m)) return;
     diagnosis.trust_warnings.push_back(
@@ -124,8 +124,7 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
       if (one_camera && d.largest_px < same_image_px) {
         throw Error(view_label(views[j]),
                     fmt::format("it is the same view as frame {} (their corners differ by {:.2g} "
-                                "px), and counting it twice would make the rig look better known "
-                                "than it is",
+                                "px), and counting it twice would understate the uncertainty",
                                 views[i].frame, d.largest_px),
                     "remove one of the two");
       }
@@ -136,12 +135,13 @@ void check_repeats(const BoardObservations& observations, ObservationDiagnosis& 
     }
   }
   if (!repeated.empty()) {
-    diagnosis.warnings.push_back("the board had not moved between frames " + list_of(repeated) +
-                                 ": they count as independent views but say hardly more than one");
+    diagnosis.warnings.push_back(
+        "the board did not move between frames " + list_of(repeated) +
+        ": they count as independent views but add hardly more information than one");
   }
 }
 
-/// Between the first point and the nearest of the others.
+/// Distance between the first point and the nearest other one.
 double min_side_m(const std::vector<Eigen::Vector3d>& target_m) {
   double least = INFINITY;
   for (std::size_t i = 1; i < target_m.size(); ++i) {
@@ -161,7 +161,7 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
     if ((farthest.array() < 0.52 * size.array()).all()) {
       diagnosis.trust_warnings.push_back(
           fmt::format("camera {}: no corner lies beyond ({:.0f}, {:.0f}) of an image of {:.0f}x"
-                      "{:.0f}: check the image size, or show the board in all of the image",
+                      "{:.0f}: check the image size, or cover the whole image with the board",
                       c, farthest.x(), farthest.y(), size.x(), size.y()));
     }
   }
@@ -173,15 +173,14 @@ void check_sizes(const BoardObservations& observations, ObservationDiagnosis& di
   const double extent = (high - low).maxCoeff();
   if (extent > 20 || extent < 0.005) {
     const double side = min_side_m(observations.target_m);
-    diagnosis.trust_warnings.push_back(
-        fmt::format("the board measures {:.3g} m, its points stand {:.3g} m apart: did you mean "
-                    "{:.3g}? Lengths "
-                    "are in metres, and views of one board cannot show a wrong scale",
-                    extent, side, extent > 20 ? 1e-3 * side : 1e3 * side));
+    diagnosis.trust_warnings.push_back(fmt::format(
+        "the board measures {:.3g} m, its points are {:.3g} m apart: did you mean {:.3g}? Lengths "
+        "are in metres, and a wrong scale cannot be detected from the views",
+        extent, side, extent > 20 ? 1e-3 * side : 1e3 * side));
   }
 }
 
-/// Frames that some cameras did not see: counted and said.
+/// Counts frames that some cameras did not see, and warns of them.
 void count_unpaired(const BoardObservations& observations, ObservationDiagnosis& diagnosis) {
   const auto cameras = static_cast<int>(observations.size_px.size());
   if (cameras < 2) return;
@@ -194,10 +193,10 @@ void count_unpaired(const BoardObservations& observations, ObservationDiagnosis&
     if (seen.size() == 1) alone[seen.front()].push_back(std::to_string(frame));
   }
   for (const auto& [camera, frames] : alone) {
-    diagnosis.warnings.push_back(fmt::format(
-        "{} of {} frames show the board in camera {} alone ({}): they tell its intrinsics only, "
-        "nothing of the cameras' poses",
-        frames.size(), cameras_of_frame.size(), camera, list_of(frames)));
+    diagnosis.warnings.push_back(
+        fmt::format("{} of {} frames show the board in camera {} alone ({}): they determine its "
+                    "intrinsics only, not the cameras' poses",
+                    frames.size(), cameras_of_frame.size(), camera, list_of(frames)));
   }
 }
 
@@ -228,7 +227,7 @@ std::string list_of(const std::vector<std::string>& names) {
 ObservationDiagnosis check_observations(const BoardObservations& observations) {
   ObservationDiagnosis diagnosis;
   if (observations.views.empty()) {
-    throw Error("observations", "there is no view of the board", "give some");
+    throw Error("observations", "there is no view of the board", "give at least one");
   }
   check_flat(observations.target_m);
   std::vector<BoardHomography> homographies;

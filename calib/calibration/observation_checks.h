@@ -10,32 +10,32 @@
 
 namespace vernier::internal {
 
-/// What a check of observations has to say that is no proof against them.
+/// Findings about observations that do not prove them wrong.
 struct ObservationDiagnosis {
-  std::vector<std::string> warnings;        ///< good to know; the result stands
+  std::vector<std::string> warnings;        ///< for information; the result is valid
   std::vector<std::string> trust_warnings;  ///< the result may be wrong, and what to do
 
   void add(const ObservationDiagnosis& more);
 };
 
-/// Looks at corners before anything is solved, by one homography a view (no camera model needed).
-/// Call check_and_sort first. Throws Error, naming frame, camera and image, for
+/// Checks corners before solving, with one homography per view (no camera model needed). Call
+/// check_and_sort first. Throws Error, naming frame, camera and image, for
 ///
-///  - corners that lie on no plane: residual of the homography above half the spacing of corners
+///  - corners that are not on a plane: residual of the homography above half the spacing of corners
 ///    (rows and columns exchanged, wrong numbering);
-///  - some views mirrored against the others: the homography's determinant has the other sign;
-///  - one view twice: corners of two frames of a camera within 0.001 px;
-///  - left and right images the same: corners of two cameras in a frame within 0.05 px.
+///  - some views mirrored relative to the others: determinant of the homography of opposite sign;
+///  - a repeated view: corners of two frames of a camera within 0.001 px;
+///  - identical left and right images: corners of two cameras in a frame within 0.05 px.
 ///
-/// Doubts: every view of a chessboard mirrored; nearly no corner beyond half the image (wrong
-/// size). Warnings: frames seen by some cameras only, repeated views (rms below 0.3 px), a board of
-/// unlikely size.
+/// Trust warnings: every view of a chessboard mirrored; almost no corner beyond half the image
+/// (wrong size). Warnings: frames seen by some cameras only, repeated views (rms below 0.3 px), a
+/// board of unlikely size.
 ObservationDiagnosis check_observations(const BoardObservations& observations);
 
 /// "frame 3, camera 1 (right03.png)".
 std::string view_label(const BoardView& view);
 
-/// "3, 5 and 9"; of many the first few and how many more.
+/// "3, 5 and 9"; of a long list the first few and the number of the rest.
 std::string list_of(const std::vector<std::string>& names);
 
 }  // namespace vernier::internal

@@ -29,11 +29,11 @@
 namespace vernier::internal {
 namespace {
 
-using PerCorner = std::vector<std::vector<double>>;  // one a corner, view by view
+using PerCorner = std::vector<std::vector<double>>;  // one per corner, view by view
 
 constexpr double min_sigma_px = 1e-6;  // residuals below are rounding
 
-/// Robust standard deviation of a coordinate, one a camera: lenses and images differ.
+/// Robust standard deviation of a coordinate, one per camera: lenses and images differ.
 std::vector<double> camera_sigmas(const BoardObservations& observations,
                                   const CornerResiduals& residuals) {
   std::vector<CornerResiduals> of_camera(observations.size_px.size());
@@ -47,7 +47,7 @@ std::vector<double> camera_sigmas(const BoardObservations& observations,
   return sigmas;
 }
 
-/// Weights by the length of a residual in robust standard deviations, none below `least`.
+/// Weights by the length of a residual in robust standard deviations, at least `least`.
 PerCorner weights_of(const BoardObservations& observations,
                      const CornerResiduals& residuals,
                      const Loss& loss,
@@ -111,7 +111,7 @@ double neighbours_sigma(const std::vector<Eigen::Vector3d>& target_m,
   return median_or_zero(std::move(lengths)) / rayleigh_median;
 }
 
-/// One flag a corner of every view.
+/// One flag per corner of every view.
 std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observations,
                                              const BoardState& state,
                                              double limit) {
@@ -133,8 +133,8 @@ std::vector<std::vector<bool>> outlier_flags(const BoardObservations& observatio
   return flags;
 }
 
-/// Whether some view fits three times worse than is usual for its camera: least squares spreads the
-/// misfit of a wrong view over the others, so that no corner of it need look wrong by itself.
+/// Whether some view has an rms three times the usual one of its camera: least squares spreads the
+/// misfit of a wrong view over the others, so none of its corners need be an outlier by itself.
 bool some_view_stands_out(const BoardObservations& observations, const BoardState& state) {
   std::vector<std::vector<double>> rms(observations.size_px.size());  // by camera
   const CornerResiduals residuals = corner_residuals(observations, state);
@@ -156,7 +156,7 @@ bool any(const std::vector<std::vector<bool>>& flags) {
   });
 }
 
-/// The views and frames of `observations` that keep their corners, and what was left out.
+/// The views and frames of `observations` without outliers, and the outliers.
 RobustFit separated(const BoardObservations& observations,
                     const BoardState& state,
                     const std::vector<std::vector<bool>>& out) {
@@ -185,10 +185,9 @@ RobustFit separated(const BoardObservations& observations,
 
 void check_camera(const Rig& rig, int camera, int frame) {
   if (camera >= 0 && camera < static_cast<int>(rig.cameras.size())) return;
-  throw Error(
-      fmt::format("frame {}", frame),
-      fmt::format("the rig has {} cameras, so none of number {}", rig.cameras.size(), camera),
-      "give the corners of this rig");
+  throw Error(fmt::format("frame {}", frame),
+              fmt::format("the rig has {} cameras, so no camera {}", rig.cameras.size(), camera),
+              "give the corners of this rig");
 }
 
 }  // namespace
@@ -251,10 +250,10 @@ std::vector<std::string> overrejected_cameras(const BoardObservations& observati
       if (view.camera == c && !kept.contains(view.frame)) out.push_back(std::to_string(view.frame));
     }
     if (out.size() <= kept.size()) continue;
-    words.push_back(fmt::format(
-        "{} of the {} views of camera {} (\"{}\") fit none of the others, more than may be left "
-        "out as outliers: look at the images of frames {}",
-        out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
+    words.push_back(
+        fmt::format("{} of the {} views of camera {} (\"{}\") do not fit the others, too many to "
+                    "exclude as outliers: inspect the images of frames {}",
+                    out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
   }
   return words;
 }

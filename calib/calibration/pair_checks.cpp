@@ -26,12 +26,12 @@
 namespace vernier::internal {
 namespace {
 
-/// Most pairs of an image pair that are looked at.
+/// Number of pairs of an image pair that are used at most.
 constexpr std::size_t enough_pairs = 200;
-constexpr std::size_t fewest_pairs = 12;  // of an image pair that is judged
+constexpr std::size_t fewest_pairs = 12;  // of an image pair that is checked
 
-/// Where a point at infinity on the left pixel's ray is in the right image, and the unit direction
-/// in which it moves as it comes nearer.
+/// The image of a point at infinity on the left pixel's ray in the right image, and the unit
+/// direction in which it moves as the point comes nearer.
 struct FarPoint {
   Eigen::Vector2d pixel_px, nearer;
 };
@@ -48,7 +48,7 @@ std::optional<FarPoint> far_point(const Rig& rig, const Eigen::Vector2d& left_px
   return far;
 }
 
-/// How far before infinity a pair lies along its epipolar line, in pixels of the right image.
+/// Distance of a pair before infinity along its epipolar line, in pixels of the right image.
 std::optional<double> before_infinity_px(const Rig& rig, const Eigen::Vector4d& y) {
   const std::optional<FarPoint> far = far_point(rig, y.head<2>());
   if (!far) return std::nullopt;
@@ -64,8 +64,8 @@ std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImageP
   return some;
 }
 
-/// Lower quartile of the distances before infinity; nothing where most pairs have none. The offset
-/// that a rough rig adds is common to all corners, so near ones show it best whose side is wrong.
+/// Lower quartile of the distances before infinity; std::nullopt if most pairs have none. An
+/// approximate rig adds a common offset to all corners, so near corners show a wrong side best.
 std::optional<double> quartile_before_px(const Rig& rig, const std::vector<Eigen::Vector4d>& some) {
   std::vector<double> before;
   for (const Eigen::Vector4d& y : some) {
@@ -75,7 +75,7 @@ std::optional<double> quartile_before_px(const Rig& rig, const std::vector<Eigen
   return quantile(std::move(before), 0.25, QuantileKind::lower);
 }
 
-/// Standard deviation of that quartile as far as the rig decides it, by central differences.
+/// Standard deviation of that quartile due to the rig, by central differences.
 double sigma_before_px(const Rig& rig,
                        const Eigen::MatrixXd& covariance,
                        const std::vector<Eigen::Vector4d>& some) {
@@ -110,8 +110,8 @@ Sides sides_of(const Rig& rig,
   return exchanged_before && *exchanged_before > -limit ? Sides::swapped : Sides::unknown;
 }
 
-/// Whether a plane explains nearly all pairs within their noise. A rough rig's lenses bend it, in
-/// directions that pairs of a plane cannot see, so both are let bend by an r² of their own.
+/// Whether a plane explains almost all pairs within their noise. The lenses of an approximate rig
+/// bend it, in directions that pairs on a plane cannot show, so both images get an r² term.
 bool on_a_plane(const PairObservations& pairs,
                 const ImagePair& image,
                 const Rig& rig,
@@ -128,7 +128,7 @@ bool on_a_plane(const PairObservations& pairs,
     sigmas.push_back(sigma_scale * pairs.sigma_of(i));
   }
   if (points.size() < fewest_pairs) return false;
-  // Noise of both images, in two coordinates: beyond four standard deviations once in 3000.
+  // Noise of both images in two coordinates: beyond four standard deviations once in 3000.
   return fraction_on_distorted_plane(
              points, 4 * std::sqrt(2.0) * quantile(sigmas, 0.5, QuantileKind::lower) / f) >= 0.95;
 }
@@ -143,8 +143,8 @@ void check_rays(const PairObservations& pairs, const Rig& rig, const std::string
       throw Error(
           place.empty() ? fmt::format("pair {}", i + 1) : fmt::format("{}:{}", place, i + 2),
           "the prior's " + rig.cameras[static_cast<std::size_t>(c)].name +
-              " lens has no ray for it (its distortion folds the image there)",
-          "use a prior whose distortion holds to the image's edge");
+              " lens model cannot be inverted there (its distortion folds the image)",
+          "use a prior whose distortion is valid up to the image's edge");
     }
   }
 }
@@ -171,7 +171,7 @@ void check_sides(const PairObservations& pairs,
                   ? "left and right are swapped: the corners lie behind the rig"
               : 2 * exchanged_pairs.size() > judged && right == 0
                   ? fmt::format("left and right are swapped: the corners of {} of {} image pairs "
-                                "lie behind the rig, and of the others it cannot be told",
+                                "lie behind the rig, the others are ambiguous",
                                 exchanged_pairs.size(), judged)
                   : fmt::format("left and right are swapped in image pairs {}: their corners lie "
                                 "behind the rig",
@@ -191,8 +191,8 @@ ObservationDiagnosis check_scene(const PairObservations& pairs,
   ObservationDiagnosis diagnosis;
   if (judged > 0 && flat == judged) {
     diagnosis.trust_warnings.emplace_back(
-        "the corners of every image pair lie on one plane, or too far away for parallax: they "
-        "leave more of the rig to the prior; take images of a scene with depth");
+        "the corners of every image pair lie on one plane, or too far away for parallax: more of "
+        "the rig is determined by the prior alone; use images of a scene with depth");
   } else if (2 * flat > judged) {
     diagnosis.warnings.push_back(fmt::format(
         "in {} of {} image pairs all corners lie on one plane, or too far away for parallax", flat,

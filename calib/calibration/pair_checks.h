@@ -10,21 +10,20 @@
 
 namespace vernier::internal {
 
-/// Looks at matched pairs with a rough rig in hand before they are solved; `covariance` says how
-/// rough, over all parameters of the rig (calib/rig.h). Throws Error where a quarter of an image
+/// Checks matched pairs with an approximate rig before solving; `covariance` is the rig's, over all
+/// its parameters (calib/rig.h). Throws Error, naming the image pairs, if a quarter of an image
 /// pair's corners lie behind the rig by more than 3 px and three of the standard deviations that
-/// the rig allows them, and do not once left and right are exchanged; names the image pairs. Throws
-/// Error where a pixel has no ray in the rough rig.
+/// the rig allows, but not with left and right exchanged; and if a pixel has no ray in the
+/// approximate rig.
 void check_sides(const PairObservations& pairs,
                  const Rig& rig,
                  const Eigen::MatrixXd& covariance,
                  const std::string& place = "");
 
-/// Looks at the scene with the solved rig; the noise of the pairs is `sigma_scale` times what they
-/// state. Doubts: the corners of every image pair lie on one
-/// plane, or farther than parallax can tell (a homography explains 95 % of them within their
-/// noise), which leaves more directions unseen (unobservable_directions, calib/observability.h).
-/// Warnings: most image pairs do.
+/// Checks the scene with the solved rig; the noise of the pairs is `sigma_scale` times their stated
+/// noise. Trust warnings: the corners of every image pair lie on one plane, or too far away for
+/// parallax (a homography explains 95 % of them within their noise), which leaves more directions
+/// unobservable (unobservable_directions, calib/observability.h). Warnings: most image pairs do.
 ObservationDiagnosis check_scene(const PairObservations& pairs,
                                  const Rig& rig,
                                  double sigma_scale = 1);

@@ -34,7 +34,7 @@
 namespace vernier::internal {
 namespace {
 
-/// A solution and the squares it leaves.
+/// A solution and its sum of squared residuals.
 struct Trial {
   BoardState state;
   double sum_px2 = 0;
@@ -69,24 +69,24 @@ class Diagnosis {
 
   std::vector<ResidualFinding> run() {
     if (!(sum_px2_ > 0)) return {};
-    look_at_lens();
-    look_at_board();
-    look_at_time();
-    look_at_images();
-    look_at_cameras();
+    check_lens();
+    check_board();
+    check_simultaneity();
+    check_images();
+    check_cameras();
     std::erase_if(findings_, [&](const auto& f) { return f.share < options_.min_share; });
     std::stable_sort(findings_.begin(), findings_.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
-    look_at_pixels();
-    look_at_what_is_missing();
+    check_pixels();
+    check_missing();
     return findings_;
   }
 
  private:
-  double share_gone(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
+  double fraction_explained(double sum_px2) const { return 1 - sum_px2 / sum_px2_; }
   double rms() const { return rms_of(sum_px2_, corners_); }
 
-  /// The same views solved otherwise; nothing where that fails.
+  /// The same views solved with another problem; std::nullopt if that fails.
   std::optional<Trial> solved(BoardState start, ReprojectionProblem trial) const {
     trial.max_iterations = 60;
     try {
@@ -99,7 +99,7 @@ class Diagnosis {
   }
 
   /// Priors and held values belong to the model they were given for, so only a free problem is
-  /// tried again, and its flags are none of the other model's.
+  /// solved with another model.
   std::optional<Trial> with_model(const CameraModel& model) const {
     const std::vector<CameraModel> models(state_.rig.cameras.size(), model);
     ReprojectionProblem trial = problem_;
@@ -113,7 +113,7 @@ class Diagnosis {
     }
   }
 
-  /// Mean residual along the radius (pixels, prediction beyond the corner positive) over the outer
+  /// Mean residual along the radius (pixels; positive: prediction beyond the corner) over the outer
   /// third of the radii that corners reach.
   double outward_at_edge_px() const {
     std::vector<std::pair<double, double>> radial;  // radius, residual along it
@@ -139,7 +139,7 @@ class Diagnosis {
     return sum / std::max(1, count);
   }
 
-  void look_at_lens() {
+  void check_lens() {
     const bool free =
         problem_.priors.empty() &&
         std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
@@ -159,16 +159,16 @@ class Diagnosis {
     }
     if (!best) return;
     findings_.push_back(
-        {share_gone(best->sum_px2),
-         fmt::format("the lens needs another model: with {} the same corners leave {:.2f} px "
-                     "instead of {:.2f} px (now predictions lie {:.2f} px too far {} on the mean "
-                     "near the image's edge); calibrate with --model {}",
+        {fraction_explained(best->sum_px2),
+         fmt::format("the lens needs another model: {} fits the same corners to {:.2f} px instead "
+                     "of {:.2f} px (predictions are now {:.2f} px too far {} on average near the "
+                     "image's edge); calibrate with --model {}",
                      best_name, rms_of(best->sum_px2, corners_), rms(),
                      std::abs(outward_at_edge_px()), outward_at_edge_px() > 0 ? "out" : "in",
                      best_name)});
   }
 
-  void look_at_board() {
+  void check_board() {
     if (problem_.warp == BoardWarp::free) return;
     ReprojectionProblem trial = problem_;
     trial.warp = BoardWarp::free;
@@ -176,14 +176,14 @@ class Diagnosis {
     if (!bent) return;
     const Eigen::Vector2d warp_mm = 1e3 * bent->state.warp_m;
     findings_.push_back(
-        {share_gone(bent->sum_px2),
-         fmt::format("the board is not flat: bent by {:.2g} mm across and {:.2g} mm along, it "
-                     "leaves {:.2f} px instead of {:.2f} px; let the shape be estimated or use a "
-                     "stiff board",
-                     warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
+        {fraction_explained(bent->sum_px2),
+         fmt::format(
+             "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y fits to {:.2f} px "
+             "instead of {:.2f} px; estimate the board's shape or use a stiff board",
+             warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
   }
 
-  void look_at_time() {
+  void check_simultaneity() {
     BoardObservations warped = observations_;
     warped.target_m = warped_target(warped.target_m, state_.warp_m);
     for (int second = 1; second < static_cast<int>(state_.rig.cameras.size()); ++second) {
@@ -219,14 +219,14 @@ class Diagnosis {
       }
       findings_.push_back(
           {std::min(1.0, (together_sum - alone_sum) / sum_px2_),
-           fmt::format("cameras 0 and {} did not see the board at one place in {} of {} frames, "
-                       "each image fitting alone but not both together: {}; hold the board still, "
+           fmt::format("cameras 0 and {} did not see the board at the same pose in {} of {} frames "
+                       "(each image fits alone, but not both together): {}; hold the board still, "
                        "trigger both at once, or leave these frames out",
                        second, apart.size(), pair.pairs().size(), some_of(names))});
     }
   }
 
-  void look_at_images() {
+  void check_images() {
     std::vector<double> rms_px;
     std::vector<double> sums;
     for (const auto& view : residuals_) {
@@ -253,13 +253,13 @@ class Diagnosis {
     }
     findings_.push_back(
         {poor_sum / sum_px2_,
-         fmt::format("{} of {} images hold {:.0f} % of the misfit: {}; the others leave {:.2f} px: "
-                     "look at these images, or leave them out",
+         fmt::format("{} of {} images account for {:.0f} % of the squared residuals: {}; the "
+                     "others have {:.2f} px rms: inspect these images, or leave them out",
                      poor.size(), residuals_.size(), 100 * poor_sum / sum_px2_, some_of(names),
                      rms_of(sum_px2_ - poor_sum, corners_ - poor_corners))});
   }
 
-  void look_at_cameras() {
+  void check_cameras() {
     if (state_.rig.cameras.size() < 2) return;
     for (int c = 0; c < static_cast<int>(state_.rig.cameras.size()); ++c) {
       std::vector<double> own, others;
@@ -271,30 +271,29 @@ class Diagnosis {
         (is_own ? own : others).push_back(rms_of(view_sum, residuals_[v].size()));
         if (is_own) sum += view_sum;
       }
-      // the usual image of each, so that single bad ones are no fault of the camera
+      // the median image of each, so that single bad ones do not count against the camera
       const double own_px = median_or_zero(std::move(own)),
                    others_px = median_or_zero(std::move(others));
       if (!(own_px > 2.5 * others_px)) continue;
       findings_.push_back(
-          {sum / sum_px2_,
-           fmt::format("camera {} (\"{}\") leaves {:.2f} px, the others {:.2f} px: look at its "
-                       "focus, its images and its lens model",
-                       c, state_.rig.cameras[c].name, own_px, others_px)});
+          {sum / sum_px2_, fmt::format("camera {} (\"{}\") has residuals of {:.2f} px, the others "
+                                       "{:.2f} px: check its focus, its images and its lens model",
+                                       c, state_.rig.cameras[c].name, own_px, others_px)});
     }
   }
 
-  void look_at_pixels() {
+  void check_pixels() {
     for (const Camera& camera : state_.rig.cameras) {
       if (std::abs(camera.ax() - 1) < 0.05) continue;
       findings_.push_back(
-          {0, fmt::format("camera \"{}\" seems to have pixels {:.0f} % {} than high: where that is "
-                          "not so, the board's squares are not square or its sides are not as said",
+          {0, fmt::format("camera \"{}\" seems to have pixels {:.0f} % {} than high: if not, the "
+                          "board's squares are not square or its given dimensions are wrong",
                           camera.name, 100 * std::abs(1 / camera.ax() - 1),
                           camera.ax() < 1 ? "wider" : "narrower")});
     }
   }
 
-  void look_at_what_is_missing() {
+  void check_missing() {
     std::map<std::pair<int, int>, std::pair<std::string, int>> out;  // by frame, camera
     for (const CornerOutlier& corner : options_.outliers) {
       auto& [image, count] = out[{corner.frame, corner.camera}];
@@ -311,7 +310,7 @@ class Diagnosis {
     }
     if (!whole.empty()) {
       findings_.push_back({0, fmt::format("{} image{} left out as a whole, because no pose of the "
-                                          "board fits the rest: {}; look at {}",
+                                          "board fits the rest: {}; inspect {}",
                                           whole.size(), whole.size() == 1 ? " was" : "s were",
                                           some_of(whole), whole.size() == 1 ? "it" : "them")});
     }

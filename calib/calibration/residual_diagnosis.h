@@ -12,29 +12,30 @@
 
 namespace vernier::internal {
 
-/// One thing found where residuals are larger than corner noise.
+/// One cause found for residuals larger than corner noise.
 struct ResidualFinding {
-  double share = 0;  ///< of Σ r² that it accounts for, in [0, 1]
-  std::string text;  ///< what it is, with numbers, and what to do
+  double share = 0;  ///< fraction of Σ r² that it explains, in [0, 1]
+  std::string text;  ///< cause, figures and remedy
 };
 
 struct ResidualDiagnosisOptions {
-  std::vector<CornerOutlier> outliers;  ///< corners already left out
+  std::vector<CornerOutlier> outliers;  ///< corners already excluded
   int images_without_board = 0;         ///< images in which no board was found
-  double min_share = 0.2;               ///< findings that account for less are not worth a word
+  double min_share = 0.2;               ///< findings that explain less are dropped
 };
 
-/// Where the misfit of a solved calibration sits, the finding that accounts for most first:
+/// Locates the misfit of a solved calibration, largest cause first:
 ///
-///  - the lens: the same views solved with opencv5, opencv8 and fisheye4 (share 1 − Σr²/Σr₀²), with
-///    the mean residual along the radius at the image's edge, which shows a wrong radial model;
-///  - the board: solved with its warp free (calib/board/board_warp.h);
+///  - the lens: the same views solved with opencv5, opencv8 and fisheye4 (fraction 1 − Σr²/Σr₀²),
+///    with the mean residual along the radius at the image's edge, which shows a wrong radial
+///    model;
+///  - the board: solved with free warp (calib/board/board_warp.h);
 ///  - time: two images of a frame that fit alone but not with one pose of the board;
-///  - images, and cameras, that leave much more than the others;
-///  - pixels or squares that are not square, images without a board, whole images left out.
+///  - images, and cameras, with residuals much larger than the others';
+///  - pixels or squares that are not square, images without a board, images excluded as a whole.
 ///
-/// Meant for calibrations whose rms is above a pixel: it solves again several times. `problem` is
-/// that of the solution. Never throws for what the data are: a trial that fails is no finding.
+/// For calibrations with an rms above a pixel, since it solves several times. `problem` is that of
+/// the solution. Does not throw because of the data: a trial that fails gives no finding.
 std::vector<ResidualFinding> diagnose_residuals(const BoardObservations& observations,
                                                 const BoardState& state,
                                                 const ReprojectionProblem& problem,

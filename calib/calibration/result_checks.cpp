@@ -23,7 +23,8 @@
 namespace vernier::internal {
 namespace {
 
-/// The ninth of the image that a place is in, `x` and `y` from 0 to 1: "top left", "bottom", ….
+/// The ninth of the image that contains a position, `x` and `y` from 0 to 1: "top left", "bottom",
+/// ….
 std::string ninth_of(double x, double y) {
   const std::string row = y < 1.0 / 3 ? "top" : y > 2.0 / 3 ? "bottom" : "";
   const std::string column = x < 1.0 / 3 ? "left" : x > 2.0 / 3 ? "right" : "";
@@ -56,8 +57,8 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
   return fmt::format(
       "the distortion of camera \"{}\" cannot be inverted in {:.2g} % of its image ({}; from "
       "{:.0f} "
-      "px of its principal point on): pixels there have no ray, and what needs one ends with an "
-      "error; use a model with fewer distortion parameters, or add views at the image's border",
+      "px of its principal point on): pixels there have no ray, and functions that need one fail; "
+      "use a model with fewer distortion parameters, or add views at the image's border",
       camera.name, 100.0 * folded / (columns * rows), fmt::join(regions, ", "), least_px);
 }
 
@@ -86,8 +87,8 @@ std::optional<std::string> ill_conditioning_warning(const Covariance& bound, con
       rig.cameras.begin(), rig.cameras.end(),
       [](const Camera& camera) { return std::holds_alternative<OpenCv8>(camera.model); });
   return fmt::format(
-      "the views hardly determine this model: its parameters' scaled condition is {:.1e}{}, so "
-      "that the standard deviations say too little; {}",
+      "the views hardly determine this model: the scaled condition number of its parameters is "
+      "{:.1e}{}, so the standard deviations are not reliable; {}",
       condition, words.empty() ? "" : " (" + words + ")",
       richest ? "use --model opencv5"
               : "use a model with fewer parameters, or add tilted views that fill the image");
@@ -112,7 +113,7 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   try {
     agreement = prior_consistency(offset, names, before, bound(known, known), honest(known, known),
                                   clusters);
-  } catch (const Error&) {  // a prior that no double can invert says nothing here
+  } catch (const Error&) {  // a prior that cannot be inverted in double precision is not checked
     return {};
   }
   if (agreement.dof == 0 || agreement.p_value >= min_p) return {};

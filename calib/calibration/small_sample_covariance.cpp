@@ -13,8 +13,8 @@
 namespace vernier::internal {
 namespace {
 
-/// (I − H)^(-1/2) x for a symmetric H with eigenvalues in [0, 1). A view that alone decides a
-/// direction (eigenvalue 1) has no residual along it; it is held just below.
+/// (I − H)^(-1/2) x for a symmetric H with eigenvalues in [0, 1). A view that alone determines a
+/// direction (eigenvalue 1) has no residual along it; its eigenvalue is limited to just below 1.
 Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::VectorXd& x) {
   const SymmetricEigen eigen(0.5 * (H + H.transpose()));
   const Eigen::ArrayXd h = eigen.eigenvalues().array().max(0.0).min(0.999);
@@ -22,7 +22,7 @@ Eigen::VectorXd correct_for_leverage(const Eigen::MatrixXd& H, const Eigen::Vect
   return V * ((1 - h).rsqrt() * (V.transpose() * x).array()).matrix();
 }
 
-/// Ledoit and Wolf's intensity for shrinking J = Σ x_f x_fᵀ towards the target.
+/// Ledoit and Wolf's shrinkage intensity of J = Σ x_f x_fᵀ towards the target.
 double shrinkage_intensity(const Eigen::MatrixXd& pulls,
                            const Eigen::MatrixXd& J,
                            const Eigen::MatrixXd& target) {

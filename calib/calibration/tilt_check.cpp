@@ -35,10 +35,10 @@ double tilt_of(const Eigen::Vector3d& normal) {
   return std::acos(std::clamp(normal.z(), -1.0, 1.0));
 }
 
-/// What the images of one camera say of the board's normals, each alone.
+/// The board normals of one camera, each from its image alone.
 struct NormalsAlone {
   std::vector<Eigen::Vector3d> normals;
-  double noise_px = 0;  ///< median of their residuals, a coordinate
+  double noise_px = 0;  ///< median of their residuals, per coordinate
 };
 
 NormalsAlone normals_alone(const BoardObservations& observations,
@@ -61,7 +61,8 @@ NormalsAlone normals_alone(const BoardObservations& observations,
   return result;
 }
 
-/// Standard deviation of every camera's focal length over the focal length, for noise of one pixel.
+/// Standard deviation of each camera's focal length divided by the focal length, for noise of one
+/// pixel.
 std::vector<double> focal_sd(const BoardObservations& observations, const BoardState& start) {
   const Rig& rig = start.rig;
   std::vector<double> sd(rig.cameras.size(), std::numeric_limits<double>::infinity());
@@ -126,7 +127,7 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
     }
     if (known_to < untrusted) continue;
     const std::string fault = fmt::format(
-        "the boards are tilted too little to tell the focal length (to {:.0f} % at best)",
+        "the boards are tilted too little to determine the focal length (to {:.0f} % at best)",
         100 * std::min(known_to, 10.0));
     if (known_to > undetermined) throw Error(place, fault, cure);
     diagnosis.trust_warnings.push_back(place + ": " + fault + "; " + cure);

@@ -25,13 +25,13 @@
 namespace vernier::internal {
 namespace {
 
-/// Which frames of two cameras fit one pose between them.
+/// The frames of two cameras that are consistent with one pose between them.
 struct Agreement {
   Rig rig;                          ///< the two cameras and the pose they agree on
-  std::vector<double> together_px;  ///< one a pair
-  std::vector<bool> fits;           ///< one a pair
+  std::vector<double> together_px;  ///< one per pair
+  std::vector<bool> fits;           ///< one per pair
   std::size_t count = 0;            ///< of those that fit
-  std::size_t gross = 0;            ///< of those that no rough start excuses
+  std::size_t gross = 0;            ///< with an error too large for an approximate start
 };
 
 Agreement agreement(const PairConsensus& consensus, PairReading reading) {
@@ -53,7 +53,7 @@ Eigen::Vector2d diagonal(const BoardView& view) {
       .normalized();
 }
 
-/// The camera (0 or 1 of the pair) whose board lies less like in its other frames.
+/// The camera (0 or 1 of the pair) whose board pose differs more from its other frames.
 int odd_one(const PairConsensus& consensus, std::size_t index, const std::vector<bool>& fits) {
   Eigen::Vector2d usual[2] = {{0, 0}, {0, 0}};
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -75,13 +75,13 @@ std::string and_more(std::size_t more) {
   return more == 0 ? "" : fmt::format(" (and {} more frame{} like it)", more, more == 1 ? "" : "s");
 }
 
-/// A frame that fits when it is read otherwise.
+/// A frame that fits under another reading.
 struct Repair {
   std::size_t pair;
   double as_is_px, repaired_px;
 };
 
-/// Two cameras of the rig and what is said of them.
+/// Checks two cameras of the rig.
 class PairCheck {
  public:
   PairCheck(const BoardObservations& observations, const Rig& rig, int first, int second)
@@ -129,17 +129,18 @@ class PairCheck {
       if (2 * count < pairs || count <= agreeing) continue;
       throw Error(
           cameras(),
-          fmt::format("their images are paired wrongly: {} of {} frames agree on no pose between "
-                      "the cameras, but {} of {} do when camera {}'s images are taken {} frame{} "
-                      "{}",
-                      n - agreeing, n, count, pairs, second_, std::abs(shift),
-                      std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
-          "number the images so that those taken at once have one number");
+          fmt::format(
+              "their images are paired wrongly: {} of {} frames do not agree on the pose between "
+              "the cameras, but {} of {} do when camera {}'s images are taken {} frame{} "
+              "{}",
+              n - agreeing, n, count, pairs, second_, std::abs(shift),
+              std::abs(shift) == 1 ? "" : "s", shift > 0 ? "later" : "earlier"),
+          "number the images so that simultaneous ones have the same number");
     }
-    if (2 * as_is.gross <= n) return;  // a rough start may be the reason
+    if (2 * as_is.gross <= n) return;  // the approximate start may be the reason
     const std::string fault = fmt::format(
         "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
-        "or not of one frame, or the cameras moved against each other",
+        "or are paired wrongly, or the cameras moved relative to each other",
         agreeing, n);
     const std::string cure = "check the pairing; hold the board still or trigger both at once";
     if (n >= 4) throw Error(cameras(), fault, cure);
@@ -163,8 +164,8 @@ class PairCheck {
       const ViewPair& pair = consensus_.pairs()[i];
       diagnosis.trust_warnings.push_back(fmt::format(
           "{}: each image fits the board to {:.1f} px, but not both together ({:.1f} px): they are "
-          "not simultaneous or the corners of one are numbered from another place; leave the frame "
-          "out",
+          "not simultaneous or the corners of one are numbered from another corner of the board; "
+          "leave the frame out",
           image_place(pair.second, second_), pair.alone_px, together));
     }
     if (!turned.empty()) throw_turned(turned, as_is.fits);
@@ -202,7 +203,7 @@ class PairCheck {
   PairConsensus consensus_;
 };
 
-/// The earlier camera that shares most frames with `camera`.
+/// The earlier camera with most frames in common with `camera`.
 int best_partner(const BoardObservations& observations, int camera) {
   std::vector<int> shared(camera, 0);
   for (const BoardView& a : observations.views) {
@@ -214,8 +215,8 @@ int best_partner(const BoardObservations& observations, int camera) {
   return static_cast<int>(std::max_element(shared.begin(), shared.end()) - shared.begin());
 }
 
-/// Whether one board pose a frame explains all its images to what a rough start may leave: then no
-/// pair of cameras need be looked at.
+/// Whether one board pose per frame explains all its images within the tolerance for an approximate
+/// start: then no pair of cameras needs to be checked.
 bool all_fit(const BoardObservations& observations, const BoardState& start) {
   int longest = 0;
   for (const Camera& camera : start.rig.cameras) {
@@ -233,7 +234,7 @@ bool all_fit(const BoardObservations& observations, const BoardState& start) {
   return true;
 }
 
-/// Of a pair: is the second camera where a right one stands?
+/// Checks the position of the second camera of a pair.
 void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   if (start.rig.cameras.size() != 2) return;
   const Eigen::Vector3d centre = start.rig.T_camera_first[1].inverse().t;
@@ -243,14 +244,13 @@ void check_baseline(const BoardState& start, ObservationDiagnosis& diagnosis) {
   }
   if (centre.norm() < 1e-3 * distance) {
     diagnosis.trust_warnings.push_back(
-        fmt::format("both cameras stand at one place ({:.2g} m apart, the board at {:.2g} m): the "
-                    "images may be of one camera",
+        fmt::format("both cameras are at the same position ({:.2g} m apart, the board at {:.2g} "
+                    "m): the images may be from one camera",
                     centre.norm(), distance));
   } else if (centre.x() < 0 && -centre.x() > centre.tail<2>().cwiseAbs().maxCoeff()) {
     diagnosis.trust_warnings.push_back(
-        fmt::format("camera 1 (\"{}\") stands {:.3g} m to the left of camera 0 (\"{}\"): the "
-                    "cameras seem to be exchanged, and disparities of such a pair are negative; "
-                    "give left and right the other way round",
+        fmt::format("camera 1 (\"{}\") is {:.3g} m to the left of camera 0 (\"{}\"): the cameras "
+                    "seem to be exchanged, which makes disparities negative; swap left and right",
                     start.rig.cameras[1].name, -centre.x(), start.rig.cameras[0].name));
   }
 }

@@ -8,20 +8,19 @@
 
 namespace vernier::internal {
 
-/// What may be asked of the views.
+/// Which checks are applicable.
 struct ViewCheckOptions {
-  /// Intrinsics are to be estimated from the views. Switch it off where they are held or where a
-  /// prior brings them.
+  /// Intrinsics are estimated from the views. Set to false if they are held or given by a prior.
   bool tilts = true;
 };
 
-/// Looks at the views with a start in hand (initial_state) before it is improved: do all frames
-/// agree on where the cameras stand to each other? A frame fits where one board pose explains both
-/// its images (PairConsensus::fits, calib/calibration/view_pair.h); the pose between the cameras is
-/// the consensus of the frames. A frame that does not fit is tried with one image's corners
-/// numbered from the other end, and with its images exchanged.
+/// Checks the views at an initial state (initial_state): whether all frames agree on the relative
+/// poses of the cameras. A frame fits if one board pose explains both its images
+/// (PairConsensus::fits, calib/calibration/view_pair.h); the pose between the cameras is the
+/// consensus of the frames. A frame that does not fit is tried with one image's corners in reverse
+/// order, and with its images exchanged.
 ///
-/// Throws Error, naming frames, camera and images, where a repair proves the fault:
+/// Throws Error, naming frames, camera and images, if a repair proves the fault:
 ///
 ///  - corners numbered half a turn apart, in some frames or in all;
 ///  - left and right exchanged in some frames;
@@ -30,8 +29,8 @@ struct ViewCheckOptions {
 ///  - boards whose tilts leave the intrinsics undetermined (check_tilts,
 ///  calib/calibration/tilt_check.h).
 ///
-/// Doubts: frames that are grossly off (1.5 % of the image) whichever way; in a pair, the second
-/// camera standing to the left of the first, or both at one place.
+/// Trust warnings: frames with gross errors (1.5 % of the image) under every reading; in a pair,
+/// the second camera to the left of the first, or both at the same position.
 ObservationDiagnosis check_views(const BoardObservations& observations,
                                  const BoardState& start,
                                  const ViewCheckOptions& options = {});

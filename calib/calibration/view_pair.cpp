@@ -26,8 +26,8 @@ namespace {
 constexpr double sound_times_alone = 4;
 constexpr double gross_share = 0.015;  // of the image's longer side
 
-/// The half turn of the target about its middle, as poses and as corners; none where the corners
-/// do not fall on each other.
+/// The half turn of the target about its centre, as a pose and as a permutation of corners; empty
+/// if the corners do not coincide.
 std::vector<int> half_turn_of(const std::vector<Eigen::Vector3d>& target_m, Pose& turn) {
   Eigen::Vector3d low = target_m.front(), high = low;
   for (const Eigen::Vector3d& X : target_m) {
@@ -163,7 +163,7 @@ std::optional<Rig> PairConsensus::improved(const Half& half, const std::vector<i
     Eigen::VectorXd delta = Eigen::VectorXd::Zero(score.size());
     delta(free) = -solve_symmetric(S, Eigen::VectorXd(score(free)));
     if (delta.allFinite()) return retract(half.state.rig, delta);
-  } catch (const Error&) {  // a wrong reading may leave no pose of a board that is determined
+  } catch (const Error&) {  // under a wrong reading, a board pose may be undetermined
   }
   return std::nullopt;
 }
@@ -175,8 +175,8 @@ Rig PairConsensus::agreed_rig(PairReading reading) const {
     candidates.push_back(seen.T_second_board * seen.T_first_board.inverse());
   }
   Rig rig{cameras_, {Pose{}, consensus_pose(candidates)}};
-  // Gauss and Newton on the better half of the frames, their board poses following: both focal
-  // lengths (images of one camera alone may tell them badly) and the pose between the two.
+  // Gauss–Newton on the better half of the frames, with their board poses eliminated: both focal
+  // lengths (poorly determined by single images) and the pose between the cameras.
   Half half = best_subset(reading, rig);
   std::vector<int> free{0, intrinsics_index(rig, 1)};
   for (int i = 0; i < 6; ++i) free.push_back(pose_index(rig, 1) + i);

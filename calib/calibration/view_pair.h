@@ -15,49 +15,51 @@
 
 namespace vernier::internal {
 
-/// Residual, as a share of the image's longer side, that a sound frame may leave at a rough start.
+/// Residual, as a fraction of the image's longer side, of a correct frame at an approximate start.
 inline constexpr double sound_share = 0.006;
 
-/// How the two images of a frame may have to be read to fit the others.
+/// How to read the two images of a frame.
 enum class PairReading {
   as_is,
-  turned,    ///< one image's corners numbered from the other end: a half turn of the board
+  turned,    ///< one image's corners in reverse order: a half turn of the board
   exchanged  ///< each image is the other camera's
 };
 
-/// A frame as two cameras saw it.
+/// A frame seen by two cameras.
 struct ViewPair {
   BoardView first, second;             ///< as cameras 0 and 1
-  Pose T_first_board, T_second_board;  ///< each by its image alone
-  double alone_px = 0;                 ///< the larger residual (rms a coordinate) of the two
+  Pose T_first_board, T_second_board;  ///< each from its image alone
+  double alone_px = 0;                 ///< the larger of the two residuals (rms per coordinate)
 };
 
-/// The frames that two cameras of a rig share and how well they agree on the pose between the two.
+/// The frames common to two cameras of a rig, and their agreement on the pose between the two.
 class PairConsensus {
  public:
-  /// `shift` pairs the frame at position i of the first camera with i + shift of the second.
+  /// `shift` pairs the frame at index i of the first camera with i + shift of the second.
   PairConsensus(
       const BoardObservations& observations, const Rig& rig, int first, int second, int shift = 0);
 
   const std::vector<ViewPair>& pairs() const { return pairs_; }
   bool has_half_turn_ambiguity() const { return !half_turn_.empty(); }
 
-  /// The two cameras with the pose T_second_first that most frames agree on when every frame is
-  /// read so; the pose and both focal lengths improved on the better half of the frames.
+  /// The two cameras with the pose T_second_first that most frames agree on under this reading; the
+  /// pose and both focal lengths refined on the better half of the frames.
   Rig agreed_rig(PairReading reading) const;
 
-  /// Residual (rms a coordinate, pixels) of a frame, read so, with one board pose for both images.
+  /// Residual (rms per coordinate, pixels) of a frame under this reading, with one board pose for
+  /// both images.
   double together_px(std::size_t pair, PairReading reading, const Rig& rig) const;
 
-  /// Whether that is no more than a sound frame leaves with a rough start: four times what each
-  /// image leaves alone, or 0.6 % of the image's longer side.
+  /// Whether the residual is at most that of a correct frame at an approximate start: four times
+  /// that of each image alone, or 0.6 % of the image's longer side.
   bool fits(std::size_t pair, double together_px) const;
 
-  /// Whether no rough start can excuse it: more than 1.5 % of the image's longer side.
+  /// Whether the residual is too large for an approximate start: more than 1.5 % of the image's
+  /// longer side.
   bool is_gross_misfit(double together_px) const;
 
  private:
-  struct Half {  ///< the frames that fit best, as a problem of their own
+  struct Half {  ///< the best-fitting half of the frames, as a problem
     BoardObservations observations;
     BoardState state;
     double sum_px2 = 0;
@@ -71,7 +73,7 @@ class PairConsensus {
   const BoardObservations& observations_;
   std::vector<Camera> cameras_;
   std::vector<ViewPair> pairs_;
-  std::vector<int> half_turn_;  ///< corner that takes a corner's place; empty without symmetry
+  std::vector<int> half_turn_;  ///< corner that replaces each corner; empty without symmetry
   Pose T_board_turned_;
 };
 

@@ -14,8 +14,8 @@ namespace {
 template <std::size_t I = 0>
 CameraModel find_model(std::string_view name) {
   if constexpr (I == std::variant_size_v<CameraModel>) {
-    throw Error("camera model \"" + std::string(name) + "\"", "there is no such model",
-                "use radial1, pinhole, opencv4, opencv5, opencv8 or fisheye4");
+    throw Error("camera model \"" + std::string(name) + "\"", "unknown model",
+                "supported: radial1, pinhole, opencv4, opencv5, opencv8, fisheye4");
   } else {
     using Model = std::variant_alternative_t<I, CameraModel>;
     if (Model::name == name) return Model{};
@@ -30,7 +30,7 @@ CameraModel find_model(std::string_view name) {
               "give f_px, ax, ox_px, oy_px, then the model's distortion");
 }
 
-/// The camera's parameters, as many as the model `Model` has.
+/// The camera's parameters, with the number of parameters of `Model`.
 template <class Model>
 const double* parameters_of(const Camera& camera) {
   constexpr auto count =
@@ -121,7 +121,7 @@ std::optional<Eigen::Vector3d> try_unproject(const Camera& camera, const Eigen::
           const Eigen::Vector2d miss = d.x - target;
           if (!(miss.norm() > 1e-15 * (1 + target.norm()))) break;
           Eigen::Vector2d step = d.by_x.inverse() * miss;
-          // Halve the step until it helps, so that a start beyond the fold cannot run away.
+          // Halve the step until it helps, so that a start beyond the fold does not diverge.
           for (int halving = 0; halving < 20; ++halving, step *= 0.5) {
             d = m.distort(x - step, a + core_parameter_count);
             if ((d.x - target).norm() < miss.norm()) break;

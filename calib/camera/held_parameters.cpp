@@ -37,13 +37,13 @@ void check_value(const HeldParameter& held) {
   if (!held.value) return;
   const bool positive = ends_with(held.name, ".f_px") || ends_with(held.name, ".ax");
   if (!std::isfinite(*held.value) || (positive && !(*held.value > 0))) {
-    throw Error("held parameter " + held.name, fmt::format("{} is no value for it", *held.value),
+    throw Error("held parameter " + held.name, fmt::format("invalid value {}", *held.value),
                 positive ? "give a number above 0" : "give a finite number");
   }
 }
 
-/// What a parameter is where nothing else is said: ax 1, the centre in the middle of the image, no
-/// distortion. Focal lengths and poses have no such value and stay as they are.
+/// Default values of held parameters: ax 1, the principal point at the image centre, no distortion.
+/// Focal lengths and poses have no default and stay as they are.
 Eigen::VectorXd neutral_parameters(const Rig& rig) {
   Rig neutral = rig;
   for (Camera& camera : neutral.cameras) {
@@ -102,7 +102,7 @@ Eigen::MatrixXd tangent_by_values(const Rig& rig, const std::vector<bool>& held)
   Eigen::MatrixXd by_value = Eigen::MatrixXd::Identity(p, p);
   for (std::size_t c = 1; c < rig.cameras.size(); ++c) {
     const int i = pose_index(rig, static_cast<int>(c));
-    // Where the rotation is wholly free any basis will do; the plain one keeps its rows readable.
+    // If the whole rotation is free, any basis will do; the identity keeps its rows readable.
     if (!held[i] && !held[i + 1] && !held[i + 2]) continue;
     by_value.block<3, 3>(i, i) = left_jacobian(vector_from_rotation(rig.T_camera_first[c].R));
   }

@@ -10,11 +10,11 @@
 namespace vernier::internal {
 
 /// The models that contain `model` as the case where further coefficients are zero, nearest first:
-/// pinhole ⊂ radial1 ⊂ opencv4 ⊂ opencv5 ⊂ opencv8. Nothing for opencv8 and fisheye4.
+/// pinhole ⊂ radial1 ⊂ opencv4 ⊂ opencv5 ⊂ opencv8. Empty for opencv8 and fisheye4.
 std::vector<CameraModel> richer_models(const CameraModel& model);
 
-/// The rig with cameras of these models, one a camera: coefficients of the same name keep their
-/// value, new ones are zero. Throws Error where a coefficient that is not zero would be lost.
+/// The rig with cameras of these models, one per camera: coefficients of the same name keep their
+/// value, new ones are zero. Throws Error if a non-zero coefficient would be lost.
 Rig in_models(const Rig& rig, const std::vector<CameraModel>& models);
 
 /// The models of a rig's cameras.

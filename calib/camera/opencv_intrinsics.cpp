@@ -31,7 +31,7 @@ int distortion_count(const CameraModel& model) {
   return parameter_count(model) - core_parameter_count;
 }
 
-/// The first coefficient from `count` on that is not zero.
+/// The first non-zero coefficient from index `count` on.
 std::optional<std::size_t> first_beyond(const std::vector<double>& coefficients,
                                         std::size_t count) {
   for (std::size_t i = count; i < coefficients.size(); ++i) {
@@ -79,12 +79,11 @@ Eigen::Matrix3d camera_matrix(const OpenCvIntrinsics& i) {
 
 OpenCvIntrinsics intrinsics_of_camera_matrix(const Eigen::Matrix3d& K, const std::string& place) {
   if (K(0, 1) != 0) {
-    throw Error(place, fmt::format("has a skew of {}, which Vernier's models lack", K(0, 1)),
+    throw Error(place, fmt::format("has a skew of {}, which is not supported", K(0, 1)),
                 "calibrate without skew");
   }
   if (K(1, 0) != 0 || K(2, 0) != 0 || K(2, 1) != 0 || K(2, 2) != 1) {
-    throw Error(place, "is no camera matrix: below the diagonal belong zeros, at its end a 1",
-                "correct it");
+    throw Error(place, "is not a camera matrix [fx 0 cx; 0 fy cy; 0 0 1]", "correct it");
   }
   return {K(0, 0), K(1, 1), K(0, 2), K(1, 2), false, {}};
 }
@@ -109,7 +108,7 @@ std::vector<double> held_coefficients(const Camera& camera,
   OpenCvIntrinsics i = opencv_intrinsics(camera);
   if (const auto beyond = first_beyond(i.coefficients, count)) {
     throw Error(fmt::format("camera \"{}\"", camera.name),
-                fmt::format("{} has no place for {} = {} of the model {}", tool,
+                fmt::format("{} cannot represent {} = {} of the model {}", tool,
                             coefficient_name(i.fisheye, *beyond), i.coefficients[*beyond],
                             model_name(camera.model)),
                 "calibrate with a smaller model, or choose another format");
@@ -126,7 +125,7 @@ Camera camera_from_opencv(const OpenCvIntrinsics& intrinsics,
   const CameraModel model = wanted.value_or(smallest_model(intrinsics));
   if (intrinsics.fisheye != std::holds_alternative<Fisheye4>(model)) {
     throw Error(place,
-                fmt::format("is {}a fisheye camera, which the model {} does not hold",
+                fmt::format("is {}a fisheye camera, which the model {} cannot represent",
                             intrinsics.fisheye ? "" : "not ", model_name(model)),
                 "choose another model or none");
   }
@@ -136,7 +135,7 @@ Camera camera_from_opencv(const OpenCvIntrinsics& intrinsics,
         place,
         fmt::format("{} = {} is not in the model {}", coefficient_name(intrinsics.fisheye, *beyond),
                     intrinsics.coefficients[*beyond], model_name(model)),
-        wanted ? "choose a larger model or none" : "Vernier has no model that holds it");
+        wanted ? "choose a larger model or none" : "no supported model includes it");
   }
   Camera camera;
   camera.name.clear();

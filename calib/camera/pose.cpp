@@ -27,7 +27,7 @@ Eigen::Vector3d vector_from_rotation(const Eigen::Matrix3d& R) {
   q.normalize();
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
-  // 2 atan2(s, c) / s, by its series where s vanishes.
+  // 2 atan2(s, c) / s, by its series if s vanishes.
   const double scale = sine < 1e-9 ? 2.0 / q.w() : 2.0 * std::atan2(sine, q.w()) / sine;
   return scale * q.vec();
 }

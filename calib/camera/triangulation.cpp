@@ -25,13 +25,12 @@ void check_other(const Rig& rig, int other) {
   if (other > 0 && other < static_cast<int>(rig.cameras.size())) return;
   throw Error("triangulation",
               "the rig has " + std::to_string(rig.cameras.size()) +
-                  " camera(s), so none to pair "
-                  "with the first as number " +
-                  std::to_string(other),
+                  " camera(s), so the first cannot be paired with number " + std::to_string(other),
               "give a rig of two or more");
 }
 
-/// Rays and the second centre in the first camera's frame, with the lengths along them.
+/// Rays and the second camera's centre in the first camera's frame, with the lengths along the
+/// rays.
 struct Rays {
   Vector3d v0, v1, t;
   double l0 = 0, l1 = 0;
@@ -61,13 +60,13 @@ std::optional<Rays> rays_of(const Rig& rig, const PixelPair& pair, int other) {
   return rays;
 }
 
-/// d|w| / dw, a row; zero where w vanishes.
+/// d|w| / dw, a row; zero if w vanishes.
 Eigen::RowVector3d unit_row(const Vector3d& w) {
   const double n = w.norm();
   return n > 0 ? Eigen::RowVector3d(w.transpose() / n) : Eigen::RowVector3d::Zero();
 }
 
-/// Derivatives of the middle point by v0, v1 and t.
+/// Derivatives of the midpoint with respect to v0, v1 and t.
 struct MiddleDerivatives {
   Matrix3d by_v0, by_v1, by_t;
 };

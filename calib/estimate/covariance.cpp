@@ -63,8 +63,8 @@ CovarianceKind covariance_kind(std::string_view name) {
   for (const auto& [kind, word] : kinds) {
     if (word == name) return kind;
   }
-  throw Error(fmt::format("covariance kind \"{}\"", name), "there is no such kind",
-              "use mvb, clustered, jackknife, prior or combined");
+  throw Error(fmt::format("covariance kind \"{}\"", name), "unknown kind",
+              "supported: mvb, clustered, jackknife, prior, combined");
 }
 
 std::string describe_direction(const Eigen::VectorXd& direction,
@@ -73,7 +73,7 @@ std::string describe_direction(const Eigen::VectorXd& direction,
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return std::abs(direction[a]) > std::abs(direction[b]); });
-  // As many parameters as it takes to say four fifths of the direction, at most three.
+  // As many parameters as explain four fifths of the direction, at most three.
   double explained = 0;
   std::string words;
   for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && explained < 0.8; ++k) {
@@ -97,7 +97,7 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
                   "check the rig file");
     }
   }
-  // A parameter without variance is held: it takes no part in any direction.
+  // A parameter without variance is held and takes part in no direction.
   const ScaledEigen eigen(C);
   const Eigen::VectorXd& sd = eigen.deviations;
   const Eigen::MatrixXd unit = (sd * sd.transpose()).cwiseMax(std::numeric_limits<double>::min());

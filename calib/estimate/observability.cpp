@@ -24,16 +24,16 @@ using namespace internal;
 
 namespace {
 
-/// A change of the rig's parameters and of the essential matrix with it.
+/// A change of the rig's parameters and the resulting change of the essential matrix.
 struct Move {
   Eigen::VectorXd parameters;
   Eigen::Matrix3d essential;
 };
 
-/// Powers of the coordinates' scale in k1 k2 p1 p2 k3 k4 k5 k6.
+/// Power of the coordinates' scale in each of k1 k2 p1 p2 k3 k4 k5 k6.
 constexpr int scale_powers[] = {2, 4, 1, 1, 6, 2, 4, 6};
 
-/// What moves the rays of a camera by a matrix: that matrix, and the camera's parameters.
+/// The parameter changes that multiply the rays of a camera by a matrix, and that matrix.
 std::vector<std::pair<Eigen::VectorXd, Eigen::Matrix3d>> ray_moves(const Camera& camera) {
   const Eigen::VectorXd& a = camera.parameters;
   const auto k = a.tail(a.size() - core_parameter_count);
@@ -100,7 +100,7 @@ Eigen::Map<const Eigen::Matrix<double, 9, 1>> as_vector(const Eigen::Matrix3d& M
 Eigen::MatrixXd unobservable_directions(const Rig& rig,
                                         const std::optional<Eigen::Vector3d>& plane) {
   const Pose& T = rig.T_camera_first[1];
-  // Essential matrices that see no difference.
+  // Essential matrices that give the same residuals.
   Eigen::Matrix<double, 9, Eigen::Dynamic> same(9, plane ? 3 : 1);
   if (plane) {
     const Eigen::Matrix3d H = T.R + T.t * plane->transpose();
@@ -145,7 +145,7 @@ Observability observability(const Rig& rig,
     throw Error("prior",
                 "its covariance is singular along " +
                     describe_direction(prior.eigenvectors().col(0), names),
-                "hold what is known exactly");
+                "fix parameters that are known exactly");
   }
   const Eigen::MatrixXd root = prior.root(), inverse_root = prior.inverse_root();
   const Eigen::MatrixXd ratio = inverse_root * R1 * inverse_root;

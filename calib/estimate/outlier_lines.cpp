@@ -25,7 +25,7 @@ using ViewKey = std::pair<int, int>;  // frame, camera
 std::string corner_line(const CornerOutlier& outlier, const std::string& view) {
   std::string line = fmt::format("corner {} of {}", outlier.id, view);
   if (std::isfinite(outlier.residual_px)) {
-    line += fmt::format(", {:.1f} px from its place", outlier.residual_px);
+    line += fmt::format(", {:.1f} px from its prediction", outlier.residual_px);
   }
   return line;
 }
@@ -38,7 +38,7 @@ std::string view_line(const std::vector<CornerOutlier>& outliers, const std::str
     least = std::min(least, outlier.residual_px);
     largest = std::max(largest, outlier.residual_px);
   }
-  return line + fmt::format(", {:.1f} to {:.1f} px from their places", least, largest);
+  return line + fmt::format(", {:.1f} to {:.1f} px from their predictions", least, largest);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 
 namespace vernier::internal {
 
-/// The corners left out of a calibration in words, by frame and camera: one line for a view of
-/// which the evidence holds nothing, such as "all 54 corners of frame 3, right, 3.1 to 9.8 px from
-/// their places", else one a corner. Distances that are not known are not given.
+/// Descriptions of the excluded corners, by frame and camera: one line for a view that was excluded
+/// as a whole, such as "all 54 corners of frame 3, right, 3.1 to 9.8 px from their predictions",
+/// else one per corner. Unknown distances are omitted.
 std::vector<std::string> outlier_lines(const RigEstimate& estimate);
 
 }  // namespace vernier::internal

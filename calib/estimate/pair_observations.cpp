@@ -35,7 +35,7 @@ void check_row(const Eigen::Vector4d& y, const Rig& rig, const std::string& plac
   }
 }
 
-/// A match that stands twice in an image pair counts its noise twice.
+/// Rejects repeated matches in an image pair, which would count twice.
 void check_duplicates(const PairObservations& pairs, const std::string& place) {
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -109,14 +109,15 @@ PairObservations selected(const PairObservations& pairs, const std::vector<bool>
 
 void check_pairs(const PairObservations& pairs, const Rig& rig, const std::string& place) {
   if (rig.cameras.size() != 2) {
-    throw Error(place.empty() ? "pairs" : place,
-                fmt::format("matched pairs are of two cameras, the rig has {}", rig.cameras.size()),
-                "take the two cameras out of the rig first");
+    throw Error(
+        place.empty() ? "pairs" : place,
+        fmt::format("matched pairs need a rig of two cameras, this one has {}", rig.cameras.size()),
+        "extract the two cameras from the rig first");
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double sigma = pairs.sigma_of(i);
     if (!(sigma > 0 && std::isfinite(sigma))) {
-      throw Error(row_place(place, i), fmt::format("its noise of {} px is none", sigma),
+      throw Error(row_place(place, i), fmt::format("its noise of {} px is invalid", sigma),
                   "give a standard deviation above 0");
     }
     check_row(pairs.pixels_px[i], rig, row_place(place, i));

@@ -33,7 +33,7 @@ PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
     throw Error("prior",
                 "its covariance is singular along " +
                     describe_direction(before.eigenvectors().col(0), names),
-                "hold what is known exactly");
+                "fix parameters that are known exactly");
   }
   // In the prior's own standard deviations, where C_0 = I.
   const Eigen::MatrixXd root = before.root(), inverse_root = before.inverse_root();

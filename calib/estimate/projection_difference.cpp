@@ -19,7 +19,7 @@
 namespace vernier::internal {
 namespace {
 
-/// A point as a sees it, homogeneous: w = 0 at infinity, where translations do nothing.
+/// A point as seen by a, homogeneous: w = 0 at infinity, where translations have no effect.
 struct SeenPoint {
   int camera = 0;
   std::size_t map = 0, cell = 0;
@@ -46,7 +46,7 @@ std::vector<Eigen::Vector2d> grid_of(const Camera& camera, const Eigen::Vector2i
   return pixels;
 }
 
-/// Fills the maps' headers and lists the points that both rigs can see.
+/// Fills the headers of the maps and lists the points that both rigs can see.
 std::vector<SeenPoint> points_of(const Rig& a,
                                  const Rig& b,
                                  const ProjectionDifferenceOptions& options,
@@ -86,7 +86,7 @@ std::vector<SeenPoint> points_of(const Rig& a,
   return points;
 }
 
-/// e over all points; empty where one of them is behind its camera.
+/// e over all points; empty if one of them is behind its camera.
 Eigen::VectorXd misses(const Rig& b, const Pose& T_b_a, const std::vector<SeenPoint>& points) {
   Eigen::VectorXd e(2 * static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -116,7 +116,7 @@ Eigen::MatrixXd by_alignment(const Rig& b,
   return G;
 }
 
-/// de / d(tangent of the rig) for points that stand still: `T` takes them to the rig's frame.
+/// de / d(tangent of the rig) for points fixed in space: `T` maps them to the rig's frame.
 Eigen::MatrixXd by_rig(const Rig& rig, const Pose& T, const std::vector<SeenPoint>& points) {
   Eigen::MatrixXd out =
       Eigen::MatrixXd::Zero(2 * static_cast<Eigen::Index>(points.size()), parameter_count(rig));
@@ -135,7 +135,7 @@ Eigen::MatrixXd by_rig(const Rig& rig, const Pose& T, const std::vector<SeenPoin
   return out;
 }
 
-/// The points that the alignment is fitted to.
+/// The points used to fit the alignment.
 std::vector<SeenPoint> focus_of(const std::vector<SeenPoint>& points) {
   std::vector<SeenPoint> chosen;
   std::copy_if(points.begin(), points.end(), std::back_inserter(chosen),
@@ -145,9 +145,9 @@ std::vector<SeenPoint> focus_of(const std::vector<SeenPoint>& points) {
 
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
 
-/// G with its translations measured in the nearest distance, so that its rank does not depend on
-/// units; the solution of least norm leaves alone what the points do not say (a translation, where
-/// all are at infinity).
+/// G with its translations scaled by the nearest distance, so that its rank does not depend on
+/// units; the minimum-norm solution leaves undetermined directions unchanged (a translation, if all
+/// points are at infinity).
 struct ScaledAlignment {
   Eigen::Matrix<double, 6, 1> scale;
   Decomposition G;
@@ -166,7 +166,7 @@ double nearest(const ProjectionDifferenceOptions& options) {
   return std::isinf(least) ? 1 : least;
 }
 
-/// Gauss–Newton, each step halved until it helps.
+/// Gauss–Newton, each step halved until the cost falls.
 Pose align(const Rig& b, const std::vector<SeenPoint>& points, double nearest_m) {
   Pose T_b_a;
   Eigen::VectorXd e = misses(b, T_b_a, points);
@@ -217,7 +217,7 @@ void write_differences(const Rig& b,
   const Eigen::VectorXd after = misses(b, result.T_b_a, points);
   if (after.size() == 0) {
     throw Error("projection difference", "the alignment takes points behind a camera",
-                "look whether the rigs look the same way");
+                "check that the rigs face the same way");
   }
   std::vector<Eigen::Vector2d> all_focus;
   std::vector<std::vector<Eigen::Vector2d>> focus(result.maps.size());
@@ -241,7 +241,7 @@ void write_differences(const Rig& b,
   result.in_focus = size_of(all_focus);
 }
 
-/// Mean of variances, as a root.
+/// Mean of variances; square root at the end.
 struct MeanVariance {
   double sum = 0, count = 0;
   void add(double variance) {
@@ -286,7 +286,7 @@ void check(const ProjectionDifferenceOptions& options) {
     throw Error("grid", "it has no pixels", "give at least one column and one row");
   }
   if (!(options.focus_share > 0)) {
-    throw Error("focus", "its share of the image is not above 0", "give a number in (0, 1]");
+    throw Error("focus", "its fraction of the image is not above 0", "give a number in (0, 1]");
   }
 }
 
@@ -305,7 +305,7 @@ ProjectionDifference projection_difference(const Rig& a,
   if (focus.size() < 6) {
     throw Error("projection difference",
                 "fewer than 6 pixels have a ray in one rig and an image in the other",
-                "give a finer grid, or look whether the rigs look the same way");
+                "give a finer grid, or check that the rigs face the same way");
   }
   const double nearest_m = nearest(options);
   result.T_b_a = align(b, focus, nearest_m);

@@ -8,13 +8,13 @@
 
 namespace vernier::internal {
 
-/// The same lenses before images of another size: every camera's picture enlarged by the ratio s of
-/// the widths and, in height, cut or extended evenly above and below. Parameters in pixels scale,
+/// The same lenses with images of another size: every image is scaled by the ratio s of the widths
+/// and, in height, cropped or extended evenly above and below. Parameters in pixels scale,
 ///
 ///     f' = s f,   ox' = s (ox + ½) − ½,   oy' = (h' − 1) / 2 + s (oy − (h − 1) / 2)
 ///
-/// and their standard deviations with them (C' = D C D); all others stay. What the calibration was
-/// computed from is left out. Throws Error for a size that is not positive.
+/// and so do their standard deviations (C' = D C D); all others stay. The evidence is dropped.
+/// Throws Error for a size that is not positive.
 RigEstimate resized(const RigEstimate& estimate, const Eigen::Vector2i& size_px);
 
 }  // namespace vernier::internal

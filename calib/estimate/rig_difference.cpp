@@ -40,8 +40,8 @@ struct CommonParameters {
   std::vector<Eigen::Index> in_a, in_b;
 };
 
-/// Distortion coefficients of a fisheye act on the angle, those of the others on the tangent: the
-/// same names, another meaning.
+/// Distortion coefficients of a fisheye act on the angle, those of the other models on the tangent:
+/// the same names with different meaning.
 std::set<std::string> names_of_other_meaning(const Rig& a, const Rig& b) {
   std::set<std::string> names;
   for (std::size_t c = 0; c < a.cameras.size(); ++c) {
@@ -81,7 +81,7 @@ CommonParameters common_parameters(const Rig& a, const Rig& b, RigDifference& re
   return common;
 }
 
-/// Flags, one a parameter of each rig, of those that neither covariance gives a variance.
+/// Flags, one per parameter of each rig, of those without variance in both covariances.
 struct HeldInBoth {
   std::vector<bool> in_a, in_b;
 };
@@ -102,14 +102,14 @@ HeldInBoth held_in_both(const Rig& a,
   return held;
 }
 
-/// b's parameters less a's, rotations in the left tangent at a; those of which both hold a part by
-/// their rotation vectors.
+/// b's parameters minus a's, rotations in the left tangent at a; rotations partly held in both as
+/// rotation vectors.
 Eigen::VectorXd difference_of(const Rig& a,
                               const Rig& b,
                               const CommonParameters& common,
                               const HeldInBoth& held) {
   const Eigen::VectorXd values_a = parameters(a), values_b = parameters(b);
-  Eigen::VectorXd in_order_of_b = values_b;  // of what a lacks, nothing is used
+  Eigen::VectorXd in_order_of_b = values_b;  // entries that a lacks are not used
   for (std::size_t k = 0; k < common.names.size(); ++k) {
     in_order_of_b[common.in_b[k]] -= values_a[common.in_a[k]];
   }
@@ -122,7 +122,7 @@ Eigen::VectorXd difference_of(const Rig& a,
   return in_order_of_b(common.in_b);
 }
 
-/// Its covariance; zero for what both hold.
+/// Its covariance; zero for parameters held in both.
 Eigen::MatrixXd covariance_of_difference(const Rig& a,
                                          const Covariance& covariance_a,
                                          const Rig& b,
@@ -144,12 +144,12 @@ void check_covariance(const Rig& rig, const Covariance& covariance, const char* 
   const auto n = static_cast<Eigen::Index>(covariance.names.size());
   if (covariance.names != parameter_names(rig) || covariance.matrix.rows() != n ||
       covariance.matrix.cols() != n) {
-    throw Error(place, "its covariance is of other parameters than the rig's", "");
+    throw Error(place, "its covariance does not match the rig's parameters", "");
   }
-  ScaledDecomposition{covariance};  // throws where it is not positive semi-definite
+  ScaledDecomposition{covariance};  // throws if it is not positive semi-definite
 }
 
-/// d² and what it is made of, over the parameters that have a variance.
+/// d² and its components, over the parameters with a variance.
 void measure(const Eigen::VectorXd& delta,
              const Eigen::MatrixXd& covariance,
              const std::vector<std::string>& names,
@@ -242,7 +242,7 @@ RigDifference rig_difference(const Rig& a,
       known_names.push_back(p.name);
     } else if (std::abs(p.delta) > 1e-12 * (1 + std::abs(p.a))) {
       result.fixed_at_different_values.push_back(
-          fmt::format("{} is held at {} in one and at {} in the other", p.name, p.a, p.b));
+          fmt::format("{} is fixed at {} in one and at {} in the other", p.name, p.a, p.b));
     }
     result.parameters.push_back(std::move(p));
   }

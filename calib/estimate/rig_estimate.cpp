@@ -16,7 +16,7 @@ namespace vernier {
 
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.covariance) {
-    throw Error(place, "the rig has no covariance, so there is nothing to sample from",
+    throw Error(place, "the rig has no covariance to sample from",
                 "calibrate it with vernier calibrate, or add parameter_names, parameters and "
                 "covariance by hand");
   }
@@ -73,12 +73,12 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
     throw Error("names of cameras",
                 std::to_string(names.size()) + " names for " + std::to_string(rig.cameras.size()) +
                     " cameras",
-                "give one a camera");
+                "give one per camera");
   }
   const std::set<std::string> different(names.begin(), names.end());
   if (different.size() != names.size() || different.count("")) {
-    throw Error("names of cameras", "two cameras have one name, or one has none",
-                "name each its own");
+    throw Error("names of cameras", "two cameras have the same name, or one has none",
+                "give each its own name");
   }
   const std::vector<std::string> before = parameter_names(rig);
   std::vector<std::string> cameras_before;
@@ -94,7 +94,7 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   if (estimate.covariance) rename_all(estimate.covariance->names);
   if (estimate.calibration) rename_all(estimate.calibration->held);
   if (!estimate.evidence) return;
-  for (GaussianRigPrior& prior : estimate.evidence->priors) {  // it may know fewer cameras
+  for (GaussianRigPrior& prior : estimate.evidence->priors) {  // it may have fewer cameras
     for (Camera& camera : prior.rig.cameras) {
       const auto was = std::find(cameras_before.begin(), cameras_before.end(), camera.name);
       if (was != cameras_before.end()) camera.name = names[was - cameras_before.begin()];

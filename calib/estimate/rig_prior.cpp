@@ -51,19 +51,19 @@ std::vector<bool> all_but(const std::vector<Eigen::Index>& places, const Rig& ri
 
 /// Inverse of a covariance, scaled before it is factored.
 Eigen::MatrixXd inverse_of(const Covariance& covariance) {
-  const ScaledDecomposition decomposition(covariance);  // says what is wrong with it
+  const ScaledDecomposition decomposition(covariance);  // throws if it is invalid
   const Eigen::VectorXd sd = covariance.matrix.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < sd.size(); ++i) {
     if (!(sd[i] > 0)) {
       throw Error("prior of " + covariance.names[static_cast<std::size_t>(i)], "its variance is 0",
-                  "hold a parameter that is known exactly");
+                  "fix a parameter that is known exactly");
     }
   }
   if (!(decomposition.scaled_condition() < 1e13)) {
     throw Error("prior",
                 "its covariance is singular: no variance where " +
                     decomposition.directions().back().description,
-                "give that direction a variance, or hold its parameters");
+                "give that direction a variance, or fix its parameters");
   }
   const Eigen::MatrixXd R =
       sd.cwiseInverse().asDiagonal() * covariance.matrix * sd.cwiseInverse().asDiagonal();
@@ -114,15 +114,15 @@ GaussianRigPrior gaussian_prior_of(const Rig& like, const std::vector<ParameterP
   covariance.matrix = Eigen::MatrixXd::Zero(n, n);
   for (const ParameterPrior& k : known) {
     if (!(k.sigma > 0) || !std::isfinite(k.sigma)) {
-      throw Error("prior of " + k.name, fmt::format("{} is no standard deviation", k.sigma),
-                  "give a number above 0, or hold the parameter");
+      throw Error("prior of " + k.name, fmt::format("{} is not a standard deviation", k.sigma),
+                  "give a number above 0, or fix the parameter");
     }
     const auto i = static_cast<Eigen::Index>(covariance.names.size());
     covariance.matrix(i, i) = k.sigma * k.sigma;
     covariance.names.push_back(k.name);
     values.push_back({k.name, k.value});
   }
-  places_of(covariance.names, like);  // says which there is not
+  places_of(covariance.names, like);  // throws if one is missing
   return {with_held_values(like, values), std::move(covariance)};
 }
 

@@ -20,13 +20,13 @@ struct SimulatedPairsOptions {
   SimulatedScene scene = SimulatedScene::volume;
   double nearest_m = 1.5, farthest_m = 12;  ///< even in inverse depth
   double pixel_sigma_px = 0.3;              ///< of each coordinate; 0 for none
-  double wrong_share = 0;       ///< of matches whose right corner is another one near by …
-  double wrong_radius_px = 10;  ///< … anywhere in a disc about the true one
+  double wrong_share = 0;                   ///< fraction of matches with a wrong right corner …
+  double wrong_radius_px = 10;  ///< … drawn from a disc of this radius about the true one
 };
 
-/// Pairs that both cameras of `rig` see, with white noise: what a calibration from any scene is
-/// tested and planned with. The same seed gives the same points; noise and wrong matches are drawn
-/// by trial. Throws Error where the cameras hardly see the same space.
+/// Pairs that both cameras of `rig` see, with white noise, for tests and planning. The same seed
+/// gives the same points; noise and wrong matches are drawn by trial. Throws Error if the cameras
+/// hardly see the same space.
 PairObservations simulate_pairs(const Rig& rig,
                                 std::uint64_t seed,
                                 std::uint32_t trial = 0,

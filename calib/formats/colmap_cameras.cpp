@@ -29,7 +29,7 @@ namespace {
 
 using colmap::Line;
 
-/// Where each number of a model goes. Core: fx fy cx cy by index into the parameters.
+/// Layout of a COLMAP model's parameters. Core: fx fy cx cy by index.
 struct Model {
   const char* name;
   int core[4];
@@ -50,8 +50,8 @@ const Model& find_model(const std::string& name, const std::string& place) {
   for (const Model& model : models) {
     if (name == model.name) return model;
   }
-  throw Error(place, "Vernier has no camera model like " + name,
-              "known are PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
+  throw Error(place, "unsupported camera model " + name,
+              "supported: PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
               "their simpler forms");
 }
 
@@ -87,13 +87,13 @@ std::string model_line(const Camera& camera) {
 
 const std::string& plain_name(const Camera& camera) {
   if (camera.name.find(' ') != std::string::npos) {
-    throw Error("camera \"" + camera.name + "\"", "COLMAP's names hold no blanks",
-                "name it otherwise");
+    throw Error("camera \"" + camera.name + "\"", "COLMAP's names cannot contain blanks",
+                "rename it");
   }
   return file_stem(camera);
 }
 
-/// w x y z, w at least 0.
+/// w x y z, with w >= 0.
 std::array<double, 4> quaternion(const Eigen::Matrix3d& R) {
   Eigen::Quaterniond q(R);
   q.normalize();
@@ -114,7 +114,8 @@ std::string rig_config_entry(const Camera& camera, const Pose& T, bool first) {
                                        "\"cam_from_rig_rotation\": [{}],\n        "
                                        "\"cam_from_rig_translation\": [{}, {}, {}]",
                                        fmt::join(quaternion(T.R), ", "), T.t[0], T.t[1], T.t[2]);
-  constexpr auto replace = rig_json::Json::error_handler_t::replace;  // a name may hold any bytes
+  constexpr auto replace =
+      rig_json::Json::error_handler_t::replace;  // a name may contain any bytes
   return fmt::format(
       "      {{\n        \"image_prefix\": {},\n        {},\n        "
       "\"camera_model_name\": \"{}\",\n        \"camera_params\": [{}]\n      }}",
@@ -133,7 +134,7 @@ ImportedRig read_colmap_cameras(const std::filesystem::path& file_or_folder,
   std::map<int, Camera> cameras;
   for (const Line& line : lines) {
     if (!cameras.emplace(line.whole(0), read_camera(line, options)).second) {
-      throw Error(line.place(), fmt::format("camera {} is there twice", line.whole(0)),
+      throw Error(line.place(), fmt::format("camera {} appears twice", line.whole(0)),
                   "keep one of them");
     }
   }

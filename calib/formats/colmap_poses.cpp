@@ -41,7 +41,7 @@ Pose pose(const Line& line, std::size_t at, double unit_m) {
   return pose(v.head<4>(), unit_m * v.tail<3>(), line.place());
 }
 
-/// The cameras of cameras.txt and how to read lengths.
+/// The cameras of cameras.txt and the unit of length.
 struct Cameras {
   const std::vector<Line>& lines;  ///< by ascending CAMERA_ID
   double unit_m;
@@ -106,7 +106,7 @@ PlacedId from_entry(const Node& camera, int id, double unit_m) {
   return placed;
 }
 
-/// Whether a camera has the model and the parameters of an entry, as far as decimals tell.
+/// Whether a camera has the model and the parameters of an entry, up to rounding.
 bool has_parameters(const Line& camera, const Node& entry) {
   constexpr double rounding = 1e-9;
   if (!entry.has("camera_model_name") || !entry.has("camera_params")) return false;
@@ -120,7 +120,7 @@ bool has_parameters(const Line& camera, const Node& entry) {
   return true;
 }
 
-/// The cameras of the images under each prefix, by images.txt where it is there.
+/// The cameras of the images under each prefix, from images.txt if it exists.
 using CamerasOfPrefix = std::map<std::string, std::set<int>>;
 CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const Node& entries) {
   CamerasOfPrefix found;
@@ -135,10 +135,10 @@ CamerasOfPrefix cameras_of_prefixes(const std::filesystem::path& images, const N
   return found;
 }
 
-/// The CAMERA_ID of each entry where they say it one by one, no two the same; else nothing.
-std::vector<int> ids_said(const Node& entries,
-                          const Cameras& cameras,
-                          const CamerasOfPrefix& of_prefix) {
+/// The CAMERA_ID of each entry if all are identified and distinct; else empty.
+std::vector<int> identified_cameras(const Node& entries,
+                                    const Cameras& cameras,
+                                    const CamerasOfPrefix& of_prefix) {
   std::vector<int> ids;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Node entry = entries.at(i);
@@ -173,14 +173,14 @@ std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
                 fmt::format("holds {} cameras, cameras.txt {}", entries.size(), cameras.count()),
                 "give the files of one rig");
   }
-  std::vector<int> ids =
-      ids_said(entries, cameras, cameras_of_prefixes(file.parent_path() / "images.txt", entries));
+  std::vector<int> ids = identified_cameras(
+      entries, cameras, cameras_of_prefixes(file.parent_path() / "images.txt", entries));
   if (ids.empty()) {
     for (std::size_t i = 0; i < cameras.count(); ++i) ids.push_back(cameras.id(i));
     if (cameras.count() > 1)
       notes.push_back(file.string() +
-                      ": its cameras are matched by order with those of cameras.txt: neither "
-                      "parameters nor images.txt tell which is which");
+                      ": its cameras are matched by order with those of cameras.txt, since neither "
+                      "parameters nor images.txt identify them");
   }
   std::vector<PlacedId> placed;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -204,11 +204,12 @@ std::vector<PlacedId> from_images(const std::filesystem::path& file,
   }
   if (placed.size() != cameras.count()) {
     if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
-    throw Error(file.string(),
-                fmt::format("holds {} images of {} cameras, so it does not say where the cameras "
-                            "are on the rig",
-                            placed.size(), cameras.count()),
-                "keep one frame of the rig, or give rigs.txt or rig_config.json");
+    throw Error(
+        file.string(),
+        fmt::format(
+            "holds {} images of {} cameras, so it does not define the cameras' poses on the rig",
+            placed.size(), cameras.count()),
+        "keep one frame of the rig, or give rigs.txt or rig_config.json");
   }
   return placed;
 }
@@ -225,8 +226,8 @@ std::vector<PlacedId> from_beside(const std::filesystem::path& file,
   if (cameras.count() == 1) return {{cameras.id(0), "", Pose{}}};
   throw Error(
       file.string(),
-      fmt::format("holds {} cameras and nothing beside it says where they are", cameras.count()),
-      "put rigs.txt, rig_config.json or images.txt beside it");
+      fmt::format("holds {} cameras, but no file next to it gives their poses", cameras.count()),
+      "put rigs.txt, rig_config.json or images.txt in the same folder");
 }
 
 }  // namespace

@@ -9,10 +9,10 @@
 
 #include "calib/pose.h"
 
-/// Internal to calib/: COLMAP's text files and where they say the cameras are. Not installed.
+/// Internal to calib/: COLMAP's text files and the camera poses in them. Not installed.
 namespace vernier::internal::colmap {
 
-/// The words of a line, with its place for complaints. All members throw Error.
+/// The words of a line, with its location for messages. All members throw Error.
 class Line {
  public:
   Line(const std::string& text, std::string place);
@@ -29,20 +29,20 @@ class Line {
   std::string place_;
 };
 
-/// All lines but comments and blank ones; with `skip_every_second`, without the line after each
-/// (images.txt: the points of the image, perhaps none).
+/// All lines except comments and blank ones; with `skip_every_second`, without the line after each
+/// (images.txt: the points of the image, possibly none).
 std::vector<Line> read_lines(const std::filesystem::path& file, bool skip_every_second = false);
 
 struct PlacedId {
   int id = 0;
-  std::string name;  ///< empty where unsaid
+  std::string name;  ///< empty if not given
   Pose T_camera_reference;
 };
 
-/// Poses of the cameras of the file `cameras`, whose lines are `lines` by ascending CAMERA_ID, out
-/// of what lies beside it; one camera needs none. An entry of rig_config.json names no CAMERA_ID:
-/// it is the camera that has its model and parameters, else the one that took the images under its
-/// prefix, else the one at its place, which `notes` then says.
+/// Poses of the cameras of the file `cameras`, whose lines are `lines` by ascending CAMERA_ID, from
+/// the files next to it; a single camera needs none. An entry of rig_config.json has no CAMERA_ID:
+/// it is the camera with its model and parameters, else the one with images under its prefix, else
+/// the one at its index, which is recorded in `notes`.
 std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
                                  const std::vector<Line>& lines,
                                  double unit_m,

@@ -44,8 +44,8 @@ const std::string& file_stem(const Camera& camera) {
     plain = plain && c != '/' && c != '\\' && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
   }
   if (!plain) {
-    throw Error(fmt::format("camera \"{}\"", name), "its name cannot be that of a file",
-                "name it otherwise");
+    throw Error(fmt::format("camera \"{}\"", name), "its name is not valid as a file name",
+                "rename it");
   }
   return name;
 }
@@ -53,11 +53,12 @@ const std::string& file_stem(const Camera& camera) {
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place) {
   const double deviation = (M.transpose() * M - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(deviation <= 1e-6)) {
-    throw Error(place, fmt::format("is no rotation: it is off orthonormal by {:.2g}", deviation),
+    throw Error(place,
+                fmt::format("is not a rotation: it deviates from orthonormal by {:.2g}", deviation),
                 "correct it; 1e-6 is allowed");
   }
   if (M.determinant() < 0) {
-    throw Error(place, "is no rotation but a mirror: its determinant is -1", "correct it");
+    throw Error(place, "is a reflection, not a rotation: its determinant is -1", "correct it");
   }
   if (deviation <= 1e-14) return M;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -22,7 +22,7 @@
 namespace vernier::internal {
 namespace {
 
-/// The part of a topic before the last: left of /stereo/left/image_raw.
+/// The second last component of a topic: left of /stereo/left/image_raw.
 std::string camera_of_topic(const std::string& topic) {
   const std::size_t last = topic.rfind('/');
   if (last == std::string::npos || last == 0) return "";
@@ -34,15 +34,15 @@ std::string camera_of_topic(const std::string& topic) {
 OpenCvIntrinsics read_intrinsics(const YamlNode& node) {
   const YamlNode model = node.at("camera_model");
   if (model.text() != "pinhole") {
-    throw Error(model.place(), "Vernier has no camera model like \"" + model.text() + "\"",
+    throw Error(model.place(), "unsupported camera model \"" + model.text() + "\"",
                 "calibrate with pinhole-radtan or pinhole-equi");
   }
   const std::vector<double> core = node.at("intrinsics").numbers(4);
   const YamlNode distortion = node.at("distortion_model");
   const std::string name = distortion.text();
   if (name != "radtan" && name != "equidistant" && name != "none") {
-    throw Error(distortion.place(), "Vernier has no distortion model like \"" + name + "\"",
-                "known are radtan, equidistant and none");
+    throw Error(distortion.place(), "unsupported distortion model \"" + name + "\"",
+                "supported: radtan, equidistant, none");
   }
   OpenCvIntrinsics in{core[0], core[1], core[2], core[3], name == "equidistant", {}};
   if (name != "none") in.coefficients = node.at("distortion_coeffs").numbers(4);
@@ -88,7 +88,7 @@ std::string step_text(const Pose& T) {
 ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const ImportOptions& options) {
   const YamlNode root = YamlNode::parse(read_whole(file), file.string());
   if (!root.has("cam0")) {
-    throw Error(file.string(), "is no camchain: it has no \"cam0\"", "name another file");
+    throw Error(file.string(), "is not a camchain: it has no \"cam0\"", "name another file");
   }
   ImportedRig imported;
   std::vector<PlacedCamera> cameras;
@@ -100,7 +100,7 @@ ImportedRig read_kalibr_camchain(const std::filesystem::path& file, const Import
     if (node.has("rostopic")) camera.name = camera_of_topic(node.at("rostopic").text());
     if (!camera.name.empty()) names.insert(camera.name);
     for (const char* key : {"T_cam_imu", "timeshift_cam_imu"}) {
-      if (node.has(key)) imported.notes.push_back(node.at(key).place() + " is left behind");
+      if (node.has(key)) imported.notes.push_back(node.at(key).place() + " is ignored");
     }
     const Pose T =
         i == 0 ? Pose{} : read_step(node, options.unit_m) * cameras.back().T_camera_reference;

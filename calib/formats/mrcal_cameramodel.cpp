@@ -33,7 +33,7 @@ constexpr LensModel lens_models[] = {{"LENSMODEL_PINHOLE", 0},
                                      {"LENSMODEL_OPENCV8", 8},
                                      {"LENSMODEL_OPENCV12", 12}};
 
-/// The key's value under the first of its names (mrcal renamed some) that is there.
+/// The value of the first of these names of a key (mrcal renamed some) that is present.
 const PythonLiteral* find_any(const PythonLiteral& model, std::vector<const char*> names) {
   for (const char* name : names) {
     if (const PythonLiteral* value = model.find(name)) return value;
@@ -78,7 +78,7 @@ std::size_t coefficient_count(const PythonLiteral& value, const std::string& fil
     if (name == model.name) return model.coefficients;
   }
   throw Error(fmt::format("{}:{}: lensmodel", file, value.line),
-              "Vernier has no model like " + (name.empty() ? "this" : name),
+              "unsupported lens model" + (name.empty() ? "" : " " + name),
               "convert it in mrcal first (mrcal-convert-lensmodel) to LENSMODEL_OPENCV8 or a "
               "smaller one");
 }
@@ -102,8 +102,8 @@ Pose pose(const PythonLiteral& model, const std::string& file, double unit_m) {
   const PythonLiteral& value = required(newer ? newer : older, "extrinsics", file);
   const std::vector<double> rt = numbers(value, 6, key, file);
   if (newer && older && numbers(*older, 6, "extrinsics", file) != rt) {
-    throw Error(fmt::format("{}:{}: extrinsics", file, older->line),
-                "is another pose than rt_cam_ref", "leave one of them out");
+    throw Error(fmt::format("{}:{}: extrinsics", file, older->line), "differs from rt_cam_ref",
+                "leave one of them out");
   }
   return {rotation_from_vector({rt[0], rt[1], rt[2]}),
           unit_m * Eigen::Vector3d(rt[3], rt[4], rt[5])};
@@ -117,7 +117,7 @@ PlacedCamera parse_mrcal_cameramodel(const std::string& text,
                                      std::vector<std::string>& notes) {
   const PythonLiteral model = parse_python_literal(text, place);
   if (model.kind != Kind::dictionary) {
-    throw Error(place, "is no mrcal cameramodel: it holds no { … }", "name another file");
+    throw Error(place, "is not an mrcal cameramodel: it has no { … }", "name another file");
   }
   const PythonLiteral& lens = required(
       find_any(model, {"lensmodel", "lens_model", "distortion_model"}), "lensmodel", place);
@@ -128,7 +128,7 @@ PlacedCamera parse_mrcal_cameramodel(const std::string& text,
       {values[0], values[1], values[2], values[3], false, {values.begin() + 4, values.end()}},
       image_size(model, place), place + ": intrinsics", options.model);
   for (const char* key : {"optimization_inputs", "valid_intrinsics_region"}) {
-    if (model.find(key)) notes.push_back(fmt::format("{}: {} is left behind", place, key));
+    if (model.find(key)) notes.push_back(fmt::format("{}: {} is ignored", place, key));
   }
   return {camera, pose(model, place, options.unit_m)};
 }

@@ -16,16 +16,16 @@ namespace vernier::internal {
 ///
 ///     x_camera = exp([r]x) x_reference + t
 ///
-/// as (r, t) under `extrinsics` (mrcal 2.2 and before) or `rt_cam_ref` (later ones). The format is
-/// that of mrcal's documentation of its class cameramodel. Pixels are ours: (0, 0) is the centre of
-/// the first one.
+/// as (r, t) under `extrinsics` (mrcal 2.2 and before) or `rt_cam_ref` (later versions). The format
+/// is that of mrcal's documentation of its class cameramodel. Pixel coordinates are as in Vernier:
+/// (0, 0) is the centre of the first pixel.
 ///
-/// Lens models: PINHOLE, OPENCV4, OPENCV5, OPENCV8, and OPENCV12 whose thin-prism terms are zero.
-/// All others (splined, CAHVOR, CAHVORE, …) are refused, and so is fisheye4 on writing.
+/// Lens models: PINHOLE, OPENCV4, OPENCV5, OPENCV8, and OPENCV12 if its thin-prism terms are zero.
+/// All others (splined, CAHVOR, CAHVORE, …) are rejected, and fisheye4 on writing.
 
-/// A rig of one or more files, in the frame of the first; a camera is named after its file. What a
-/// rig has no place for (optimization_inputs, valid_intrinsics_region) is noted. Throws Error for
-/// what is no cameramodel, with the line.
+/// A rig of one or more files, in the frame of the first; a camera is named after its file.
+/// Information that a rig cannot hold (optimization_inputs, valid_intrinsics_region) is noted.
+/// Throws Error, with the line, for files that are not cameramodels.
 ImportedRig read_mrcal_cameramodels(const std::vector<std::filesystem::path>& files,
                                     const ImportOptions& options = {});
 PlacedCamera parse_mrcal_cameramodel(const std::string& text,
@@ -33,8 +33,8 @@ PlacedCamera parse_mrcal_cameramodel(const std::string& text,
                                      const ImportOptions& options,
                                      std::vector<std::string>& notes);
 
-/// NAME.cameramodel for every camera, the reference being the first camera's frame. Both keys of
-/// the pose are written, numbers in the shortest form that reads back equal.
+/// NAME.cameramodel for every camera, with the first camera's frame as reference. Both keys of the
+/// pose are written, numbers in the shortest form that reads back equal.
 std::vector<ExportedFile> mrcal_cameramodels(const Rig& rig);
 
 }  // namespace vernier::internal

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t max_cameras = 9;
 
-/// The keys of several files as if they were one.
+/// The keys of several files merged into one.
 class Keys {
  public:
   explicit Keys(const std::vector<std::filesystem::path>& files) {
@@ -35,7 +35,7 @@ class Keys {
       const YamlNode root = YamlNode::parse(read_whole(file), file.string());
       for (const std::string& key : root.keys()) {
         if (!roots_.emplace(key, root).second) {
-          throw Error(file.string(), "the key \"" + key + "\" is in another of the files too",
+          throw Error(file.string(), "the key \"" + key + "\" is also in another of the files",
                       "give the files of one rig");
         }
       }
@@ -64,7 +64,7 @@ class Keys {
   std::string place_;
 };
 
-/// What the keys of camera i (from 1; 0: the only one) end in.
+/// Suffix of the keys of camera i (from 1; 0: the only one).
 std::string suffix(std::size_t i, const char* separator = "") {
   return i == 0 ? "" : separator + std::to_string(i);
 }
@@ -98,18 +98,18 @@ Eigen::Vector2i image_size(const Keys& keys,
                            const std::string& place) {
   const std::optional<Eigen::Vector2i> stated = stated_size(keys, i);
   if (!stated && !options.size_px) {
-    throw Error(place, "the file does not say how large the images are", "give their size");
+    throw Error(place, "the file does not give the image size", "give it");
   }
   if (stated && options.size_px && *stated != *options.size_px) {
     throw Error(place,
-                fmt::format("its images are {}x{} by the file and {}x{} as given", (*stated)[0],
+                fmt::format("its images are {}x{} in the file, but {}x{} was given", (*stated)[0],
                             (*stated)[1], (*options.size_px)[0], (*options.size_px)[1]),
-                "leave the size out or correct it");
+                "omit or correct the given size");
   }
   return stated ? *stated : *options.size_px;
 }
 
-/// Whether cv::fisheye's model is meant; nothing where the file does not say.
+/// Whether the model is cv::fisheye's; std::nullopt if the file does not say.
 std::optional<bool> stated_fisheye(const Keys& keys, std::size_t i) {
   for (const std::string& end : {suffix(i, "_"), std::string()}) {
     if (keys.has("fisheye_model" + end)) {
@@ -120,8 +120,8 @@ std::optional<bool> stated_fisheye(const Keys& keys, std::size_t i) {
     const std::string name = node.text();
     if (name == "fisheye" || name == "equidistant") return true;
     if (name == "plumb_bob" || name == "rational_polynomial" || name == "opencv") return false;
-    throw Error(node.place(), "Vernier has no distortion model like \"" + name + "\"",
-                "known are fisheye, opencv, plumb_bob and rational_polynomial");
+    throw Error(node.place(), "unsupported distortion model \"" + name + "\"",
+                "supported: fisheye, opencv, plumb_bob, rational_polynomial");
   }
   return std::nullopt;
 }
@@ -144,8 +144,9 @@ Camera read_camera(const Keys& keys,
                 in.fisheye ? "cv::fisheye has 4" : "OpenCV has 4, 5, 8, 12 or 14");
   }
   if (!fisheye && !in.fisheye && n == 4) {
-    notes.push_back(distortion.place() +
-                    " are taken as k1 k2 p1 p2; if cv::fisheye made them, ask for fisheye4");
+    notes.push_back(
+        distortion.place() +
+        " are read as k1 k2 p1 p2; if they are from cv::fisheye, choose the model fisheye4");
   }
   return camera_from_opencv(in, image_size(keys, i, options, matrix.place()), matrix.place(),
                             options.model);
@@ -207,8 +208,8 @@ ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& fi
 std::vector<ExportedFile> opencv_intrinsics_and_extrinsics(const Rig& rig) {
   const std::size_t count = rig.cameras.size();
   if (count > max_cameras) {
-    throw Error("rig", fmt::format("its {} cameras are more than OpenCV's keys count", count),
-                "nine are the most; choose another format");
+    throw Error("rig", fmt::format("it has {} cameras, more than OpenCV's keys allow", count),
+                "nine is the maximum; choose another format");
   }
   if (count == 1) return {{"intrinsics.yml", head + camera_text(rig.cameras[0], 0)}};
   std::string intrinsics = head, extrinsics = head;

@@ -10,10 +10,10 @@
 
 namespace vernier::internal {
 
-/// Calibrations as OpenCV's samples keep them in YAML (cv::FileStorage): K, D of each camera and
+/// Calibrations in the YAML of OpenCV's samples (cv::FileStorage): K, D of each camera and
 /// cv::stereoCalibrate's R, T of the second, x_2 = R x_1 + T, which is our T_right_left.
 ///
-/// Keys, of which those first named are written:
+/// Keys; the first of the alternatives is written:
 ///
 ///     one camera    camera_matrix | K | M, distortion_coefficients | D
 ///     a pair        M1 | K1, D1, M2 | K2, D2, R, T
@@ -21,12 +21,11 @@ namespace vernier::internal {
 ///     any           image_width, image_height | image_size, or of camera i image_width_i …;
 ///                   distortion_model or distortion_model_i: "fisheye", or fisheye_model: 1
 ///
-/// OpenCV has no keys for the size of a pair's images, for cv::fisheye and for names: other tools'
-/// files leave them out (ImportOptions.size_px stands in), and OpenCV's own programs pass over
-/// ours. Read are 4, 5, 8, 12 or 14 coefficients (those of the last two beyond the eighth must be
-/// zero).
+/// OpenCV has no keys for the image size of a pair, for cv::fisheye and for names: files of other
+/// tools lack them (use ImportOptions.size_px), and OpenCV's own programs ignore ours. 4, 5, 8, 12
+/// or 14 coefficients can be read (those beyond the eighth must be zero).
 
-/// One rig out of the keys of all `files` together (intrinsics.yml and extrinsics.yml, say). Throws
+/// One rig from the keys of all `files` together (intrinsics.yml and extrinsics.yml, say). Throws
 /// Error for a key in two of them, and for a camera matrix with skew.
 ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& files,
                                     const ImportOptions& options = {});
@@ -34,8 +33,8 @@ ImportedRig read_opencv_calibration(const std::vector<std::filesystem::path>& fi
 /// The whole rig in one file, rig.yml. Throws Error for more than nine cameras.
 std::vector<ExportedFile> opencv_calibration(const Rig& rig);
 
-/// The same keys in two, intrinsics.yml and extrinsics.yml, as OpenCV's stereo_calib writes them.
-/// One camera is one file.
+/// The same keys in two files, intrinsics.yml and extrinsics.yml, as written by OpenCV's
+/// stereo_calib. One file for a single camera.
 std::vector<ExportedFile> opencv_intrinsics_and_extrinsics(const Rig& rig);
 
 }  // namespace vernier::internal

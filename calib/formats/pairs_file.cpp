@@ -48,7 +48,7 @@ void read_row(std::string_view line,
   if (number < 0 || (!known && !seen.insert(number).second)) {
     throw Error(lines.place(),
                 number < 0 ? fmt::format("pair is {}", number)
-                           : fmt::format("image pair {} comes a second time", number),
+                           : fmt::format("image pair {} appears a second time", number),
                 number < 0 ? "number image pairs from 0" : "keep its lines together");
   }
   add_pair(pairs, number, y, sigma);
@@ -60,16 +60,17 @@ PairObservations read_pairs(const std::filesystem::path& file) {
   TextLines lines(file);
   std::string_view line;
   const bool any = lines.next(line);
-  if (any && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // a spreadsheet's mark
+  if (any && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // byte order mark
   if (!any || line != header) {
-    throw Error(file.string() + ":1", "it does not begin with the header of a pairs file",
+    throw Error(file.string() + ":1", "it has no header of a pairs file",
                 fmt::format("its first line must be {}", header));
   }
   PairObservations pairs;
   pairs.pixels_px.reserve(lines.size() / 60);
   std::set<int> seen;
   while (lines.next(line)) read_row(line, lines, seen, pairs);
-  if (pairs.size() == 0) throw Error(file.string(), "it holds no pair", "match some corners");
+  if (pairs.size() == 0)
+    throw Error(file.string(), "it contains no pair", "match at least one corner");
   return pairs;
 }
 

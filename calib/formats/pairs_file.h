@@ -8,10 +8,10 @@
 
 namespace vernier::internal {
 
-/// Reads `pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px`: one match a line under that
-/// header, those of one image pair together. Throws Error with file and line for anything that is
-/// no such line, is not finite, or has no noise above 0; see check_pairs() for what a rig says of
-/// them.
+/// Reads `pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px`: one match per line below that
+/// header, matches of one image pair together. Throws Error with file and line for a malformed
+/// line, a value that is not finite, or noise that is not above 0; check_pairs() checks them
+/// against a rig.
 PairObservations read_pairs(const std::filesystem::path& file);
 
 /// Writes the same; numbers are exact (shortest form that reads back equal).

@@ -99,7 +99,8 @@ Rig parse_cameras(const Node& node) {
     const Node camera = node.at(i);
     rig.cameras.push_back(parse_camera(camera));
     if (!names.insert(rig.cameras.back().name).second) {
-      throw Error(camera.at("name").place(), "two cameras have this name", "name each its own");
+      throw Error(camera.at("name").place(), "two cameras have this name",
+                  "give each its own name");
     }
     Pose T;
     if (i > 0) {
@@ -109,11 +110,11 @@ Rig parse_cameras(const Node& node) {
     }
     rig.T_camera_first.push_back(T);
   }
-  if (rig.cameras.empty()) throw Error(node.place(), "no camera in it", "");
+  if (rig.cameras.empty()) throw Error(node.place(), "it has no camera", "");
   return rig;
 }
 
-/// The rig's parameters that the file lists, by their indices: all, or some in the same order.
+/// Indices of the rig's parameters that the file lists: all, or some in the same order.
 std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
   const std::vector<std::string> all = parameter_names(rig);
   const std::vector<std::string> stated = rig_json::parse_texts(root, "parameter_names");
@@ -125,9 +126,10 @@ std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
     ++next;
   }
   if (next < stated.size() || stated.empty()) {
-    throw Error(root.at("parameter_names").place(), "are not the rig's parameters in their order",
+    throw Error(root.at("parameter_names").place(),
+                "are not the rig's parameters in the rig's order",
                 stated.empty() ? "see docs/file-formats.md"
-                               : fmt::format("look at {}; see docs/file-formats.md", stated[next]));
+                               : fmt::format("check {}; see docs/file-formats.md", stated[next]));
   }
   return places;
 }
@@ -138,7 +140,7 @@ void check_parameters(const Node& root, const Rig& rig, const std::vector<Eigen:
   const Eigen::VectorXd stated = node.vector(), actual = parameters(rig);
   if (stated.size() != static_cast<Eigen::Index>(listed.size())) {
     throw Error(node.place(), fmt::format("{} values for {} names", stated.size(), listed.size()),
-                "give one a name");
+                "give one per name");
   }
   for (Eigen::Index i = 0; i < stated.size(); ++i) {
     const double value = actual[listed[i]];
@@ -151,14 +153,14 @@ void check_parameters(const Node& root, const Rig& rig, const std::vector<Eigen:
   }
 }
 
-/// One flag a parameter that is not listed: it is held.
+/// One flag per parameter: true if it is not listed, hence held.
 std::vector<bool> unlisted(const Rig& rig, const std::vector<Eigen::Index>& listed) {
   std::vector<bool> held(static_cast<std::size_t>(parameter_count(rig)), true);
   for (const Eigen::Index i : listed) held[static_cast<std::size_t>(i)] = false;
   return held;
 }
 
-/// The matrix below `node`, one row a listed parameter, in the tangent; zero for the others.
+/// The matrix at `node`, one row per listed parameter, in the tangent; zero for the others.
 Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                                        const Rig& rig,
                                        const std::vector<Eigen::Index>& listed) {
@@ -167,7 +169,7 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
   if (matrix.rows() != static_cast<Eigen::Index>(listed.size())) {
     throw Error(stated.place(),
                 fmt::format("is {0}x{0} for {1} parameters", matrix.rows(), listed.size()),
-                "give one row and column a parameter");
+                "give one row and column per parameter");
   }
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     if (matrix(i, i) >= 0) continue;
@@ -188,8 +190,8 @@ Covariance parse_covariance(const Node& node,
           parse_parameter_matrix(node, rig, listed)};
 }
 
-/// JSON has no NaN: it would be written as null, which no rig file may hold but for the residual of
-/// an outlier whose frame went with it.
+/// JSON has no NaN: it would be written as null, which a rig file may contain only for the residual
+/// of an outlier whose frame was excluded too.
 void require_finite(const Json& json, const std::string& place) {
   if (json.is_number_float() && !std::isfinite(json.get<double>())) {
     throw Error(place, "is not a finite number", "a rig file cannot hold it");
@@ -205,7 +207,7 @@ void require_finite(const Json& json, const std::string& place) {
   }
 }
 
-/// A prior as the rig file that would say as much.
+/// A prior in the form of a rig file.
 Json prior_json(const GaussianRigPrior& prior) {
   RigEstimate estimate;
   estimate.rig = prior.rig;
@@ -227,7 +229,7 @@ std::vector<GaussianRigPrior> parse_priors(const Node& evidence) {
 
 }  // namespace
 
-std::string stored_warning_prefix(const std::string& place) { return place + " says of itself: "; }
+std::string stored_warning_prefix(const std::string& place) { return place + ": stored warning: "; }
 
 RigFile parse_rig(const std::string& text, const std::string& place) {
   Json json;
@@ -263,8 +265,8 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   if (root.has("calibration")) {
     estimate.calibration = rig_json::parse_summary(root.at("calibration"), estimate.rig);
-    for (const std::string& doubt : estimate.calibration->trust_warnings) {
-      file.warnings.push_back(stored_warning_prefix(place) + doubt);
+    for (const std::string& warning : estimate.calibration->trust_warnings) {
+      file.warnings.push_back(stored_warning_prefix(place) + warning);
     }
   }
   if (root.has("evidence")) {
@@ -275,7 +277,7 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   for (const auto& [key, value] : json.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
     others[key] = value;
-    file.warnings.push_back(place + ": the key \"" + key + "\" is unknown; it is kept as it is");
+    file.warnings.push_back(place + ": the key \"" + key + "\" is unknown; it is kept unchanged");
   }
   if (!others.empty()) estimate.other_keys = others.dump();
   return file;

@@ -66,7 +66,7 @@ int Node::integer() const {
 }
 
 std::string Node::text() const {
-  if (!json_.is_string()) throw Error(place_, "is not a text", "");
+  if (!json_.is_string()) throw Error(place_, "is not a string", "");
   return json_.get<std::string>();
 }
 
@@ -140,12 +140,12 @@ PairOutlier parse_pair_outlier(const Node& node) {
 
 namespace {
 
-/// The double that is written as shortly as its float is.
+/// The double with the same shortest decimal form as its float.
 double shortest(double of_float) {
   return to_real(fmt::format("{}", static_cast<float>(of_float))).value_or(of_float);
 }
 
-/// Image pair after image pair: its number, its pixels four by four, its noise.
+/// The image pairs in order: number, pixels four by four, noise.
 Json pairs_json(const PairObservations& pairs) {
   Json json = Json::array();
   for (const ImagePair& image : pairs.image_pairs) {
@@ -175,8 +175,8 @@ PairObservations parse_pairs(const Node& node) {
                                 ? Eigen::VectorXd::Constant(count, noise.number())
                                 : noise.vector();
     if (y.size() % 4 != 0 || sigma.size() != count) {
-      throw Error(one.place(), "its pixels do not go with its noise",
-                  "give four coordinates and one sigma_px a match");
+      throw Error(one.place(), "its pixels and its noise differ in number",
+                  "give four coordinates and one sigma_px per match");
     }
     for (Eigen::Index i = 0; i < count; ++i) {
       add_pair(pairs, one.at("pair").integer(), y.segment<4>(4 * i), sigma[i]);
@@ -209,7 +209,7 @@ Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig) {
     for (std::size_t i = 0; whole && i < view.ids.size(); ++i) {
       whole = view.ids[i] == static_cast<int>(i);
     }
-    if (!whole) v["ids"] = view.ids;  // left out where the whole target was seen in order
+    if (!whole) v["ids"] = view.ids;  // omitted if the whole target was seen in order
     v["pixels_px"] = Json::array();
     for (const auto& q : view.pixels_px) v["pixels_px"].push_back({q.x(), q.y()});
     json["observations"].push_back(std::move(v));
@@ -237,7 +237,7 @@ BoardView parse_view(const Node& v, const Rig& rig) {
     throw Error(v.at("ids").place(),
                 "holds " + std::to_string(v.at("ids").size()) + " corners for " +
                     std::to_string(pixels.size()) + " pixels",
-                "give one a pixel");
+                "give one per pixel");
   }
   for (std::size_t k = 0; k < pixels.array().size(); ++k) {
     const Eigen::VectorXd q = pixels.at(k).vector();

@@ -17,13 +17,13 @@ namespace vernier::internal::rig_json {
 
 using Json = nlohmann::ordered_json;
 
-/// A JSON object with the place it stands in, so that every complaint names file and key.
+/// A JSON value with its location, so that every error gives file and key.
 class Node {
  public:
   Node(const Json& json, std::string place) : json_(json), place_(std::move(place)) {}
 
   bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
-  /// Throws Error where the key is missing.
+  /// Throws Error if the key is missing.
   Node at(const std::string& key) const;
   Node at(std::size_t index) const;
   std::size_t size() const { return json_.size(); }
@@ -43,16 +43,16 @@ class Node {
   std::string place_;
 };
 
-/// Why a text is no JSON: it is empty, of another kind or broken at `byte`.
+/// Why a text is not JSON: empty, another format, or malformed at `byte`.
 Error not_json(const std::string& text, const std::string& place, std::size_t byte);
 
 Json to_json(const Eigen::VectorXd& v);
 Json to_json(const Eigen::MatrixXd& m);
 
-/// Index of the camera of that name. Throws Error where the rig has none.
+/// Index of the camera of that name. Throws Error if the rig has none.
 int camera_index(const Node& name, const Rig& rig);
 
-/// The texts listed under `key`, none where it is missing.
+/// The strings listed under `key`; empty if it is missing.
 std::vector<std::string> parse_texts(const Node& node, const std::string& key);
 
 Json summary_json(const CalibrationSummary& summary, const Rig& rig);
@@ -61,7 +61,7 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig);
 Json to_json(const PairOutlier& outlier);
 PairOutlier parse_pair_outlier(const Node& node);
 
-/// Boards and pairs; priors are rig files in themselves (calib/formats/rig_file.cpp).
+/// Boards and pairs; priors have the form of rig files (calib/formats/rig_file.cpp).
 Json evidence_json(const CalibrationEvidence& evidence, const Rig& rig);
 CalibrationEvidence parse_evidence(const Node& node, const Rig& rig);
 

@@ -23,7 +23,7 @@ struct DistortionModel {
   std::size_t least, most;
   bool fisheye;
 };
-// kannala_brandt is what some drivers call equidistant
+// some drivers call equidistant kannala_brandt
 constexpr DistortionModel distortion_models[] = {{"plumb_bob", 0, 5, false},
                                                  {"rational_polynomial", 8, 14, false},
                                                  {"equidistant", 4, 4, true},
@@ -41,16 +41,17 @@ void read_distortion(const YamlNode& root, OpenCvIntrinsics& in) {
     const bool odd = !known.fisheye && n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14;
     if (n < known.least || n > known.most || odd) {
       throw Error(coefficients.place(),
-                  fmt::format("holds {} coefficients, which {} has not", n, known.name),
+                  fmt::format("holds {} coefficients, not a number that {} has", n, known.name),
                   "plumb_bob has 4 or 5, rational_polynomial 8, equidistant 4");
     }
     return;
   }
-  throw Error(model.place(), "Vernier has no distortion model like \"" + model.text() + "\"",
-              "known are plumb_bob, rational_polynomial and equidistant");
+  throw Error(model.place(), "unsupported distortion model \"" + model.text() + "\"",
+              "supported: plumb_bob, rational_polynomial, equidistant");
 }
 
-/// Where the rectified camera is from the common one, in metres of the file: t of P = K' [I | t].
+/// Position of the rectified camera relative to the common one, in metres of the file: t of P = K'
+/// [I | t].
 Eigen::Vector3d rectified_shift(const RosCameraInfo& info, const std::string& place) {
   const auto& P = info.P;
   if (P.isZero()) return Eigen::Vector3d::Zero();
@@ -93,7 +94,7 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
 ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files,
                                  const ImportOptions& options) {
   if (files.size() > 2) {
-    throw Error(files[2].string(), "a camera_info holds no pose, only a pair's rectification",
+    throw Error(files[2].string(), "a camera_info has no poses, only a pair's rectification",
                 "give one file or the two of a pair");
   }
   std::vector<RosCameraInfo> infos;
@@ -108,7 +109,7 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
     const Eigen::Vector3d t = shifts[1] - shifts[0];
     if (t.isZero()) {
       throw Error(files[1].string() + ": projection_matrix",
-                  "has no baseline, so the files do not say where the cameras are",
+                  "has no baseline, so the files do not give the cameras' poses",
                   "give the camera_info of a calibrated pair, the left one first");
     }
     const Eigen::Matrix3d R_right_rectified = infos[1].R_rectified_camera.transpose();

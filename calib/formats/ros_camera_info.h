@@ -12,7 +12,7 @@
 
 namespace vernier::internal {
 
-/// ROS's sensor_msgs/CameraInfo, as YAML: what camera_calibration_parsers keeps (image_width,
+/// ROS's sensor_msgs/CameraInfo as YAML: the format of camera_calibration_parsers (image_width,
 /// camera_matrix, …) or the message itself (width, K, D, R, P; k, d, r, p in ROS 2).
 ///
 ///     x_rectified = R x_camera,   pixel ~ P (x_rectified, 1),   P = K' [I | t]
@@ -30,20 +30,19 @@ RosCameraInfo parse_ros_camera_info(const std::string& text,
                                     const std::string& place,
                                     const ImportOptions& options = {});
 
-/// A rig of one or two files, the left one first. The relative pose of a pair is recovered from
-/// what its files say:
+/// A rig of one or two files, the left one first. The relative pose of a pair is recovered from the
+/// rectification:
 ///
-///     R = R_rect_rightᵀ R_rect_left,   T = R_rect_rightᵀ (t_right - t_left),   t = (P03/P00,
-///     P13/P11, 0)
+///     R = R_rect_rightᵀ R_rect_left,   T = R_rect_rightᵀ (t_right - t_left),
+///     t = (P03/P00, P13/P11, 0)
 ///
-/// Throws Error where the two P share no orientation to speak of (no baseline in them), and for
-/// more than two files: CameraInfo has no poses. A camera is named by camera_name, else after its
-/// file.
+/// Throws Error if the two P give no baseline, and for more than two files, since CameraInfo has no
+/// poses. A camera is named by camera_name, else after its file.
 ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files,
                                  const ImportOptions& options = {});
 
-/// NAME.yaml in the layout of camera_calibration_parsers. For a pair,
-/// stereo/rectification/rectified_camera_info.h has the infos.
+/// NAME.yaml in the layout of camera_calibration_parsers. For a pair, use the infos of
+/// stereo/rectification/rectified_camera_info.h.
 ExportedFile format_ros_camera_info(const RosCameraInfo& info);
 
 }  // namespace vernier::internal

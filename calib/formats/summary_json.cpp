@@ -39,14 +39,14 @@ CornerOutlier parse_outlier(const Node& node, const Rig& rig) {
   return outlier;
 }
 
-/// Names of parameters, each one of the rig's: an unknown one would be freed in silence.
+/// Names of held parameters. Unknown names are rejected, since they would be freed silently.
 std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
   std::vector<std::string> held = parse_texts(node, "held");
   const std::vector<std::string> names = parameter_names(rig);
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
     throw Error(node.at("held").at(i).place(), "the rig has no parameter \"" + held[i] + "\"",
-                "name it as parameter_names does, after the camera");
+                "use a name from parameter_names");
   }
   return held;
 }
@@ -96,7 +96,7 @@ Json summary_json(const CalibrationSummary& s, const Rig& rig) {
                                 {"corner", o.id},
                                 {"image", o.image},
                                 {"pixel_px", {o.pixel_px.x(), o.pixel_px.y()}},
-                                {"residual_px", o.residual_px}});  // null where not a number
+                                {"residual_px", o.residual_px}});  // null if NaN
   }
   for (const PairOutlier& o : s.pair_outliers) {
     json["pair_outliers"].push_back(to_json(o));

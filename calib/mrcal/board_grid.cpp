@@ -12,10 +12,10 @@
 namespace vernier::internal {
 namespace {
 
-/// Points of a file have at least this many digits.
+/// Points in a file have at least this precision.
 constexpr double coincidence_m = 1e-9;
 
-/// For each point: a grid much larger than its points is none, but a point out of place.
+/// Maximum number of cells per point: in a sparser grid some point is misplaced.
 constexpr double max_cells = 4;
 
 /// Smallest distance between different coordinates along an axis.
@@ -38,7 +38,7 @@ std::vector<double> coordinates(const std::vector<Eigen::Vector3d>& points, int 
 }  // namespace
 
 BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
-  const Error refused("target", "its points are on no flat, square grid",
+  const Error refused("target", "its points are not on a flat, square grid",
                       "mrcal calibrates from chessboards only; leave mrcal out");
   const double pitch =
       std::min(pitch_along(coordinates(target_m, 0)), pitch_along(coordinates(target_m, 1)));
@@ -57,7 +57,7 @@ BoardGrid board_grid(const std::vector<Eigen::Vector3d>& target_m) {
       extent.z() > coincidence_m) {
     throw refused;
   }
-  // the longest side divided, so that rounding in one coordinate does not grow along it
+  // divide the longest side, so that the rounding error of one coordinate does not grow along it
   Eigen::Index longest = 0;
   steps.maxCoeff(&longest);
   grid.spacing_m = extent[longest] / steps[longest];

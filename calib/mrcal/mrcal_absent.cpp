@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// What stands in for calib/mrcal/mrcal_problem.cpp where libmrcal was not found.
+// Replaces calib/mrcal/mrcal_problem.cpp if libmrcal was not found.
 #include <vector>
 
 #include "calib/board_observations.h"
@@ -22,7 +22,7 @@ MrcalProblem::MrcalProblem(const BoardObservations&, const BoardState&) {
 
 MrcalProblem::~MrcalProblem() = default;
 
-// No object of the class exists, so none of these is ever called.
+// No object of the class exists, so none of these is called.
 Eigen::VectorXd& MrcalProblem::state() { return layout_->state; }
 int MrcalProblem::rig_states() const { return 0; }
 const std::vector<int>& MrcalProblem::frame_rows() const { return layout_->frame_rows; }

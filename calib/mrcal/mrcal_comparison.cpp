@@ -20,11 +20,11 @@
 namespace vernier::internal {
 namespace {
 
-/// Relative; the costs of one minimum agree to about 1e-13.
+/// Relative; the costs at the same minimum agree to about 1e-13.
 constexpr double same_minimum = 1e-9;
 
 /// Our minimum moved by one standard deviation along each principal direction.
-BoardState beside(const RefinedMinimum& ours, double pixel_sigma_px) {
+BoardState one_sigma_away(const RefinedMinimum& ours, double pixel_sigma_px) {
   const Eigen::VectorXd sd = ours.unit_bound.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (sd.array() > 0).select(sd.cwiseInverse(), 0);
   const SymmetricEigen scaled(inverse.asDiagonal() * ours.unit_bound * inverse.asDiagonal());
@@ -81,7 +81,7 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
                                const RefinedMinimum& ours,
                                double pixel_sigma_px,
                                const std::vector<bool>& held) {
-  MrcalProblem(observations, start);  // complains where the problem is none of mrcal's
+  MrcalProblem(observations, start);  // throws if mrcal cannot express the problem
   MrcalCheck check;
   try {
     check.solution = mrcal_solve(observations, start, held);
@@ -92,9 +92,9 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
     check.restarted = error.what();
   }
   const MrcalSolution first = std::move(check.solution);
-  check.solution = mrcal_solve(observations, beside(ours, pixel_sigma_px), held);
+  check.solution = mrcal_solve(observations, one_sigma_away(ours, pixel_sigma_px), held);
   check.comparison = compare(ours, check.solution, pixel_sigma_px);
-  if (first.solve_cpu_ms > 0) {  // timed from the start that both had
+  if (first.solve_cpu_ms > 0) {  // timed from the common start
     check.solution.solve_cpu_ms = first.solve_cpu_ms;
     check.solution.solve_wall_ms = first.solve_wall_ms;
   }

@@ -17,7 +17,7 @@
 namespace vernier::internal {
 namespace {
 
-/// One free column that moves the states `rows` by `by`.
+/// A free column, which moves the states `rows` by `by`.
 struct Column {
   std::vector<std::pair<int, double>> moves;
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-extern "C" {  // mrcal 2.2's header says nothing of C++
+extern "C" {  // mrcal 2.2's header has no extern "C"
 #include <mrcal/mrcal.h>
 }
 #include <cholmod.h>
@@ -27,7 +27,7 @@ struct MrcalProblem::Layout {
   int lens_parameters = 0, cameras = 0, frames = 0;
   Eigen::VectorXd state;
   std::vector<mrcal_observation_board_t> boards;
-  std::vector<mrcal_point3_t> pool;  // x, y, weight; a weight below 0 marks a corner not seen
+  std::vector<mrcal_point3_t> pool;  // x, y, weight; a negative weight marks an unobserved corner
   std::vector<int> image_sizes, frame_rows;
   mrcal_calobject_warp_t warp{};
   mrcal_problem_selections_t selections{};
@@ -148,7 +148,7 @@ void MrcalProblem::optimise() {
 MrcalEvaluation MrcalProblem::evaluate() const {
   Layout& p = *layout_;
   const int rows = p.rows(), states = static_cast<int>(p.state.size());
-  // The buffer's size is mrcal's own count: it keeps entries for corners that were not seen.
+  // The buffer's size is mrcal's own count, which includes entries for unobserved corners.
   const int entries =
       _mrcal_num_j_nonzero(p.views(), 0, p.grid.columns, p.grid.rows, p.cameras, p.cameras - 1,
                            p.frames, 0, 0, p.boards.data(), nullptr, p.selections, &p.lens);

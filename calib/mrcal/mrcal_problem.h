@@ -11,8 +11,8 @@
 
 namespace vernier::internal {
 
-/// Residuals of a problem of mrcal's and their sparse Jacobian, one row a measurement, in full
-/// units (pixels by pixels, radians, metres). Rows of corners that were not seen are zero.
+/// Residuals of an mrcal problem and their sparse Jacobian, one row per measurement, in full units
+/// (pixels by pixels, radians, metres). Rows of unobserved corners are zero.
 struct MrcalEvaluation {
   Eigen::VectorXd residual_px;
   std::vector<int> row_start;  ///< rows + 1 of them
@@ -20,28 +20,28 @@ struct MrcalEvaluation {
   std::vector<double> value;   ///< of each entry
 };
 
-/// A board calibration laid out as mrcal wants it. Outlier rejection, regularisation and the shape
-/// of the board are not among the unknowns, so the cost is Σ |project − q|² and nothing else.
+/// A board calibration in mrcal's layout, without outlier rejection, regularisation and board
+/// shape, so the cost is exactly Σ |project − q|².
 ///
 /// The state is one vector: the lens parameters of every camera, the poses (rotation vector,
 /// translation) of every camera but the first, the poses of the board.
 class MrcalProblem {
  public:
-  /// Throws Error where mrcal is not built in or cannot express the problem.
+  /// Throws Error if mrcal is not built in or cannot express the problem.
   MrcalProblem(const BoardObservations& observations, const BoardState& start);
   ~MrcalProblem();
 
   Eigen::VectorXd& state();
-  int rig_states() const;                      ///< how many come before the board poses
+  int rig_states() const;                      ///< number of states before the board poses
   const std::vector<int>& frame_rows() const;  ///< first measurement of each frame, and the end
   Eigen::VectorXd packing_scales() const;      ///< a state over mrcal's own unitless one
 
-  /// mrcal_optimize from the present state. Throws Error where it fails.
+  /// mrcal_optimize from the current state. Throws Error if it fails.
   void optimise();
-  /// mrcal_optimizer_callback at the present state.
+  /// mrcal_optimizer_callback at the current state.
   MrcalEvaluation evaluate() const;
 
-  /// The present state as ours, with `like` for names, models and frames.
+  /// The current state in our form, with names, models and frames from `like`.
   BoardState board_state(const BoardState& like) const;
 
  private:
@@ -49,7 +49,7 @@ class MrcalProblem {
   std::unique_ptr<Layout> layout_;
 };
 
-/// Whether this build has libmrcal, and the version that it was built with ("2.2").
+/// Whether this build has libmrcal, and the version it was built with ("2.2").
 bool mrcal_available();
 const char* mrcal_version();
 

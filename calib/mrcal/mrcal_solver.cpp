@@ -19,7 +19,7 @@
 namespace vernier::internal {
 namespace {
 
-/// Milliseconds since it was made.
+/// Milliseconds since construction.
 class Stopwatch {
  public:
   double cpu_ms() const { return 1e3 * static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC; }
@@ -33,7 +33,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
 };
 
-/// Rows of one frame, [B | A L | r]; zero rows (corners not seen) are left out.
+/// Rows of one frame, [B | A L | r], without the zero rows of unobserved corners.
 Eigen::MatrixXd frame_rows_of(const MrcalEvaluation& e,
                               int begin,
                               int end,
@@ -60,7 +60,7 @@ Eigen::MatrixXd frame_rows_of(const MrcalEvaluation& e,
   return rows.topRows(used);
 }
 
-/// 1 / scale of each free parameter: that of the state it moves most.
+/// 1 / scale of each free parameter, with the scale of the state it moves most.
 Eigen::VectorXd inverse_scales(const Eigen::MatrixXd& L, const Eigen::VectorXd& scales) {
   Eigen::VectorXd inverse(L.cols());
   for (Eigen::Index j = 0; j < L.cols(); ++j) {
@@ -71,7 +71,7 @@ Eigen::VectorXd inverse_scales(const Eigen::MatrixXd& L, const Eigen::VectorXd& 
   return inverse;
 }
 
-/// Levenberg and Marquardt on mrcal's residuals and Jacobian over the free parameters.
+/// Levenberg–Marquardt on mrcal's residuals and Jacobian over the free parameters.
 class ReducedSolver {
  public:
   ReducedSolver(MrcalProblem& problem, const Eigen::MatrixXd& lift)
@@ -82,11 +82,11 @@ class ReducedSolver {
         cost_(at_.residual_px.squaredNorm()) {}
 
   double cost() const { return cost_; }
-  /// The rig's correction still due, in standard deviations at a noise of σ̂.
+  /// The remaining correction of the rig, in standard deviations at a noise of σ̂.
   double distance_sigma() const { return system(0).step_sigma() / noise_px(); }
   Eigen::MatrixXd covariance() const { return system(0).covariance(); }
 
-  /// To the minimum as far as rounding lets it. False where it does not get there.
+  /// Iterates to the minimum up to rounding. False if it is not reached.
   bool solve(int max_iterations) {
     double damping = 0, before = INFINITY;
     for (int i = 0; i < max_iterations; ++i) {
@@ -99,7 +99,7 @@ class ReducedSolver {
   }
 
  private:
-  /// With damping λ > 0 every unknown has the further residual √λ times itself over its scale.
+  /// With damping λ > 0 every unknown gets an additional residual √λ times itself over its scale.
   SquareRootSystem system(double damping) const {
     const auto p = lift_.cols();
     const double root = std::sqrt(damping);
@@ -133,7 +133,7 @@ class ReducedSolver {
     return std::max(1e-9, std::sqrt(cost_ / freedom));
   }
 
-  /// One step that does not raise the cost by more than rounding, damped as much as that takes.
+  /// One step that does not raise the cost by more than rounding, with as much damping as needed.
   bool step(double& damping) {
     const Eigen::VectorXd start = problem_.state();
     for (int attempt = 0; attempt < 30; ++attempt) {
@@ -163,7 +163,7 @@ class ReducedSolver {
   double cost_;
 };
 
-/// From the free parameters to those that mrcal_parameters lists.
+/// Maps the covariance of the free parameters to those of mrcal_parameters.
 Eigen::MatrixXd shown_covariance(const Eigen::MatrixXd& reduced, const MrcalLift& lift) {
   const Eigen::MatrixXd all = lift.L * reduced * lift.L.transpose();
   return all(lift.shown, lift.shown);
@@ -181,7 +181,7 @@ MrcalSolution mrcal_solve(const BoardObservations& observations,
 
   const Eigen::VectorXd first = problem.state();
   solution.solve_cpu_ms = solution.solve_wall_ms = INFINITY;
-  for (int run = 0; run < 3; ++run) {  // the least time is the one that nothing disturbed
+  for (int run = 0; run < 3; ++run) {  // the shortest time is the least disturbed
     problem.state() = first;
     const Stopwatch watch;
     problem.optimise();

@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr int no_mrcal = 4;  // the script's exit code where Python has no mrcal
+constexpr int no_mrcal = 4;  // the script's exit code if Python has no mrcal
 
 template <typename Vector>
 Json list(const Vector& values) {
@@ -117,7 +117,7 @@ Json problem_json(const MrcalUncertaintyProblem& problem) {
   return json;
 }
 
-/// The script writes null for what is not a number.
+/// The script writes null for NaN.
 double number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
@@ -149,7 +149,7 @@ MrcalUncertaintyAnswer answer_of(const Json& json) {
   return answer;
 }
 
-/// Whether every query has an answer of its size.
+/// Whether every query has an answer of the right size.
 bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProblem& problem) {
   bool all = answer.projection.size() == problem.projection.size() &&
              answer.triangulation.size() == problem.triangulation.size();
@@ -165,7 +165,7 @@ bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProble
 }
 
 MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertaintyProblem& problem) {
-  const Error broken("mrcal", "its Python's answer is not what was asked for", "leave mrcal out");
+  const Error broken("mrcal", "its Python script gave an unexpected answer", "leave mrcal out");
   try {
     std::ifstream in(reply);
     MrcalUncertaintyAnswer answer = answer_of(Json::parse(in));
@@ -176,8 +176,8 @@ MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertainty
   throw broken;
 }
 
-/// Runs the script by the first Python that has mrcal. Where none has, what the first one said that
-/// could be run, with exit code no_mrcal; -1 where none can be run.
+/// Runs the script with the first Python that has mrcal. If none has, returns the output of the
+/// first one that could be run, with exit code no_mrcal; -1 if none can be run.
 ProgramRun run_script(const fs::path& script, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"", script.string()});
   ProgramRun answer;

@@ -14,15 +14,15 @@
 
 namespace vernier::internal {
 
-/// Points (of the camera's frame, metres; directions at infinity) whose pixel's covariance is asked
-/// for.
+/// Points (in the camera's frame, metres; directions at infinity) whose projection covariance is
+/// requested.
 struct MrcalProjectionQuery {
   int camera = 0;
   bool at_infinity = false;
   std::vector<Eigen::Vector3d> points;
 };
 
-/// Pixel pairs of the first camera and another whose point's covariance is asked for.
+/// Pixel pairs of the first camera and another whose triangulation covariance is requested.
 struct MrcalTriangulationQuery {
   int other = 1;
   bool stabilised = false;
@@ -34,7 +34,7 @@ struct MrcalTriangulationAnswer {
   std::vector<Eigen::Matrix3d> calibration, observation;
 };
 
-/// One answer a query, in their order.
+/// One answer per query, in order.
 struct MrcalUncertaintyAnswer {
   std::string absent;  ///< why there is no answer: no script, no Python, or one without mrcal
   std::string version;
@@ -42,26 +42,26 @@ struct MrcalUncertaintyAnswer {
   std::vector<MrcalTriangulationAnswer> triangulation;
 };
 
-/// A solved calibration and what is asked of it.
+/// A solved calibration with the queries about it.
 struct MrcalUncertaintyProblem {
   const BoardObservations& observations;
   const BoardState& state;    ///< the minimum
   double pixel_sigma_px = 1;  ///< of the calibration's corners and of the pairs alike
-  /// A basis of the free directions among mrcal's states of the rig (such as MrcalLift::L); without
+  /// A basis of the free directions in mrcal's states of the rig (such as MrcalLift::L); without
   /// one all of them are free and mrcal factors its own matrix.
   std::optional<Eigen::MatrixXd> basis;
   std::vector<MrcalProjectionQuery> projection;
   std::vector<MrcalTriangulationQuery> triangulation;
 };
 
-/// Asks mrcal's projection_uncertainty and triangulate by the script `python/mrcal_uncertainty.py`,
-/// run by /usr/bin/python3 (whose packages are Debian's), else by the first python3 of the path.
-/// The script is named by its absolute path. What mrcal has no number for is NaN. Throws Error
-/// where mrcal cannot express the problem or fails at it.
+/// Runs mrcal's projection_uncertainty and triangulate in the script `python/mrcal_uncertainty.py`,
+/// with /usr/bin/python3 (which has Debian's packages), else with the first python3 in PATH. The
+/// script is given by its absolute path. Values that mrcal cannot compute are NaN. Throws Error if
+/// mrcal cannot express the problem or fails.
 MrcalUncertaintyAnswer run_mrcal_uncertainty(const std::filesystem::path& script,
                                              const MrcalUncertaintyProblem& problem);
 
-/// What version of mrcal a Python here has; empty where none has it.
+/// The version of mrcal in an available Python; empty if none has it.
 std::string mrcal_python_version(const std::filesystem::path& script);
 
 }  // namespace vernier::internal

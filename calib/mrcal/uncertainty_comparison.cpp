@@ -30,7 +30,7 @@ namespace {
 
 constexpr double distances_m[] = {0.5, 1, 5, 20, std::numeric_limits<double>::infinity()};
 
-/// A grid from 5 to 95 % of the image; pixels without a ray are left out.
+/// A grid from 5 to 95 % of the image, without pixels that have no ray.
 std::vector<Eigen::Vector3d> rays(const Camera& camera) {
   std::vector<Eigen::Vector3d> found;
   for (int row = 0; row < 5; ++row) {
@@ -72,10 +72,10 @@ void add_queries(const Rig& rig, MrcalUncertaintyProblem& problem) {
   }
 }
 
-/// A basis of the free directions for mrcal, or nothing where its own factorisation will do. It
-/// loses as many digits as JᵀJ, scaled, has of condition: where they would not be enough, the basis
-/// is in standard deviations along the principal directions of our bound, which changes nothing but
-/// the rounding.
+/// A basis of the free directions for mrcal, or std::nullopt if its own factorisation is accurate
+/// enough. It loses as many digits as the condition of the scaled JᵀJ; if too many, the basis is in
+/// standard deviations along the principal directions of our bound, which affects only the
+/// rounding.
 std::optional<Eigen::MatrixXd> basis_of(const RefinedMinimum& ours, const std::vector<bool>& held) {
   constexpr double greatest_condition = 1e8;
   const MrcalLift lift = mrcal_lift(ours.state.rig, held);
@@ -96,7 +96,7 @@ std::optional<Eigen::MatrixXd> basis_of(const RefinedMinimum& ours, const std::v
   return basis;
 }
 
-/// Rig and boards with the board's shape held where it is, as mrcal has it here.
+/// Rig and boards with the board's shape fixed if it is, as in mrcal here.
 RigAndBoards joint_of(const BoardObservations& observations,
                       const RefinedMinimum& ours,
                       double pixel_sigma_px) {

@@ -22,14 +22,14 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::size_t chunk_groups = 16;  // whose sums are taken together: 128 frames
+constexpr std::size_t chunk_groups = 16;  // groups summed together: 128 frames
 
 double sum(const Lanes& lanes) {
   const double* a = lanes.of;
   return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
 }
 
-/// Held components of a rotation vector stay to the bit, not to first order only.
+/// Restores held components of a rotation vector exactly, not only to first order.
 void put_back_held(const Rig& before, const std::vector<bool>& held, Rig& rig) {
   for (int c = 1; !held.empty() && c < static_cast<int>(rig.cameras.size()); ++c) {
     const auto i = static_cast<std::size_t>(pose_index(rig, c));
@@ -101,7 +101,7 @@ ReducedSystem EliminatedBoards::reduced() const {
   const int n = parameters_;
   ReducedSystem system{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n),
                        Eigen::VectorXd::Zero(n)};
-  for (const ReducedSums& part : chunks_) {  // in their order, whoever summed them
+  for (const ReducedSums& part : chunks_) {  // in a fixed order, independent of the threads
     for (int i = 0; i < n; ++i) {
       for (int j = i; j < n; ++j) {
         system.information(j, i) += sum(part.information[packed_index(i, j, n)]);

@@ -13,15 +13,15 @@
 
 namespace vernier::internal {
 
-/// The reduced system in the tangent of (rig, warp where that is free).
+/// The reduced system in the tangent of (rig, warp if free).
 struct ReducedSystem {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient, diagonal;
   double chi2 = 0, frames_drop = 0;
 };
 
-/// A board calibration linearised with the board poses eliminated, and the way back to them: what
-/// the re-solver's steps are made of. Keeps what the last linearisation left.
+/// A linearised board calibration with the board poses eliminated, and the back-substitution: used
+/// for the re-solver's steps. Keeps the result of the last linearisation.
 class EliminatedBoards {
  public:
   EliminatedBoards(const PackedViews& views,
@@ -31,7 +31,7 @@ class EliminatedBoards {
                    int threads);
 
   ReducedSystem linearise(const BoardState& state, double damping);
-  /// The state after a step of rig and warp, each board following by the last linearisation.
+  /// The state after a step of rig and warp; the boards follow by the last linearisation.
   BoardState moved(const BoardState& state, const Eigen::VectorXd& step) const;
 
  private:
@@ -51,7 +51,7 @@ class EliminatedBoards {
   std::vector<ReducedSums> chunks_;
 };
 
-/// The free directions E of (rig, warp), a column each; empty where all are free.
+/// The free directions E of (rig, warp), one per column; empty if all are free.
 Eigen::MatrixXd directions(const Rig& rig, const std::vector<bool>& held, int parameters);
 
 }  // namespace vernier::internal

@@ -123,7 +123,7 @@ HWY_INLINE PackLoss loss_of(const Loss& loss, Pack r) {
 }
 
 constexpr int tile = 4;          // columns of a square of sums
-constexpr int chunk = 8;         // packs of rows that stand in the first cache together
+constexpr int chunk = 8;         // packs of rows that fit the first-level cache
 constexpr int max_columns = 32;  // two cameras of 12, a pose of 6, the residual; padded
 
 /// Adds the products of columns i … i + 3 by j … j + 3 over `n` packs of rows.

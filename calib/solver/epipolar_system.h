@@ -20,7 +20,7 @@ EpipolarSystem epipolar_system(const PackedPairs& packed,
                                const EpipolarProblem& problem,
                                const Eigen::MatrixXd& E);
 
-/// Sums with every residual divided by `scale`, and the loss's limit in those units.
+/// Sums with every residual divided by `scale`, and the limit of the loss in those units.
 EpipolarSums scaled_sums(const PackedPairs& packed,
                          const PackedPairs::Group* group,
                          const Rig& rig,

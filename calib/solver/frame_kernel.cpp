@@ -28,7 +28,7 @@ HWY_INLINE Pack get(const Lanes& from, int lane) { return load(from.of + lane); 
 HWY_INLINE void set(Lanes& to, int lane, Pack a) { store(a, to.of + lane); }
 HWY_INLINE void add(Lanes& to, int lane, Pack a) { store(load(to.of + lane) + a, to.of + lane); }
 
-/// row Ad: a row of derivatives by the camera's twist becomes one by the board's.
+/// row Ad: converts a row of derivatives by the camera's twist to one by the board's.
 HWY_INLINE void times_adjoint(const CameraTransform& place, const Pack (&in)[6], Pack (&out)[6]) {
   if (place.pose < 0) {  // the identity
     for (int k = 0; k < 6; ++k) out[k] = in[k];
@@ -46,7 +46,7 @@ HWY_INLINE void times_adjoint(const CameraTransform& place, const Pack (&in)[6],
   }
 }
 
-/// The sums of one frame and lane pack while it is being assembled.
+/// The sums of one frame and lane pack during assembly.
 struct Frame {
   Pack C[6][6];  // upper triangle of BᵀB
   Pack b[6];     // Bᵀr
@@ -101,7 +101,7 @@ void add_camera(const CameraTransform& place,
   }
 }
 
-/// C = L Lᵀ, then y and Z; all of it into the factor.
+/// C = L Lᵀ, then y and Z, all written to the factor.
 void factor_frame(Frame& frame, int parameters, int lane, Lanes* factor) {
   Pack L[6][6];
   for (int j = 0; j < 6; ++j) {

@@ -28,12 +28,12 @@ namespace vernier::internal {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double outlying = 5;        // times the median residual: no part of the fit
-constexpr double good_share = 0.002;  // of the image's longer side: a residual that will do
+constexpr double outlying = 5;        // times the median residual: excluded from the fit
+constexpr double good_share = 0.002;  // of the image's longer side: an acceptable residual
 constexpr int steps = 8;
 
-/// Root mean square of the smaller three quarters: falls whenever the typical views fit better, and
-/// a few bad ones count for nothing.
+/// Root mean square of the smaller three quarters: decreases whenever the typical views fit better,
+/// regardless of a few bad ones.
 double typical(std::vector<double> rms) {
   std::sort(rms.begin(), rms.end());
   rms.resize((3 * rms.size() + 3) / 4);
@@ -42,7 +42,7 @@ double typical(std::vector<double> rms) {
   return std::sqrt(sum / static_cast<double>(rms.size()));
 }
 
-/// The views of one camera as a rig of its own, and how well a guess of it fits them.
+/// The views of one camera as a rig, and the fit of a guess to them.
 class OneCamera {
  public:
   OneCamera(const BoardObservations& observations, const std::vector<BoardView>& views)
@@ -53,7 +53,7 @@ class OneCamera {
     }
   }
 
-  /// The guess with its poses from scratch.
+  /// The guess with newly estimated poses.
   InitialCamera with_poses(const Camera& camera) const {
     InitialCamera guess{camera, {}, infinite};
     for (const BoardView& view : views_) {
@@ -73,15 +73,15 @@ class OneCamera {
     return guess;
   }
 
-  /// Gauss and Newton's step of some of the camera's parameters, the poses following; halved until
-  /// it helps. Nothing where it does not.
+  /// A Gauss–Newton step of some of the camera's parameters, with the poses eliminated, halved
+  /// until it helps. std::nullopt if it does not.
   std::optional<InitialCamera> improved(const InitialCamera& guess,
                                         const std::vector<int>& free) const {
     Eigen::VectorXd step;
     try {
       step = newton_step(guess, free);
     } catch (const Error&) {
-      return std::nullopt;  // a view does not fix its board's pose: this guess leads nowhere
+      return std::nullopt;  // a view does not determine its board's pose: discard this guess
     }
     if (!step.allFinite()) return std::nullopt;
     for (double length = 1; length > 0.05; length /= 3) {
@@ -120,7 +120,8 @@ class OneCamera {
     }
     const ReducedNormalEquations equations = reduced_normal_equations(typical, state, 1);
     const Eigen::VectorXd score = equations.scores.rowwise().sum();
-    // scaled, with a little damping: a few views alone may leave a direction almost free
+    // scaled, with a little damping: a few views of one camera may leave a direction almost
+    // undetermined
     Eigen::MatrixXd S = equations.information(free, free);
     const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
     S = scale.asDiagonal() * S * scale.asDiagonal();
@@ -134,7 +135,7 @@ class OneCamera {
   std::vector<BoardView> views_;
 };
 
-/// Improves f and k1, then ax and k2 with them, as far as the model has them, then all.
+/// Improves f and k1, then also ax and k2, as far as the model has them, then all parameters.
 InitialCamera improve(const OneCamera& views, InitialCamera guess) {
   constexpr int f = 0, ax = 1, k1 = core_parameter_count;
   const int last = static_cast<int>(guess.camera.parameters.size()) - 1;
@@ -190,7 +191,7 @@ InitialCamera initial_camera(const BoardObservations& observations,
     homographies.push_back(board_homography(observations.target_m, view));
   }
   if (const auto f = focal_length_px(homographies, size)) consider(*f);
-  consider(0.8 * size.maxCoeff());  // a common lens: noise and distortion may mislead the first
+  consider(0.8 * size.maxCoeff());  // a common lens, in case noise and distortion mislead the first
   if (best.typical_rms_px < good_px) return best;
   for (const double widths : {0.5, 0.7, 0.35, 1.0, 0.25, 1.4, 2.0, 3.0}) {
     consider(widths * size[0]);

@@ -29,7 +29,7 @@ double middle(std::vector<double> values) {
   return quantile(std::move(values), 0.5, QuantileKind::upper);
 }
 
-/// Angle (radians) and the share of the translation that differs.
+/// Angle (radians) plus the relative difference of the translations.
 double distance(const Pose& a, const Pose& b) {
   return vector_from_rotation(a.R * b.R.transpose()).norm() +
          (a.t - b.t).norm() / (a.t.norm() + 1e-9);
@@ -39,7 +39,7 @@ std::string camera_name(int index) {
   return index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
 }
 
-/// The rig's cameras one by one; fills in where each saw the board.
+/// The rig's cameras one by one; also sets the board poses seen by each.
 Rig cameras_alone(const BoardObservations& observations,
                   const std::vector<CameraModel>& models,
                   PoseOfView& T_camera_board) {

@@ -11,18 +11,18 @@
 
 namespace vernier::internal {
 
-/// A start from the corners alone: every camera by itself (calib/solver/initial_camera.h), then the
-/// cameras chained by their common frames. The pose between two cameras is the median of those
-/// frames that agree with the candidate that the others agree with best, so views that are turned,
-/// swapped or not simultaneous do no harm while they are the smaller part; see check_views
-/// (calib/calibration/view_checks.h) for finding them. Throws Error where a camera has fewer than
-/// three views or shares no frame with those before it.
+/// A start from the corners alone: each camera separately (calib/solver/initial_camera.h), then the
+/// cameras chained by their common frames. The pose between two cameras is the median over the
+/// frames that agree with the candidate of best consensus, so views that are rotated, swapped or
+/// not simultaneous do not matter while they are the minority; check_views
+/// (calib/calibration/view_checks.h) finds them. Throws Error if a camera has fewer than three
+/// views or shares no frame with those before it.
 BoardState initial_state(const BoardObservations& observations,
                          const std::vector<CameraModel>& models);
 
-/// The pose that most of `candidates` agree on: about the candidate with the least median distance
-/// to the others, the median of those within three times that distance. Throws nothing; of no
-/// candidates it is the identity.
+/// The pose that most of `candidates` agree on: the median of the candidates within three times the
+/// least median distance from the candidate that has it. Does not throw; the identity if there are
+/// no candidates.
 Pose consensus_pose(const std::vector<Pose>& candidates);
 
 }  // namespace vernier::internal

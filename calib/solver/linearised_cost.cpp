@@ -32,7 +32,8 @@ LinearisedCost linearised_cost(const BoardObservations& observations,
   std::vector<bool> held = problem.held;
   held.resize(static_cast<std::size_t>(parameter_count(state.rig)), false);
   LinearisedCost cost{free_directions(state.rig, held), free_names(state.rig, held), {}};
-  if (cost.names.empty()) throw Error("calibration", "every parameter is held", "free one");
+  if (cost.names.empty())
+    throw Error("calibration", "every parameter is fixed", "free at least one");
   cost.equations = restricted(
       reduced_normal_equations(observations, state, problem.pixel_sigma_px, problem.warp),
       cost.free);

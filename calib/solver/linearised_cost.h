@@ -14,26 +14,26 @@
 
 namespace vernier::internal {
 
-/// The unified cost about a state, in the directions that are free:
+/// The unified cost linearised at a state, in the free directions:
 ///
 ///     a = a_state ⊕ E z,   χ²(z) ≈ χ² + 2 gᵀ z + zᵀ S z
 ///
 /// board poses and a free warp eliminated, priors included.
 struct LinearisedCost {
   Eigen::MatrixXd free;              ///< E (calib/held_parameters.h)
-  std::vector<std::string> names;    ///< of what is free, one a column of E
+  std::vector<std::string> names;    ///< of the free directions, one per column of E
   ReducedNormalEquations equations;  ///< of z, at the problem's noise
 };
 
-/// Adds the information that priors have at `rig`, in the directions E.
+/// Adds the information of the priors at `rig`, in the directions E.
 void add_priors(ReducedNormalEquations& equations,
                 const std::vector<RigPrior>& priors,
                 const Rig& rig,
                 const Eigen::MatrixXd& E);
 
-/// Corner weights and matched pairs are left aside. Throws Error where every parameter is held, or
-/// as check_problem and reduced_normal_equations do. minimum_variance_bound(equations, names) then
-/// says whether z is determined.
+/// Corner weights and matched pairs are ignored. Throws Error if every parameter is held, or like
+/// check_problem and reduced_normal_equations. Use minimum_variance_bound(equations, names) to
+/// check that z is determined.
 LinearisedCost linearised_cost(const BoardObservations& observations,
                                const BoardState& state,
                                const ReprojectionProblem& problem);

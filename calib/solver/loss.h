@@ -4,7 +4,7 @@
 
 namespace vernier::internal {
 
-/// What a residual r adds to the cost, in standard deviations.
+/// Contribution of a residual r, in standard deviations, to the cost.
 enum class LossShape {
   square,  ///< r²
   huber,   ///< r² up to the limit c, then 2 c |r| − c² (Huber 1964)
@@ -16,9 +16,9 @@ struct Loss {
   double gain = 1;   ///< multiplies ρ
 };
 
-/// The loss with the gain that makes its mean second derivative over standard normal residuals that
-/// of r². Against a prior, which is quadratic, residuals then weigh as much as they should: a
-/// robust loss as it stands gives them less (Tukey's at 5 a fifth less).
+/// The loss with the gain that makes its mean second derivative over standard normal residuals
+/// equal to that of r². Residuals then have the right weight against a quadratic prior; an unscaled
+/// robust loss gives them less (Tukey's at 5 a fifth less).
 Loss balanced(LossShape shape, double limit);
 
 /// ρ(r), its weight ρ'(r) / 2r, and ρ''(r) / 2, which Tukey's loss takes below zero.

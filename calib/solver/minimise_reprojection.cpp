@@ -90,8 +90,8 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.gradient_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e12;  // Gauss-Newton steps until one fails
   options.jacobi_scaling = true;
-  // Columns are scaled to one: a damping that is never below 1e-12 keeps the Schur complement of a
-  // model that the views hardly determine positive definite.
+  // Columns are scaled to one: a damping of at least 1e-12 keeps the Schur complement positive
+  // definite for a model that the views hardly determine.
   options.max_trust_region_radius = 1e12;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;  // sums in one order: the same bits every time
@@ -106,7 +106,7 @@ std::vector<int> parameters_of(const Rig& rig, int camera) {
   return own;
 }
 
-/// Throws Error for a camera that nothing in the problem says anything about.
+/// Throws Error for a camera without any data or prior.
 void check_cameras(const BoardObservations& observations,
                    const Rig& rig,
                    const ReprojectionProblem& problem) {
@@ -124,20 +124,20 @@ void check_cameras(const BoardObservations& observations,
     if (unknown == own.end()) continue;
     const std::string name = parameter_names(rig)[static_cast<std::size_t>(*unknown)];
     throw Error(fmt::format("camera {} (\"{}\")", c, rig.cameras[c].name),
-                "no view of the board is left of it, and nothing else is known of its " +
+                "it has no view of the board, and no prior gives its " +
                     name.substr(rig.cameras[c].name.size() + 1),
-                "give views of it, or hold or know all of its parameters");
+                "add views of it, or give fixed values or priors for all of its parameters");
   }
 }
 
-/// Whether the last twenty iterations brought nothing but rounding.
+/// Whether the last twenty iterations changed nothing but rounding.
 bool moves_no_more(const ceres::Solver::Summary& summary) {
   const auto& steps = summary.iterations;
   return steps.size() > 20 &&
          steps[steps.size() - 21].cost - summary.final_cost <= 1e-12 * summary.final_cost;
 }
 
-/// All residuals, before Ceres asks for the first.
+/// Evaluates all residuals before Ceres requests the first.
 class AllResiduals : public ceres::EvaluationCallback {
  public:
   AllResiduals(CompressedViews& views, CompressedPairs* pairs) : views_(views), pairs_(pairs) {}
@@ -151,7 +151,7 @@ class AllResiduals : public ceres::EvaluationCallback {
   CompressedPairs* pairs_;
 };
 
-/// Builds the Ceres problem of one calibration and owns what its blocks refer to.
+/// Builds the Ceres problem of one calibration and owns the data its blocks refer to.
 class Minimisation {
  public:
   Minimisation(const BoardObservations& observations,
@@ -181,10 +181,10 @@ class Minimisation {
     if (!summary.IsSolutionUsable() || !at_rest) {
       throw Error("calibration", "the minimisation did not converge: " + summary.message,
                   what_.pairs.size() > 0
-                      ? "look at the matches, the prior and the sides: many wrong matches, a prior "
-                        "of other cameras or swapped images do this"
-                      : "look at the corners: a mirrored or turned board, or swapped cameras, do "
-                        "this");
+                      ? "check the matches, the prior, and left and right: many wrong matches, a "
+                        "prior of other cameras or swapped images can cause this"
+                      : "check the corners: a mirrored or rotated board, or swapped cameras, can "
+                        "cause this");
     }
     BoardState state = start_;
     buffer_.write_to(state);
@@ -253,7 +253,7 @@ class Minimisation {
     for (int i = 0; i < size; ++i) {
       if (what_.held[first + i]) held.push_back(i);
     }
-    // Ceres does not know the block of a camera that is held whole and was not seen.
+    // Ceres does not have the block of a fully held camera without views.
     if (held.empty() || !problem_.HasParameterBlock(block)) return;
     if (static_cast<int>(held.size()) == size) {
       problem_.SetParameterBlockConstant(block);

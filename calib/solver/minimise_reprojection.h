@@ -12,18 +12,17 @@ namespace vernier::internal {
 ///
 ///     χ²(a) = Σ priors + Σ_i w_i |r_i(a)|² / σ²
 ///
-/// over the rig, one pose of the board a frame and, if free, the board's warp, by Ceres (dense
-/// Schur, one analytic block a view). r is the reprojection residual of the board's corners and
-/// the Sampson residual of matched pairs (calib/solver/epipolar_formulas.inc), which have σ of
-/// their own; either may be absent. Returns the state at the minimum; throws Error where Ceres
-/// finds none, as above, and for a camera without views or pairs unless each of its parameters is
-/// held or known by a prior. Whether the views determine the rig is not asked
-/// (calib/solver/linearised_cost.h).
+/// over the rig, one board pose per frame and, if free, the board's warp, by Ceres (dense Schur,
+/// one analytic block per view). r is the reprojection residual of the board's corners and the
+/// Sampson residual of matched pairs (calib/solver/epipolar_formulas.inc), which have their own σ;
+/// either may be absent. Returns the state at the minimum. Throws Error if Ceres finds none, and
+/// for a camera without views or pairs unless all its parameters are held or have a prior. Does not
+/// check that the views determine the rig (calib/solver/linearised_cost.h).
 ///
-/// Ceres warns of a linear solver's failure through glog, whatever its options; that is no fault of
-/// the result. glog's threshold is one for the whole process and not to be changed while others
-/// log, so this function leaves it alone. A program that wants silence sets FLAGS_minloglevel =
-/// google::GLOG_FATAL before its threads start, as vernier does.
+/// Ceres logs a warning through glog if a linear solve fails, whatever its options; the result is
+/// not affected. glog's threshold is global to the process and must not be changed while other
+/// threads log, so this function does not touch it. To silence it, a program sets FLAGS_minloglevel
+/// = google::GLOG_FATAL before it starts threads, as vernier does.
 BoardState minimise_reprojection(const BoardObservations& observations,
                                  BoardState start,
                                  const ReprojectionProblem& problem = {});

@@ -89,7 +89,7 @@ ReducedNormalEquations mapped(const ReducedNormalEquations& equations, const Eig
   return result;
 }
 
-/// The equations with the warp's unknowns last where it is free.
+/// The equations with the warp's unknowns last if it is free.
 ReducedNormalEquations sum_of_frames(const BoardObservations& observations,
                                      const BoardState& state,
                                      double pixel_sigma_px,
@@ -147,7 +147,7 @@ ReducedNormalEquations without_warp(const ReducedNormalEquations& equations) {
   const auto p = equations.information.rows() - 2;
   const Eigen::LLT<Eigen::Matrix2d> W(equations.information.bottomRightCorner<2, 2>());
   if (W.info() != Eigen::Success) {
-    throw Error("board warp", "the views say nothing about it", "leave it out");
+    throw Error("board warp", "the views do not constrain it", "do not estimate it");
   }
   Eigen::MatrixXd M(p + 2, p);  // a = M z = [I; -W⁻¹ X] z, with W the warp's block of S
   M.topRows(p).setIdentity();
@@ -161,7 +161,7 @@ ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E) {
   ReducedNormalEquations result = mapped(equations, E);
   result.held_poses_diagonal =
-      E.cwiseAbs2().transpose() * equations.held_poses_diagonal;  // exact where columns are axes
+      E.cwiseAbs2().transpose() * equations.held_poses_diagonal;  // exact if columns are axes
   return result;
 }
 

@@ -10,22 +10,22 @@
 
 namespace vernier::internal {
 
-/// The normal equations of a board calibration with the board poses eliminated view by view
-/// (Schur complement). With r the residuals of frame f divided by the pixel noise, A its
-/// derivative by the rig's parameters and B by the frame's pose:
+/// The normal equations of a board calibration with the board poses eliminated frame by frame
+/// (Schur complement). With r the residuals of frame f divided by the pixel noise, A their
+/// derivative with respect to the rig's parameters and B with respect to the frame's pose:
 ///
 ///     information  S = Σ_f AᵀA - AᵀB (BᵀB)⁻¹ BᵀA
 ///     score        g_f = Aᵀr - AᵀB (BᵀB)⁻¹ Bᵀr      (zero in sum at the optimum)
 ///
-/// Everything is in the tangent of calib/rig.h. A board's warp is eliminated likewise, once, after
-/// the frames.
+/// Everything is in the tangent of calib/rig.h. A free warp is eliminated in the same way, once,
+/// after the frames.
 struct ReducedNormalEquations {
   Eigen::MatrixXd information;          ///< S, parameters x parameters, prior included
-  Eigen::VectorXd held_poses_diagonal;  ///< diagonal of Σ AᵀA: the information were poses known
-  Eigen::MatrixXd scores;               ///< parameters x frames, one g_f a column
+  Eigen::VectorXd held_poses_diagonal;  ///< diagonal of Σ AᵀA: the information with known poses
+  Eigen::MatrixXd scores;               ///< parameters x frames, one g_f per column
   std::vector<Eigen::MatrixXd> frame_information;  ///< each frame's term of S
   double chi2 = 0;                                 ///< Σ r²
-  std::vector<double> frame_chi2;                  ///< one a frame
+  std::vector<double> frame_chi2;                  ///< one per frame
   int residuals = 0;                               ///< count of r
   Eigen::MatrixXd prior_information;               ///< the prior's term of S; empty without one
 };
@@ -36,23 +36,23 @@ ReducedNormalEquations reduced_normal_equations(const BoardObservations& observa
                                                 double pixel_sigma_px,
                                                 BoardWarp warp = BoardWarp::known);
 
-/// The same with the two unknowns of a free warp still there, last; of several sets of views of one
-/// board these add up, and the warp is eliminated from their sum.
+/// The same with the two unknowns of a free warp, which come last. For several sets of views of one
+/// board these are added, and the warp is eliminated from their sum.
 ReducedNormalEquations equations_with_warp(const BoardObservations& observations,
                                            const BoardState& state,
                                            double pixel_sigma_px);
-/// Throws Error where the views say nothing about it.
+/// Throws Error if the views do not constrain the warp.
 ReducedNormalEquations without_warp(const ReducedNormalEquations& equations);
 
-/// The equations of z where the parameters move by E z (calib/held_parameters.h).
+/// The equations in z if the parameters move by E z (calib/held_parameters.h).
 ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E);
 
 /// Adds a prior's information, in the same directions.
 void add_prior(ReducedNormalEquations& equations, const Eigen::MatrixXd& information);
 
-/// The same where a pixel's standard deviation is `pixel_sigma_ratio` times as large; `equations`
-/// has no prior yet.
+/// The same with a pixel's standard deviation multiplied by `pixel_sigma_ratio`; `equations` must
+/// not contain a prior.
 ReducedNormalEquations rescaled(ReducedNormalEquations equations, double pixel_sigma_ratio);
 
 }  // namespace vernier::internal

@@ -13,11 +13,11 @@
 
 namespace vernier::internal {
 
-/// Matched pairs eight at a time, image pair by image pair, the last eight of each padded.
+/// Matched pairs in groups of eight, image pair by image pair, the last group of each padded.
 class PackedPairs {
  public:
   PackedPairs() = default;  ///< of no pairs
-  /// Weights multiply squared residuals; one a row, or none.
+  /// Weights multiply squared residuals; one per row, or none.
   explicit PackedPairs(const PairObservations& pairs, const std::vector<double>& weights = {});
 
   struct Group {
@@ -47,7 +47,7 @@ struct EpipolarSums {
   double cost = 0;
 };
 
-/// Of one image pair, or of all.
+/// For one image pair, or for all.
 EpipolarSums epipolar_sums(const PackedPairs& packed,
                            const PackedPairs::Group& group,
                            const Rig& rig,

@@ -116,7 +116,7 @@ std::vector<Lanes> PackedViews::pack(const Eigen::Matrix2Xd& pixels_px) const {
     throw Error("pixels",
                 "there are " + std::to_string(pixels_px.cols()) + " for " +
                     std::to_string(slots_.size()) + " corners",
-                "give one a corner, in the order of the observations");
+                "give one per corner, in the order of the observations");
   }
   if (!pixels_px.allFinite()) {
     Eigen::Index bad = 0;

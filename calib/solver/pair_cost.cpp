@@ -21,7 +21,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The upper triangular U with UᵀU = sums, in place, packed. A column that depends on those before
-/// it to rounding gets a row of zeros; the last column keeps its length whatever rounding did.
+/// it up to rounding gets a row of zeros; the last column keeps its length regardless of rounding.
 void factor_triangle(int n, double* sums) {
   const double squares = sums[packed_index(n - 1, n - 1, n)];
   const auto at = [&](int i, int j) -> double& { return sums[packed_index(i, j, n)]; };
@@ -44,7 +44,7 @@ void factor_triangle(int n, double* sums) {
 
 }  // namespace
 
-/// The rows that CompressedPairs prepared.
+/// The rows prepared by CompressedPairs.
 class PairCost : public ceres::CostFunction {
  public:
   explicit PairCost(const CompressedPairs& all) : all_(all) {

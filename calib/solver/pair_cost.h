@@ -15,14 +15,15 @@
 
 namespace vernier::internal {
 
-/// The Sampson residuals of matched pairs as Ceres gets them: one block of as many rows as a pair's
-/// row has columns. As with CompressedViews (calib/solver/view_cost.h), a triangular factor of [J
-/// r]ᵀ [J r] stands for all rows with the same cost, gradient and Gauss–Newton matrix. One for all
-/// image pairs: those of few pairs leave more directions free than rounding lets a factor show.
+/// The Sampson residuals of matched pairs for Ceres: one block with as many rows as a pair's row
+/// has columns. As with CompressedViews (calib/solver/view_cost.h), a triangular factor of [J r]ᵀ
+/// [J r] replaces all rows with the same cost, gradient and Gauss–Newton matrix. One block for all
+/// image pairs: those with few pairs leave more directions undetermined than a factor can represent
+/// given rounding.
 class CompressedPairs : public ceres::EvaluationCallback {
  public:
-  /// Residuals are in standard deviations times `unit`; `weights` multiply their squares, one a
-  /// row, or none. Refers to `parameters`, which Ceres changes, as long as it lives.
+  /// Residuals are in standard deviations times `unit`; `weights` multiply their squares, one per
+  /// row, or none. Refers to `parameters`, which Ceres changes, during its lifetime.
   CompressedPairs(const PairObservations& pairs,
                   const std::vector<double>& weights,
                   double unit,
@@ -31,7 +32,7 @@ class CompressedPairs : public ceres::EvaluationCallback {
 
   void PrepareForEvaluation(bool jacobians, bool new_point) override;
 
-  /// Its parameter blocks are the intrinsics of both cameras and the second one's pose.
+  /// Its parameter blocks are the intrinsics of both cameras and the second camera's pose.
   std::unique_ptr<ceres::CostFunction> cost() const;
 
  private:

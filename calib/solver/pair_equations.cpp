@@ -28,7 +28,7 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
     bend += curvature_of(loss, r / sigma_scale);
     ++count;
   }
-  constexpr double min_bend = 0.3;  // below, the residuals have no shape that a loss is for
+  constexpr double min_bend = 0.3;  // below, the loss does not suit the residuals
   const double mean_bend = count > 0 ? std::max(min_bend, bend / count) : 1;
   std::vector<double> counted;
   for (const double r : residuals) {

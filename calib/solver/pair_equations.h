@@ -9,20 +9,20 @@
 
 namespace vernier::internal {
 
-/// The pairs' part of the normal equations at `rig`, a cluster for every image pair, with residuals
-/// divided by `sigma_scale`: scores Σ ρ'/2 J, and as information m Σ J Jᵀ over the pairs that
-/// count, m the mean of ρ''/2 over them (Huber 1981, section 7.6). The second derivatives pair by
-/// pair need not be positive where pairs are few.
+/// The normal equations of the pairs at `rig`, one cluster per image pair, with residuals divided
+/// by `sigma_scale`: scores Σ ρ'/2 J, and as information m Σ J Jᵀ over the pairs that count, m the
+/// mean of ρ''/2 over them (Huber 1981, section 7.6). Second derivatives pair by pair need not be
+/// positive definite if pairs are few.
 ReducedNormalEquations pair_equations(const PairObservations& pairs,
                                       const Rig& rig,
                                       const Loss& loss,
                                       double sigma_scale);
 
-/// Adds the terms and clusters of `more`; no prior in either yet.
+/// Adds the terms and clusters of `more`; neither may contain a prior.
 void add_equations(ReducedNormalEquations& equations, const ReducedNormalEquations& more);
 
-/// The same pairs with every image pair split into `cells` x `cells` of the left image, each an
-/// image pair of its own.
+/// The same pairs with every image pair split into `cells` x `cells` of the left image, each a
+/// separate image pair.
 PairObservations split_into_cells(const PairObservations& pairs,
                                   const Eigen::Vector2i& size_px,
                                   int cells);

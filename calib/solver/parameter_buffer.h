@@ -12,8 +12,8 @@
 
 namespace vernier::internal {
 
-/// A pose as Ceres sees it: rotation vector (radians) and translation (metres). Its derivative is
-/// the left tangent's times J_l, which keeps Ceres' own manifolds and their half angles out.
+/// A pose in Ceres' parameters: rotation vector (radians) and translation (metres). Its derivative
+/// is the left tangent's times J_l, which avoids Ceres' manifolds and their half angles.
 inline void write_block(const Pose& pose, double* block) {
   Eigen::Map<Eigen::Vector3d>{block} = vector_from_rotation(pose.R);
   Eigen::Map<Eigen::Vector3d>(block + 3) = pose.t;
@@ -23,8 +23,8 @@ inline Pose read_block(const double* b) {
   return {rotation_from_vector({b[0], b[1], b[2]}), {b[3], b[4], b[5]}};
 }
 
-/// All parameters in one piece of memory. Ceres orders blocks by their addresses, so separate
-/// allocations would let the order of its sums, and with it the last bits, change from run to run.
+/// All parameters in one piece of memory. Ceres orders blocks by address, so separate allocations
+/// would let the order of its sums, and the last bits of the result, vary between runs.
 class ParameterBuffer {
  public:
   explicit ParameterBuffer(const BoardState& state)

@@ -14,8 +14,8 @@ Eigen::LLT<Eigen::Matrix<double, 6, 6>> pose_factor(const Eigen::Matrix<double, 
   const Eigen::Array<double, 6, 1> pivots = factor.matrixLLT().diagonal().array().square();
   if (factor.info() != Eigen::Success ||
       !(pivots > min_pose_pivot * BtB.diagonal().array()).all()) {
-    throw Error("frame " + std::to_string(frame), "its corners do not fix the pose of the board",
-                "leave the frame out");
+    throw Error("frame " + std::to_string(frame),
+                "its corners do not determine the pose of the board", "leave the frame out");
   }
   return factor;
 }

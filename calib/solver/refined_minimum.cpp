@@ -59,7 +59,7 @@ Linearisation linearise(const BoardObservations& observations,
   return out;
 }
 
-/// False where the views leave a direction free.
+/// False if the views leave a direction undetermined.
 bool move(BoardState& state, const Linearisation& at) {
   const Eigen::VectorXd step = at.system.step();
   const Eigen::VectorXd poses = at.system.frame_steps(step);

@@ -10,22 +10,21 @@
 
 namespace vernier::internal {
 
-/// A minimum of the reprojection error to rounding.
+/// A minimum of the reprojection error up to rounding.
 struct RefinedMinimum {
   BoardState state;
   Eigen::MatrixXd unit_bound;  ///< minimum variance bound at a noise of 1 px, of all parameters
-  Eigen::MatrixXd free_bound;  ///< the same of the free directions (calib/held_parameters.h)
+  Eigen::MatrixXd free_bound;  ///< the same for the free directions (calib/held_parameters.h)
   double cost_px2 = 0;         ///< Σ r²
   double last_step_px = 0;     ///< length of the last step in standard deviations, times σ in px
-  bool converged = false;      ///< else the state is the start, and the bound is there
+  bool converged = false;      ///< if not, the state is the start, with the bound there
 };
 
-/// Takes a state near the minimum to it by Gauss and Newton's steps, which need no look at the
-/// cost: at a distance of d standard deviations the cost differs by d² σ², so a solver that
-/// compares costs in double precision stops at d about 1e-6. Steps and bound come from
-/// calib/solver/square_root_system.h, so they keep their digits where the parameters hardly differ
-/// in their effect (opencv8). `held` has one entry a parameter; empty holds none. The board keeps
-/// the warp it has.
+/// Refines a state near the minimum by Gauss–Newton steps without comparing costs: at a distance of
+/// d standard deviations the cost differs by d² σ², so a solver that compares costs in double
+/// precision stops at d about 1e-6. Steps and bound come from calib/solver/square_root_system.h, so
+/// they stay accurate if the effects of the parameters hardly differ (opencv8). `held` has one
+/// entry per parameter; empty: none held. The board's warp is kept.
 RefinedMinimum refine_minimum(const BoardObservations& observations,
                               const BoardState& start,
                               std::vector<bool> held = {});

@@ -22,11 +22,11 @@ namespace {
 
 constexpr double min_rcond = 3e-14;  // of the scaled reduced system
 constexpr double far_step = 10;      // standard deviations
-constexpr double min_rate = 0.03;    // of convergence that is counted on
+constexpr double min_rate = 0.03;    // assumed rate of convergence
 
-/// A step of the rig and how much it is worth.
+/// A step of the rig and its quality.
 struct Step {
-  bool sound = false;  // the system is positive definite with room to spare
+  bool sound = false;  // the system is positive definite with a margin
   Eigen::VectorXd tangent;
   double length = 0;     // sqrt(δᵀ S δ), standard deviations times σ̂ / σ
   double predicted = 0;  // fall of χ²
@@ -57,26 +57,26 @@ Step solve(const ReducedSystem& system, const Eigen::MatrixXd& E) {
   return step;
 }
 
-/// How far the rig may still be from the minimum after a step of `length`, in units of σ̂.
+/// Estimated distance of the rig from the minimum after a step of `length`, in units of σ̂.
 double error_after(double length, double previous) {
   const double rate = std::max(previous > 0 ? length / previous : 0.0, min_rate);
   if (rate >= 1) return std::numeric_limits<double>::infinity();
   return length * rate / (1 - rate);
 }
 
-constexpr double min_unit_px = 1e-3;  // residuals below this are taken for exact
+constexpr double min_unit_px = 1e-3;  // smaller residuals are treated as exact
 
-/// Marquardt's factor: none while Gauss–Newton steps succeed, so that these converge at their own
-/// rate; in a curved valley the least that the steps accept.
+/// Marquardt's factor: zero while Gauss–Newton steps succeed, so that they converge at their own
+/// rate; in a curved valley the smallest that makes steps succeed.
 struct Damping {
   double value = 0;
   void ease() { value = value < 1e-9 ? 0 : value / 10; }
-  /// From nothing, by little where the step that failed was short.
+  /// Raises the damping from zero, by little if the failed step was short.
   void raise(bool far) { value = value == 0 ? (far ? 1e-4 : 1e-10) : value * 30; }
   bool hopeless() const { return value > 1e8; }
 };
 
-/// The steps from one start.
+/// The iterations from one start.
 class Descent {
  public:
   Descent(EliminatedBoards& boards,
@@ -108,11 +108,11 @@ class Descent {
     ++result_.iterations;
   }
 
-  /// Whether it was the last.
+  /// Returns whether it was the last step.
   bool take_step() {
     const Step step = solve(system_, directions(result_.state.rig, cost_.held, parameters_));
     if (!step.sound) return leave_singular_point();
-    // σ̂ / σ, which a stated σ below the least that residuals show bounds from above alone
+    // σ̂ / σ, bounded from above only by a stated σ below the smallest residuals
     const double unit =
         std::min(1.0, std::max(std::sqrt(system_.chi2 / dof_), min_unit_px / cost_.pixel_sigma_px));
     const bool damped = damping_.value > 0;
@@ -144,7 +144,8 @@ class Descent {
     return false;
   }
 
-  /// Damping may lead to where the system is sound; undamped again it must be.
+  /// Damping may lead to a state where the system is well-conditioned; it must be so without
+  /// damping.
   bool leave_singular_point() {
     if (damping_.hopeless() || (was_singular_ && damping_.value == 0)) {
       return stop(ResolveStatus::singular);
@@ -230,7 +231,7 @@ Eigen::MatrixXd Resolver::covariance(const BoardState& state) const {
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
   const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
   if (!factor.is_positive_definite() || !(factor.rcond() > min_rcond)) {
-    throw Error("calibration", "the views leave a direction free",
+    throw Error("calibration", "the views leave a direction undetermined",
                 "add views at other tilts and distances, or use a model with fewer parameters");
   }
   const Eigen::MatrixXd half =

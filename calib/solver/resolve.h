@@ -12,14 +12,14 @@
 namespace vernier::internal {
 
 struct ResolveOptions {
-  double tolerance_sigma = 1e-7;  ///< largest error left, in standard deviations of the rig
+  double tolerance_sigma = 1e-7;  ///< largest remaining error, in standard deviations of the rig
   int threads = 1;                ///< the result does not depend on it
 };
 
 enum class ResolveStatus {
   converged,
-  iteration_limit,  ///< the state is the best that was met
-  singular,         ///< the observations leave a direction free, or a frame's pose
+  iteration_limit,  ///< the state is the best one found
+  singular,         ///< the observations leave a direction or a frame's pose undetermined
 };
 
 struct ResolveResult {
@@ -27,25 +27,25 @@ struct ResolveResult {
   double chi2 = 0;     ///< Σ (r / σ)², with the prior's term
   int iterations = 0;  ///< linearisations
   ResolveStatus status = ResolveStatus::singular;
-  double error_left_sigma = 0;  ///< estimate of what separates the rig from the minimum
+  double error_left_sigma = 0;  ///< estimated distance of the rig from the minimum
 };
 
-/// Solves a board calibration again and again: the cost of minimise_reprojection(), priors, held
-/// parameters and a free warp included, for other pixels of the same corners (Monte-Carlo) or from
-/// another start.
+/// Solves a board calibration repeatedly: with the cost of minimise_reprojection(), including
+/// priors, held parameters and a free warp, for other pixels of the same corners (Monte Carlo) or
+/// from another start.
 ///
-/// Gauss–Newton with Levenberg–Marquardt damping where a step fails. Each view gives the normal
-/// equations of (intrinsics, twist of T_camera_board, residual); the derivative by the board's pose
-/// is that by the camera's twist times a 6 x 6 adjoint; board poses are eliminated frame by frame
-/// (docs/calibration.md, "Re-solving").
+/// Gauss–Newton with Levenberg–Marquardt damping if a step fails. Each view gives the normal
+/// equations of (intrinsics, twist of T_camera_board, residual); the derivative with respect to the
+/// board's pose is that by the camera's twist times a 6 x 6 adjoint; board poses are eliminated
+/// frame by frame (docs/calibration.md, "Re-solving").
 ///
-/// Stops when the length of the step in standard deviations, sqrt(δᵀ S δ) / σ̂, times the rate at
-/// which these lengths fall leaves less than tolerance_sigma. Thread-safe; the same bits for any
-/// number of threads.
+/// Stops when the length of the step in standard deviations, sqrt(δᵀ S δ) / σ̂, times its rate of
+/// decrease is below tolerance_sigma. Thread-safe; bitwise the same result for any number of
+/// threads.
 class Resolver {
  public:
-  /// `around` supplies models, frames and, where it is known, the warp. Observations sorted as by
-  /// check_and_sort; throws Error where they do not match the state, or the problem the rig.
+  /// `around` provides models, frames and, if it is known, the warp. Observations must be sorted by
+  /// check_and_sort. Throws Error if they do not match the state, or the problem the rig.
   Resolver(const BoardObservations& observations,
            const BoardState& around,
            ReprojectionProblem problem = {},
@@ -53,14 +53,14 @@ class Resolver {
 
   /// With the observed pixels, from `around`.
   ResolveResult resolve() const;
-  /// With other pixels, a column a corner in the order of the observations. Throws Error for
+  /// With other pixels, one column per corner in the order of the observations. Throws Error for
   /// pixels that are not finite or too few.
   ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px) const;
   ResolveResult resolve(const Eigen::Matrix2Xd& pixels_px, const BoardState& start) const;
 
-  /// The minimum variance bound at `state`, parameters x parameters, zero where held: the inverse
-  /// of the reduced information, priors included, a free warp eliminated. Throws Error where it is
-  /// singular.
+  /// The minimum variance bound at `state`, parameters x parameters, zero for held ones: the
+  /// inverse of the reduced information, priors included, a free warp eliminated. Throws Error if
+  /// it is singular.
   Eigen::MatrixXd covariance(const BoardState& state) const;
 
  private:

@@ -44,7 +44,7 @@ EpipolarMinimum PairResolver::minimise(const Rig& start, const EpipolarProblem& 
     const Rig rig = retract(best.rig, E * step);
     const Eigen::MatrixXd E_there = free_directions(rig, held);
     EpipolarSystem there = epipolar_system(*packed_, rig, problem, E_there);
-    // A cost that is the same to rounding may rise by it.
+    // Accept a rise of the cost within rounding.
     if (std::isfinite(there.cost) && there.cost <= system.cost * (1 + 1e-12)) {
       best.rig = rig;
       system = std::move(there);

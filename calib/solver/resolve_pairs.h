@@ -15,11 +15,11 @@ namespace vernier::internal {
 
 class PackedPairs;
 
-/// What stands in the cost beside the pairs, and how they count.
+/// The terms of the cost other than the pairs, and the loss of the pairs.
 struct EpipolarProblem {
   std::vector<RigPrior> priors;
-  std::vector<bool> held;  ///< one a parameter of the rig (held_mask); empty: all free
-  double sigma_scale = 1;  ///< multiplies the noise that the pairs state
+  std::vector<bool> held;  ///< one per parameter of the rig (held_mask); empty: all free
+  double sigma_scale = 1;  ///< multiplies the stated noise of the pairs
   Loss loss;               ///< its limit in standard deviations, scaled
   int max_iterations = 100;
 };
@@ -37,9 +37,9 @@ struct EpipolarMinimum {
 ///
 ///     χ²(a) = Σ priors + Σ_i ρ(r_i(a) / s)
 ///
-/// by Gauss and Newton's steps, weighted where the loss is robust, damped where a step fails. The
-/// kernels are those of the solver of record (minimise_reprojection), which is its oracle; this is
-/// for solving many times over. A step below 1e-8 standard deviations ends it.
+/// by Gauss–Newton steps, weighted for a robust loss, damped if a step fails. Uses the kernels of
+/// the reference solver (minimise_reprojection), against which it is tested; for solving many
+/// times. Stops at a step below 1e-8 standard deviations.
 class PairResolver {
  public:
   explicit PairResolver(const PairObservations& pairs);

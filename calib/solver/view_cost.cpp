@@ -36,7 +36,7 @@ Eigen::Matrix<double, 6, 6> twist_by_block(const double* block) {
 
 }  // namespace
 
-/// One view's rows of what CompressedViews prepared.
+/// One view's rows prepared by CompressedViews.
 class ViewCost : public ceres::CostFunction {
  public:
   ViewCost(const CompressedViews& all, const CompressedViews::Place& place)

@@ -18,18 +18,18 @@
 
 namespace vernier::internal {
 
-/// The reprojection residuals of all views as Ceres gets them: one block a view, of as many rows as
-/// its system has columns. With J the derivatives of a view's 2n residuals r,
+/// The reprojection residuals of all views for Ceres: one block per view, with as many rows as its
+/// system has columns. With J the derivatives of a view's 2n residuals r,
 ///
 ///     [J r]ᵀ [J r] = Uᵀ U,   U = [J' r'] upper triangular
 ///
 /// so r' and J' have the cost, the gradient and the Gauss–Newton matrix of r and J at a tenth of
-/// the size. A normal equations solver, which squares them anyway, loses nothing. Where only the
-/// cost is asked for, r' is (|r|, 0, …). All views are evaluated together before Ceres asks for
-/// the first, with the re-solver's kernels (calib/solver/view_kernel.h), in pixels.
+/// the size. A solver of normal equations, which squares them anyway, loses nothing. If only the
+/// cost is requested, r' is (|r|, 0, …). All views are evaluated together before Ceres requests the
+/// first, with the re-solver's kernels (calib/solver/view_kernel.h), in pixels.
 class CompressedViews : public ceres::EvaluationCallback {
  public:
-  /// Refers to `parameters`, which Ceres changes, as long as it lives.
+  /// Refers to `parameters`, which Ceres changes, during its lifetime.
   CompressedViews(const BoardObservations& observations,
                   const BoardState& start,
                   const ReprojectionProblem& problem,
@@ -38,29 +38,29 @@ class CompressedViews : public ceres::EvaluationCallback {
   void PrepareForEvaluation(bool jacobians, bool new_point) override;
 
   /// The block of a view, by its index in the observations. Its parameter blocks are the
-  /// intrinsics, the board's pose, for every camera but the first the camera's pose, and the
-  /// warp where it is free.
+  /// intrinsics, the board's pose, for every camera but the first the camera's pose, and the warp
+  /// if it is free.
   std::unique_ptr<ceres::CostFunction> cost(std::size_t view) const;
 
  private:
   friend class ViewCost;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  /// Where a view stands among the lanes.
+  /// Position of a view in the lanes.
   struct Place {
     std::size_t sums = 0;  // index of its packed triangle
     int lane = 0, camera = 0, frame = 0, columns = 0;
   };
 
   void evaluate_group(std::size_t group, bool jacobians);
-  /// The twist of T_camera_board by the block of the board's pose.
+  /// The derivative of the twist of T_camera_board with respect to the block of the board's pose.
   Matrix6 board_twist(const Place& place) const;
 
   PackedViews views_;
   const ParameterBuffer& parameters_;
   BoardState state_;
   std::vector<Lanes> pixels_;
-  std::vector<Place> places_;                    // one a view
+  std::vector<Place> places_;                    // one per view
   std::vector<std::vector<std::size_t>> first_;  // of a group's camera: index of its sums
   std::vector<Lanes> sums_;  // triangles of U; of a view evaluated without, χ² in the first
   bool with_jacobians_ = false;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/solver/view_kernel.h"
 
-// A machine has AVX-512, AVX2 or, rarely, SSE2 alone; what lies between gains nothing here. The
+// Machines have AVX-512, AVX2 or, rarely, only SSE2; targets in between gain nothing here. The
 // formulas keep packs in arrays, which vectors without a fixed size (SVE, RVV) do not allow.
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -24,10 +24,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "calib/camera/corner_formulas.inc"
 #include "calib/solver/pack.inc"
 
-/// Corners whose rows stand in the first cache together: 16 x 2 x 14 columns x 64 bytes.
+/// Corners whose rows fit the first-level cache together: 16 x 2 x 14 columns x 64 bytes.
 constexpr int chunk_corners = 16;
 
-/// Where u's (or v's) row adds its product of columns i <= j: see corner_rows().
+/// Index of the sum for the product of columns i <= j of the row of u (or v): see corner_rows().
 constexpr std::size_t sum_index(bool v, int i, int j, int columns) {
   const auto place = [v](int c) { return c < 2 ? 2 * c + (v ? 1 : 0) : c + 2; };
   return packed_index(place(i), place(j), columns + 2) * kernel_lanes;
@@ -191,7 +191,7 @@ void factor_views(int n, double* sums) {
   const auto at = [&](int i, int j) { return sums + packed_index(i, j, n) * kernel_lanes; };
   for (int lane = 0; lane < kernel_lanes; lane += pack_lanes) {
     for (int i = 0; i < n; ++i) {
-      // What rounding leaves of the pivot is nothing: below n ε of the column's own square.
+      // A pivot below n ε of the column's own square is rounding.
       const Pack full = load(at(i, i) + lane);
       Pack pivot = full;
       for (int k = 0; k < i; ++k) {

@@ -9,16 +9,16 @@
 
 namespace vernier::internal {
 
-/// Views are worked on eight at a time, one a SIMD lane: sums over corners then need no sums over
-/// lanes, and their order does not depend on the width of the registers.
+/// Views are processed eight at a time, one per SIMD lane: sums over corners need no sums over
+/// lanes, and their order does not depend on the register width.
 inline constexpr int kernel_lanes = 8;
 
-/// Doubles a corner takes in the packed target (X, Y, Z, 1/σ, and two warp shapes) and in the
-/// packed pixels (u, v), eight lanes each.
+/// Doubles per corner in the packed target (X, Y, Z, 1/σ, and two warp shapes) and in the packed
+/// pixels (u, v), eight lanes each.
 inline constexpr int target_stride(bool warp) { return (warp ? 6 : 4) * kernel_lanes; }
 inline constexpr int pixel_stride = 2 * kernel_lanes;
 
-/// Columns of a view's system: f_x f_y o_x o_y k1 …, twist (6), warp (2 where free), residual.
+/// Columns of a view's system: f_x f_y o_x o_y k1 …, twist (6), warp (2 if free), residual.
 inline int view_columns(const CameraModel& model, bool warp) {
   return parameter_count(model) + (warp ? 9 : 7);
 }
@@ -38,9 +38,9 @@ struct ViewLanes {
   const double* pose;        ///< T_camera_board: R row by row, t; 12 x 8 lanes
   const double* target;      ///< corners x target_stride
   const double* pixels;      ///< corners x pixel_stride
-  int corners;               ///< of the view that has most; others are padded with weight 0
-  bool warp;                 ///< whether the warp's columns are formed
-  double warp_m[2];          ///< then the warp itself, else 0: the target holds it
+  int corners;               ///< of the view with most; others are padded with weight 0
+  bool warp;                 ///< whether the columns of the warp are computed
+  double warp_m[2];          ///< the warp if `warp` is set, else 0: the target includes it
 };
 
 /// The normal equations [J r]ᵀ [J r] of eight views, packed upper triangle of view_columns() by
@@ -51,8 +51,8 @@ void sum_views(const ViewLanes& views, double* sums);
 void sum_residuals(const ViewLanes& views, double* chi2);
 
 /// The upper triangular factor U of each view's system, sums = UᵀU, in place: as many rows as
-/// columns stand for all the view's corners with the same cost, gradient and Gauss–Newton matrix.
-/// A column that depends on those before it to rounding gets a row of zeros.
+/// columns replace all corners of the view with the same cost, gradient and Gauss–Newton matrix. A
+/// column that depends on those before it up to rounding gets a row of zeros.
 void factor_views(int columns, double* sums);
 
 }  // namespace vernier::internal

@@ -17,17 +17,16 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// A value computed from some of the clusters, the same one several times perhaps: numbers in
-/// [0, clusters).
+/// A value computed from a resample of the clusters, given as indices in [0, clusters), possibly
+/// repeated.
 using ClusterStatistic = std::function<double(std::span<const std::size_t> clusters)>;
 
 /// Percentile interval of a statistic under resampling of whole clusters with replacement (Efron
 /// 1979; Davison and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and
-/// 5.3): scenes, views or draws whose parts are not independent of each other. Values that are no
-/// numbers are left out. It is too narrow where clusters are few: of a mean, at 95 %, by 17 % at
-/// eleven and by a half at four; cluster_interval (calib/statistics/cluster_interval.h) corrects
-/// that. Both ends are not a number where fewer than two clusters or no value are given. Throws
-/// Error for options out of bounds.
+/// 5.3), for scenes, views or draws with correlated parts. NaN values are dropped. The interval is
+/// too narrow for few clusters: for a mean at 95 %, by 17 % with eleven and by a half with four;
+/// cluster_interval (calib/statistics/cluster_interval.h) corrects that. Both ends are NaN for
+/// fewer than two clusters or no value. Throws Error for options out of bounds.
 Interval bootstrap_interval(std::size_t clusters,
                             const ClusterStatistic& statistic,
                             const BootstrapOptions& options = {});

@@ -7,20 +7,20 @@
 
 namespace vernier::internal {
 
-/// 95 % interval of a figure whose samples are alike within clusters. With K clusters the
-/// percentiles q of their bootstrap (calib/statistics/bootstrap.h) are drawn away from the figure v
-/// itself by
+/// 95 % interval of a statistic whose samples are correlated within clusters. With K clusters the
+/// percentiles q of their bootstrap (calib/statistics/bootstrap.h) are moved away from the value v
+/// by
 ///
 ///     v − f (v − q_0.025),  v + f (q_0.975 − v),   f = t_{K−1, 0.975} / z_0.975 √(K / (K − 1))
 ///
-/// because few clusters scatter less about their own mean than about the truth. A standard
-/// deviation (`is_scale`) errs by a factor, and downwards where there is little to tell it from, so
-/// its interval is the reverse one of the logarithm,
+/// because few clusters scatter less about their own mean than about the truth. The error of a
+/// standard deviation (`is_scale`) is multiplicative, and downwards for small samples, so its
+/// interval is the reverse one of the logarithm,
 ///
 ///     v (v / q_0.975)^f,  v (v / q_0.025)^f
 ///
-/// unless it is hardly different from 0 (q_0.025 < v / 2). Not a number for fewer than three
-/// clusters, and without resamples.
+/// unless it is hardly different from 0 (q_0.025 < v / 2). NaN for fewer than three clusters, and
+/// without resamples.
 Interval cluster_interval(int clusters,
                           const ClusterStatistic& statistic,
                           const BootstrapOptions& options = {.resamples = 999},

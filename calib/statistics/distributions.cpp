@@ -19,7 +19,7 @@
 namespace vernier::internal {
 namespace {
 
-// Doubles throughout: long double would cost five times as much for digits nobody reads.
+// Doubles throughout: long double would cost five times as much for no benefit.
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>,
                                              boost::math::policies::promote_float<false>>;
 using ChiSquared = boost::math::chi_squared_distribution<double, Policy>;
@@ -45,7 +45,8 @@ void check_probability(const char* distribution, double p) {
 
 void check_binomial(int trials, double probability) {
   if (trials < 0 || !(probability >= 0 && probability <= 1)) {
-    throw Error("binomial distribution", "its trials are negative or its probability none", "");
+    throw Error("binomial distribution",
+                "its trials are negative or its probability is not in [0, 1]", "");
   }
 }
 

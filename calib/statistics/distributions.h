@@ -9,11 +9,11 @@
 
 namespace vernier::internal {
 
-// Distributions, by Boost.Math. A cdf is P(X <= x), a survival function P(X > x), each computed by
-// itself and not as one less the other, so that both tails keep their relative accuracy. All throw
-// Error for degrees of freedom that are not above 0, a p outside (0, 1) and an x that is no number.
+// Distributions, by Boost.Math. A cdf is P(X <= x), a survival function P(X > x), each computed
+// directly and not as one minus the other, so that both tails keep their relative accuracy. All
+// throw Error for degrees of freedom not above 0, a p outside (0, 1) and an x that is NaN.
 
-/// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h), which draws.
+/// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h).
 double normal_cdf(double z);
 double normal_survival(double z);
 
@@ -38,8 +38,8 @@ double beta_quantile(double p, double a, double b);
 double binomial_cdf(int successes, int trials, double probability);
 double binomial_survival(int successes, int trials, double probability);
 
-/// Probability that a sample from a distribution lies as far from its distribution function as
-/// `sample` does from `cdf` (Kolmogorov's limit with Stephens' correction for n >= 4).
+/// p-value of the Kolmogorov–Smirnov test of `sample` against `cdf` (Kolmogorov's limit with
+/// Stephens' correction for n >= 4).
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf);
 
 /// p-values adjusted for their number by Holm's step-down method (Holm 1979): a hypothesis with an

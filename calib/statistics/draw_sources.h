@@ -6,17 +6,17 @@
 
 namespace vernier::internal {
 
-/// Who draws: the source number of RandomCounter. One list for the whole project, so that no two
-/// processes ever share a stream. Numbers are part of every stored result: never reuse one.
+/// The source number of RandomCounter. One list for the whole project, so that no two processes
+/// share a stream. Numbers are part of every stored result: never reuse one.
 enum class DrawSource : std::uint32_t {
-  calibration = 1,         // psi_c, the rig that a query or (trial 2^31 + block) a map is told
+  calibration = 1,         // psi_c, the rig used by a query or (trial 2^31 + block) a map
   lateral_shift = 2,       // psi_l
   edge_loss = 3,           // psi_e
   endpoint_noise = 4,      // psi_g
   stereo_mismatch = 5,     // psi_s
   corner_loss = 6,         // psi_cd
   corner_mismatch = 7,     // psi_cm
-  query_pose = 8,          // where a query stands
+  query_pose = 8,          // pose of a query
   simulated_board = 10,    // poses and pixel noise of simulated calibrations
   office = 11,             // generated worlds
   monte_carlo = 12,        // propagation by sampling

@@ -12,15 +12,16 @@
 
 namespace vernier::internal {
 
-/// How a quantile is taken from a sample of n values x_0 <= … <= x_{n−1} (Hyndman and Fan, "Sample
-/// quantiles in statistical packages", 1996).
+/// Definitions of the quantile of n values x_0 <= … <= x_{n−1} (Hyndman and Fan, "Sample quantiles
+/// in statistical packages", 1996).
 enum class QuantileKind {
   lower,   ///< x_k, k = ⌊p (n − 1)⌋
   upper,   ///< x_k, k = ⌊p n⌋ (at most n − 1): of an even number of values the larger median
   linear,  ///< linear between the two values beside p (n − 1), their type 7
 };
 
-/// The p-quantile of `values`, p in [0, 1]. Throws Error for no values or another p.
+/// The p-quantile of `values`, p in [0, 1]. Throws Error if there are no values or p is out of
+/// range.
 template <class T>
 T quantile(std::vector<T> values, double p, QuantileKind kind) {
   if (values.empty()) throw Error("quantile", "there are no values", "give at least one");

@@ -8,28 +8,28 @@
 
 namespace vernier::internal {
 
-/// Where a random draw belongs. The generator has no state beyond this: the same place draws the
-/// same numbers whatever else is drawn, in whatever order, on any number of threads.
+/// Identifies a random draw. The generator has no other state: the same counter gives the same
+/// numbers whatever else is drawn, in any order, on any number of threads.
 struct RandomCounter {
   std::uint64_t seed = 0;
   std::uint32_t trial = 0;
   std::uint32_t feature = 0;  ///< identity of the thing, never its position in a list
   std::uint32_t source = 0;   ///< 8 bits: which process draws
   std::uint32_t eye = 0;      ///< 2 bits: 0 left, 1 right
-  std::uint32_t frame = 0;    ///< 22 bits: time step or look
+  std::uint32_t frame = 0;    ///< 22 bits: time step or observation
 };
 
-/// `place` for what a camera sees in a frame, another one for every frame from 0 and every camera
-/// from 0 to 63: sets the feature and, with what does not fit into its 32 bits, the counter's
-/// frame.
+/// `place` for the view of a camera in a frame, distinct for every frame from 0 and every camera
+/// from 0 to 63: sets the feature and, with the part that exceeds its 32 bits, the counter's frame.
 RandomCounter of_view(RandomCounter place, int frame, int camera);
 
-/// Stream of random numbers at one place: Philox4x32-10 (Salmon et al., "Parallel random numbers:
-/// as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye · frame,
-/// draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples monotonically.
+/// Stream of random numbers for one counter: Philox4x32-10 (Salmon et al., "Parallel random
+/// numbers: as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye
+/// · frame, draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples
+/// monotonically.
 class RandomStream {
  public:
-  /// Throws Error where source, eye or frame exceed their bits.
+  /// Throws Error if source, eye or frame exceed their bits.
   explicit RandomStream(const RandomCounter& place);
 
   double uniform();                         ///< in (0, 1), 53 bits

@@ -10,10 +10,10 @@ namespace vernier::internal {
 ///
 ///     D⁻¹ A D⁻¹ = U diag(s) Uᵀ,   D² = diag A
 ///
-/// which is also its singular value decomposition. Rows whose diagonal is not above 0 take no part.
+/// which is also its singular value decomposition. Rows with a diagonal not above 0 are ignored.
 struct ScaledEigen {
   Eigen::VectorXd deviations;  ///< D
-  Eigen::VectorXd values;      ///< s, largest first; of equal ones in the order of the rows
+  Eigen::VectorXd values;      ///< s, largest first; equal ones in the order of the rows
   Eigen::MatrixXd directions;  ///< U
 
   explicit ScaledEigen(const Eigen::MatrixXd& matrix);

@@ -28,7 +28,7 @@ void check_pair(const Rig& rig) {
               "give a rig of two");
 }
 
-/// Depth of the left ray where it passes nearest the right one.
+/// Depth of the point on the left ray closest to the right ray.
 double depth_of(const Rig& rig, const Eigen::Vector3d& a, const Eigen::Vector3d& right_ray) {
   const Pose T_left_right = rig.T_camera_first[1].inverse();
   const Eigen::Vector3d b = T_left_right.R * right_ray;

@@ -8,8 +8,8 @@
 
 namespace vernier::internal {
 
-/// Linearised at `state`. A board whose warp is not zero had its warp estimated; that of a flat one
-/// was held. Throws Error where the corners of a frame do not fix the pose of its board.
+/// Linearised at `state`. The warp counts as estimated if it is not zero, as fixed for a flat
+/// board. Throws Error if the corners of a frame do not determine the pose of its board.
 ConditionalBoardPoses conditional_board_poses(const BoardObservations& observations,
                                               const BoardState& state);
 

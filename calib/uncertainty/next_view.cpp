@@ -37,7 +37,7 @@ double sd_after(const Eigen::MatrixXd& F, const CandidateView& view, const Targe
   return std::sqrt(half.squaredNorm() / static_cast<double>(wanted.gradient.rows()));
 }
 
-/// Standard deviations after each candidate alone.
+/// Standard deviations after adding each candidate alone.
 std::vector<double> ratings(const Eigen::MatrixXd& F,
                             const std::vector<CandidateView>& candidates,
                             const TargetQuantity& wanted) {
@@ -48,14 +48,14 @@ std::vector<double> ratings(const Eigen::MatrixXd& F,
 }
 
 /// Whether two placements differ by at most one step of each kind.
-bool beside(const BoardPlacement& a, const BoardPlacement& b) {
+bool are_adjacent(const BoardPlacement& a, const BoardPlacement& b) {
   for (std::size_t kind = 0; kind < a.step.size(); ++kind) {
     if (std::abs(a.step[kind] - b.step[kind]) > 1) return false;
   }
   return true;
 }
 
-/// The best views that are not beside the first nor beside one another.
+/// The best views that are adjacent neither to the first nor to one another.
 std::vector<ScoredView> distinct_best(const std::vector<CandidateView>& candidates,
                                       const std::vector<double>& sd,
                                       double sd_before,
@@ -69,7 +69,7 @@ std::vector<ScoredView> distinct_best(const std::vector<CandidateView>& candidat
     if (static_cast<int>(best.size()) > count) break;
     const BoardPlacement& p = candidates[i].placement;
     if (std::any_of(best.begin(), best.end(),
-                    [&](const ScoredView& v) { return beside(v.placement, p); })) {
+                    [&](const ScoredView& v) { return are_adjacent(v.placement, p); })) {
       continue;
     }
     best.push_back({p, sd_before, sd[i]});
@@ -110,12 +110,13 @@ ViewAdvice advise_views(const Eigen::MatrixXd& factor,
                         const std::vector<CandidateView>& candidates,
                         const TargetQuantity& wanted,
                         const ViewAdviceOptions& options) {
-  if (candidates.empty()) throw Error("advice", "there is no view to choose from", "");
+  if (candidates.empty()) throw Error("advice", "there is no candidate view", "");
   Eigen::MatrixXd F = factor;
   double before = sd_of(wanted, F);
   if (!(before > 0)) {
-    throw Error(wanted.name, "it has no error to reduce: what it depends on is held",
-                "choose another error, or calibrate with it free");
+    throw Error(wanted.name,
+                "its standard deviation is already 0: the parameters it depends on are fixed",
+                "choose another quantity, or calibrate with them free");
   }
   ViewAdvice advice;
   const int steps = std::max(options.views, options.more);

@@ -11,16 +11,16 @@
 
 namespace vernier::internal {
 
-/// Covariance of (δ_a, m), parameters + 6: m = (w, u) is the boards' mean motion, by which a point
-/// x of the first camera's frame that is fixed to the boards moves as δx = w × x + u. The mean over
-/// all frames of T_f′ T_f⁻¹ x has this form, since with the left tangents (ω_f, τ_f)
+/// Covariance of (δ_a, m), parameters + 6: m = (w, u) is the mean motion of the boards, by which a
+/// point x of the first camera's frame that is fixed to the boards moves as δx = w × x + u. The
+/// mean over all frames of T_f′ T_f⁻¹ x has this form, since with the left tangents (ω_f, τ_f)
 ///
 ///     w = mean ω_f,   u = mean τ_f + t_f × ω_f.
 ///
-/// So everything that mrcal propagates through the poses of all frames goes through six numbers.
+/// So what mrcal propagates through the poses of all frames reduces to six numbers.
 Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint);
 
-/// Covariance of (δ_a, δ_1, δ_2, …): the rig, then six a frame. For tests and export; large.
+/// Covariance of (δ_a, δ_1, δ_2, …): the rig, then six per frame. For tests and export; large.
 Eigen::MatrixXd rig_and_poses_covariance(const RigAndBoards& joint);
 
 /// An affine map x′ = A x + b of the first camera's frame.
@@ -30,7 +30,7 @@ struct MeanBoardMap {
 };
 
 /// One draw of the boards given that the rig deviates by `rig_deviation`: the mean of T_f′ T_f⁻¹,
-/// all of it and not only its linear part. RandomStream are those of (seed, trial), frame by frame.
+/// not linearised. The random streams are those of (seed, trial), frame by frame.
 MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               const Eigen::VectorXd& rig_deviation,
                               double psi_c,

@@ -80,8 +80,8 @@ ProjectionUncertainty::ProjectionUncertainty(const Rig& rig,
   }
   if (rig_covariance.rows() != parameter_count(rig) ||
       rig_covariance.cols() != rig_covariance.rows()) {
-    throw Error("projection uncertainty", "the covariance is of other parameters than the rig's",
-                "give one row and column a parameter");
+    throw Error("projection uncertainty", "the covariance does not match the rig's parameters",
+                "give one row and column per parameter");
   }
   keep(rig_covariance, rig, camera, false);
 }

@@ -19,8 +19,8 @@ using namespace internal;
 
 namespace {
 
-/// How many of the parameters the views determine, tr(C_bound S): all that have a variance, but for
-/// what a prior knows of them.
+/// Number of parameters that the views determine, tr(C_bound S): all those with a variance, minus
+/// what a prior contributes.
 double data_parameters(const RigEstimate& estimate, double directions) {
   const CalibrationEvidence& evidence = *estimate.evidence;
   if (estimate.calibration->prior_dof == 0) return directions;
@@ -37,7 +37,7 @@ double mean_inflation(const RigEstimate& estimate) {
   const ScaledRoot bound(*estimate.covariance_mvb);
   const auto p = static_cast<double>(bound.white.rows());
   const double d = data_parameters(estimate, p);
-  if (!(d > 1e-3)) return 1;  // the views say nothing: there is nothing to inflate
+  if (!(d > 1e-3)) return 1;  // the views have no information: nothing to inflate
   const double trace =
       (bound.white * estimate.covariance->matrix * bound.white.transpose()).trace();
   return std::max(0.0, (trace - (p - d)) / d);

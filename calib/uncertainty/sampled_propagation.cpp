@@ -74,7 +74,7 @@ std::optional<Eigen::Vector2d> physical_pixel(const Camera& camera, const Eigen:
   return q;
 }
 
-/// Where the rig `drawn` sees the point that `told` has at `point`.
+/// The position, in the frame of `drawn`, of the point that is at `point` in the frame of `told`.
 Eigen::Vector3d carried(const Pose& told,
                         const Pose& drawn,
                         const FixedPoint& point,
@@ -147,7 +147,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
   for (const PixelPair& pair : pairs) {
     const auto x = triangulate_point(sampler.mean(), pair, other);
     if (!x) {
-      throw Error("sampled propagation", "a pixel pair has no point under the rig itself",
+      throw Error("sampled propagation", "a pixel pair cannot be triangulated with the rig itself",
                   "give pixels whose rays meet in front of the rig");
     }
     told.push_back(*x);

@@ -17,23 +17,24 @@
 
 namespace vernier::internal {
 
-/// A point of a camera's frame, m, or a direction where it is at infinity.
+/// A point of a camera's frame, m, or a direction if it is at infinity.
 struct FixedPoint {
   Eigen::Vector3d x_camera;
   bool at_infinity = false;
 };
 
-/// Moments of a point's pixel over the draws in which it has one.
+/// Moments of a point's pixel over the draws with a valid projection.
 struct SampledPixel {
-  Eigen::Vector2d mean_shift_px;  ///< mean less the estimate's pixel: what linearity hides
+  Eigen::Vector2d mean_shift_px;  ///< mean minus the estimate's pixel, zero in a linear model
   Eigen::Matrix2d covariance;     ///< px², about the mean
-  double non_physical_share = 0;  ///< f or ax not above 0, point behind the camera or in the fold
+  double non_physical_share =
+      0;  ///< fraction with f or ax not above 0, point behind the camera or beyond the fold
 };
 
-/// The sampled side of calib/projection_uncertainty.h: every draw is projected in full, nothing is
-/// linearised. RandomStream of the rig are those of `vernier sample`; where the point is fixed to
-/// the boards their poses are drawn given the rig, so `boards` must be there and of the same
-/// covariance as the sampler's. One result a point. Throws Error where it is not, or unless
+/// The sampled counterpart of calib/projection_uncertainty.h: every draw is projected without
+/// linearisation. The random streams of the rig are those of `vernier sample`; if the point is
+/// fixed to the boards, their poses are drawn given the rig, so `boards` must be given and have the
+/// same covariance as the sampler. One result per point. Throws Error if it is not, or unless
 /// samples >= 2.
 std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,
                                              const std::optional<RigAndBoards>& boards,
@@ -42,20 +43,20 @@ std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,
                                              std::span<const FixedPoint> points,
                                              const SamplingOptions& options = {});
 
-/// Moments of a triangulated point over the draws in which its rays meet in front of the rig.
+/// Moments of a triangulated point over the draws whose rays meet in front of the rig.
 struct SampledPoint {
-  Eigen::Vector3d mean_shift_m;  ///< mean less the estimate's point
+  Eigen::Vector3d mean_shift_m;  ///< mean minus the estimate's point
   Eigen::Matrix3d covariance;    ///< m², about the mean
-  /// 2.5 and 97.5 % of the depth z over all draws; those whose rays part lie beyond every depth, so
-  /// an end can be infinite.
+  /// 2.5 and 97.5 % quantiles of the depth z over all draws. Draws with diverging rays count as
+  /// infinitely far, so an end can be infinite.
   Interval depth_interval_95_m{0, 0};
-  double non_physical_share = 0;  ///< draws in which the rays part, or a pixel has no ray
+  double non_physical_share = 0;  ///< fraction with diverging rays, or a pixel without a ray
 };
 
-/// The sampled side of calib/triangulation_uncertainty.h. The pixels are the pair's, read by each
-/// drawn rig, with fresh pixel noise of pair_sigma_px in each draw (0 for the calibration's error
-/// alone). Stabilised points go back through the inverse of the boards' drawn mean motion. Throws
-/// Error where a pair has no point under the estimate itself.
+/// The sampled counterpart of calib/triangulation_uncertainty.h. The pixels are the pair's,
+/// triangulated with each drawn rig, with new pixel noise of pair_sigma_px in each draw (0 for the
+/// calibration's error alone). Stabilised points are mapped by the inverse of the boards' drawn
+/// mean motion. Throws Error if a pair cannot be triangulated with the estimate itself.
 std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
                                                 const std::optional<RigAndBoards>& boards,
                                                 TriangulationFrame frame,
@@ -64,7 +65,7 @@ std::vector<SampledPoint> sampled_triangulation(const RigSampler& sampler,
                                                 const SamplingOptions& options = {},
                                                 int other = 1);
 
-/// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite where one is.
+/// 2.5 and 97.5 % quantiles of sorted values, linear between neighbours; infinite if one is.
 Interval interval_95(const std::vector<double>& sorted);
 
 }  // namespace vernier::internal

@@ -15,7 +15,7 @@ using namespace internal;
 RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
     : mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {
   if (estimate.covariance->names != parameter_names(mean_)) {
-    throw Error(place, "its covariance is of other parameters than the rig's", "");
+    throw Error(place, "its covariance does not match the rig's parameters", "");
   }
 }
 

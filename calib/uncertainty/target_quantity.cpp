@@ -44,7 +44,7 @@ Eigen::MatrixXd derivative(const Rig& rig,
   return G;
 }
 
-/// Pixels in the middles of a grid's cells, so that all stand for the same area.
+/// Pixels at the centres of a grid's cells, so that all represent the same area.
 std::vector<Eigen::Vector2d> cell_middles(const Camera& camera) {
   std::vector<Eigen::Vector2d> pixels;
   for (int row = 0; row < grid_rows; ++row) {
@@ -96,9 +96,9 @@ Eigen::MatrixXd projection_gradient(const Rig& rig, double at_m) {
   });
 }
 
-/// Axes of the rectified cameras in the rig's frame, one a row: x along the baseline, z as near as
-/// that lets it to the mean of the optical axes. A turn of both about the baseline moves both
-/// rows of a point alike, so no other choice changes their difference to first order.
+/// Axes of the rectified cameras in the rig's frame, one per row: x along the baseline, z as close
+/// as possible to the mean of the optical axes. A rotation of both cameras about the baseline moves
+/// both rows of a point alike, so other choices do not change their difference to first order.
 Eigen::Matrix3d rectified_axes(const Rig& rig) {
   const Pose T_first_right = rig.T_camera_first[1].inverse();
   Eigen::Matrix3d R;
@@ -119,7 +119,7 @@ Eigen::MatrixXd rectification_gradient(const Rig& rig, double at_m) {
     matches.emplace_back(project(rig.cameras[0], x), right);
   }
   if (matches.empty()) {
-    throw Error("rectification", fmt::format("the images share nothing at {} m", at_m),
+    throw Error("rectification", fmt::format("the images do not overlap at {} m", at_m),
                 "choose a greater distance");
   }
   const double f = 0.5 * (rig.cameras[0].f_px() + rig.cameras[1].f_px());
@@ -147,9 +147,10 @@ TargetQuantity parameter_error(const Rig& rig, const std::string& name) {
   const std::vector<std::string> names = parameter_names(rig);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    throw Error("\"" + name + "\"", "there is no such error to reduce",
-                fmt::format("use depth, projection, rectification, baseline or a parameter: {}",
-                            fmt::join(names, " ")));
+    throw Error(
+        "\"" + name + "\"", "unknown quantity",
+        fmt::format("supported: depth, projection, rectification, baseline or a parameter: {}",
+                    fmt::join(names, " ")));
   }
   const auto n = static_cast<Eigen::Index>(names.size());
   return {name, unit_of(name), Eigen::RowVectorXd::Unit(n, found - names.begin())};

@@ -10,7 +10,7 @@
 
 namespace vernier::internal {
 
-/// An error that somebody wants smaller, to first order in the rig's parameters: rows g of
+/// A quantity whose error is to be reduced, to first order in the rig's parameters: rows g of
 /// derivatives, with the standard deviation
 ///
 ///     sd = sqrt(mean over the rows of g C gᵀ)
@@ -27,12 +27,12 @@ double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor);
 ///   depth          of a point on the left axis at `at_m`, from its pixels in both images (a pair)
 ///   projection     pixel of a point at `at_m` in the rig's frame, mean over all images' area; a
 ///                  row a coordinate
-///   rectification  row of the rectified left image less that of the right, of points at `at_m` all
+///   rectification  row of the rectified left image minus that of the right, of points at `at_m`
+///   all
 ///                  over the left image (a pair)
 ///   baseline       |T| of the second camera
 ///   or the name of a parameter, such as left.f_px.
-/// Throws Error for anything else, listing these, and where the rig has not the cameras that the
-/// error needs.
+/// Throws Error for anything else, listing these, and if the rig lacks the cameras needed.
 TargetQuantity target_quantity(const Rig& rig, const std::string& what, double at_m);
 
 }  // namespace vernier::internal

@@ -26,8 +26,8 @@ TriangulationUncertainty::TriangulationUncertainty(const Rig& rig,
                                                    int other)
     : rig_(rig), other_(other), covariance_(rig_covariance) {
   if (covariance_.rows() != parameter_count(rig) || covariance_.cols() != covariance_.rows()) {
-    throw Error("triangulation uncertainty", "the covariance is of other parameters than the rig's",
-                "give one row and column a parameter");
+    throw Error("triangulation uncertainty", "the covariance does not match the rig's parameters",
+                "give one row and column per parameter");
   }
 }
 
@@ -42,7 +42,7 @@ TriangulationUncertainty::Sensitivity TriangulationUncertainty::sensitivity(
 std::optional<TriangulatedPoint> TriangulationUncertainty::at(const PixelPair& pair,
                                                               double pair_sigma_px) const {
   if (!(pair_sigma_px >= 0)) {
-    throw Error("triangulation uncertainty", "the pair's pixel noise is not a number of 0 or more",
+    throw Error("triangulation uncertainty", "the pair's pixel noise is negative or not a number",
                 "give it in pixels");
   }
   const auto point = triangulate_point_with_jacobian(rig_, pair, other_);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int min_frames_to_split = 6;
 
-/// One frame as both cameras of the pair saw it: pixels by corner.
+/// One frame seen by both cameras of the pair: pixels by corner.
 using SeenPair = std::map<int, PixelPair>;
 
 std::vector<SeenPair> seen_pairs(const BoardObservations& observations,
@@ -77,7 +77,7 @@ std::vector<std::pair<int, int>> edges_of(const std::vector<Eigen::Vector3d>& ta
   return edges;
 }
 
-/// Sums of one kind of length.
+/// Sums for one kind of length.
 struct Tally {
   int n = 0, in_honest = 0, in_mvb = 0;
   double z2_honest = 0, z2_mvb = 0, error2 = 0, honest2 = 0, mvb2 = 0;
@@ -108,7 +108,8 @@ struct Tally {
   }
 };
 
-/// A length, or a mean of some, with its derivatives: by the rig, and by the pixels of corners.
+/// A length, or a mean of several, with its derivatives with respect to the rig and the pixels of
+/// corners.
 struct MeasuredValue {
   double value = 0;
   Eigen::RowVectorXd by_rig;
@@ -132,7 +133,7 @@ MeasuredValue length(const PointTriangulation& a,
   return m;
 }
 
-/// The corners that have a point in space, by id.
+/// The corners that can be triangulated, by id.
 std::map<int, PointTriangulation> points_of(const Rig& rig, const SeenPair& seen) {
   std::map<int, PointTriangulation> points;
   for (const auto& [id, pixels] : seen) {
@@ -141,12 +142,12 @@ std::map<int, PointTriangulation> points_of(const Rig& rig, const SeenPair& seen
   return points;
 }
 
-/// Adds one left-out board, by those of its corners that have a point, to the tallies.
-void judge_board(const RigEstimate& estimate,
-                 const std::vector<Eigen::Vector3d>& target_m,
-                 const std::map<int, PointTriangulation>& points,
-                 Tally& edges,
-                 Tally& scale) {
+/// Adds one held-out board, by its triangulated corners, to the tallies.
+void evaluate_board(const RigEstimate& estimate,
+                    const std::vector<Eigen::Vector3d>& target_m,
+                    const std::map<int, PointTriangulation>& points,
+                    Tally& edges,
+                    Tally& scale) {
   const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
   const double sigma = estimate.calibration->pixel_sigma_px;
   const auto pairs = edges_of(target_m, points);
@@ -165,7 +166,7 @@ void judge_board(const RigEstimate& estimate,
   scale.add(mean.value - 1, mean.variance(honest, sigma), mean.variance(mvb, sigma));
 }
 
-/// Which frames a split trains on: the first of a random order.
+/// The training frames of a split: the first of a random order.
 std::vector<int> training_frames(std::vector<int> frames,
                                  int count,
                                  std::uint64_t seed,
@@ -214,7 +215,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
         result.corners_left_out += static_cast<int>(seen[f].size() - points.size());
         ++(points.size() < 4 ? result.boards_left_out : result.boards);
         if (points.size() < 4) continue;
-        judge_board(estimate, observations.target_m, points, edges, scale);
+        evaluate_board(estimate, observations.target_m, points, edges, scale);
       }
     } catch (const Error&) {
       ++result.failed;  // these frames alone do not determine the rig
@@ -222,7 +223,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
     if (progress) progress(split + 1, options.splits);
   }
   if (result.boards == 0) {
-    throw Error("boards left out", "no split could be calibrated and judged",
+    throw Error("boards left out", "no split could be calibrated and evaluated",
                 "give more views, or a model with fewer parameters");
   }
   result.edges = edges.coverage();

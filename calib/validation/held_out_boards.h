@@ -17,12 +17,12 @@ struct HeldOutBoardsOptions {
   CalibrationOptions calibration;
 };
 
-/// How intervals for lengths on boards that took no part in a calibration came out.
+/// Coverage of intervals for lengths on boards that were not used in a calibration.
 struct LengthCoverage {
   int lengths = 0;             ///< over all splits
-  double coverage_honest = 0;  ///< share inside their 95 % interval, with `covariance`
+  double coverage_honest = 0;  ///< fraction inside their 95 % interval, with `covariance`
   double coverage_mvb = 0;     ///< the same with the minimum variance bound
-  double z_rms_honest = 0;     ///< root mean square of error over stated sigma; 1 where true
+  double z_rms_honest = 0;     ///< root mean square of error over stated sigma; 1 if correct
   double z_rms_mvb = 0;
   double error_rms_m = 0;     ///< of the lengths themselves
   double sigma_honest_m = 0;  ///< root mean square of the stated sigmas
@@ -36,21 +36,21 @@ struct HeldOutBoardsResult {
   int splits = 0;            ///< that could be calibrated
   int failed = 0;            ///< that could not
   int boards = 0;            ///< predictions of a board
-  int boards_left_out = 0;   ///< of which fewer than four corners have a point
-  int corners_left_out = 0;  ///< without a point: their rays part, or a pixel has none
+  int boards_left_out = 0;   ///< with fewer than four triangulated corners
+  int corners_left_out = 0;  ///< not triangulated: diverging rays, or a pixel without a ray
 };
 
-/// Proof on boards left out: calibrates on some frames, triangulates the corners of the others
-/// (calib/triangulation.h) and compares lengths on the board with what they are, over many
-/// splits drawn from `seed`. Corners without a point are left out, and counted. A length L(q, a)
-/// has the stated variance
+/// Validation on held-out boards: calibrates on some frames, triangulates the corners of the others
+/// (calib/triangulation.h) and compares lengths on the board with their true values, over many
+/// splits drawn from `seed`. Corners that cannot be triangulated are excluded and counted. A length
+/// L(q, a) has the stated variance
 ///
 ///     J_a C_a J_aᵀ + σ² J_q J_qᵀ
 ///
 /// C_a the rig's covariance, σ the calibration's pixel noise. `scale` is the weighted mean of L
-/// over its true value on one board, in which pixel noise averages out and the rig's error stays.
-/// Needs a pair and at least six frames seen by both cameras (else Error). Splits share frames, so
-/// the coverages of two splits are not independent: no interval is given for them.
+/// over its true value on one board, in which pixel noise averages out but the rig's error does
+/// not. Needs a pair and at least six frames seen by both cameras (else Error). Splits share
+/// frames, so the coverages of two splits are not independent and no interval is given for them.
 HeldOutBoardsResult evaluate_held_out_boards(
     const BoardObservations& observations,
     const HeldOutBoardsOptions& options = {},

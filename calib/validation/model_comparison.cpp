@@ -35,10 +35,10 @@ namespace {
 
 constexpr int min_frames_to_compare = 6;
 constexpr int max_groups = 8;
-constexpr double clear_gain_sigmas = 3;  // a false warning once in 700 models, were gains normal
+constexpr double clear_gain_sigmas = 3;  // a false warning once in 700 models for normal gains
 constexpr double clear_move_sigmas = 3;
 
-/// The problem of the options with the noise that was found.
+/// The problem of the options, with the estimated noise.
 ReprojectionProblem problem_for(const CalibrationOptions& options,
                                 const Rig& rig,
                                 double pixel_sigma_px) {
@@ -47,14 +47,14 @@ ReprojectionProblem problem_for(const CalibrationOptions& options,
   return problem;
 }
 
-/// Squared error of every frame when its group was left out, and the coordinates it holds.
+/// Squared error of every held-out frame, and its number of coordinates.
 struct HeldOut {
   std::vector<double> squared_px2;
   std::vector<int> coordinates;
 };
 
-/// Frames by group: dealt like cards, those that the same cameras saw one after the other, so that
-/// no camera's frames leave together.
+/// Frames by group: dealt in turn, frames seen by the same cameras consecutively, so that no group
+/// contains all frames of a camera.
 std::vector<std::vector<int>> dealt(const BoardObservations& observations) {
   std::map<int, std::vector<int>> cameras_of;  // by frame
   for (const BoardView& view : observations.views) cameras_of[view.frame].push_back(view.camera);
@@ -68,7 +68,7 @@ std::vector<std::vector<int>> dealt(const BoardObservations& observations) {
   return groups;
 }
 
-/// The minimum from `start`. Throws Error where the views do not determine it.
+/// The minimum from `start`. Throws Error if the views do not determine it.
 BoardState determined_minimum(const BoardObservations& observations,
                               const BoardState& start,
                               const ReprojectionProblem& problem) {
@@ -168,8 +168,8 @@ std::string name_of(const std::vector<CameraModel>& models) {
   return same ? std::string(model_name(models.front())) : name;
 }
 
-/// The richer models of a rig: every camera one step up, then two, as far as there are any. More
-/// would cost time for models that few sets of views determine.
+/// The richer models of a rig: every camera one step up, then two, as far as possible. Further
+/// models would cost time, and few sets of views determine them.
 std::vector<std::vector<CameraModel>> candidates(const Rig& rig) {
   std::vector<std::vector<CameraModel>> all;
   for (std::size_t step = 0; step < 2; ++step) {
@@ -192,13 +192,13 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   for (const ModelScore& score : comparison.richer) {
     const bool clear = score.gain_sigmas > clear_gain_sigmas &&
                        score.held_out_rms_px < 0.98 * comparison.in_use.held_out_rms_px;
-    // A richer one still must be clearly better than the one found.
+    // An even richer model must be clearly better than the one found.
     if (clear && (!best || score.held_out_rms_px < 0.98 * best->held_out_rms_px)) best = &score;
   }
   if (!best) return {};
   std::string text = fmt::format(
-      "residuals are structured: {} predicts views left out at {:.3f} px where {} has {:.3f} px "
-      "({} of {} views better)",
+      "residuals are structured: {} predicts held-out views to {:.3f} px, {} to {:.3f} px (better "
+      "in {} of {} views)",
       best->name, best->held_out_rms_px, comparison.in_use.name, comparison.in_use.held_out_rms_px,
       best->better_views, comparison.frames);
   if (best->largest_move_sigmas > clear_move_sigmas) {
@@ -210,8 +210,8 @@ std::vector<std::string> warnings_of(const ModelComparison& comparison) {
   return {text + "; use --model " + best->name};
 }
 
-/// A richer model fitted to all views and to those left by each group. Throws Error where they do
-/// not determine it.
+/// A richer model fitted to all views and to those left by each group. Throws Error if they do not
+/// determine it.
 ModelScore score_of(const std::vector<CameraModel>& richer,
                     const RigEstimate& estimate,
                     const CalibrationOptions& options,
@@ -248,11 +248,11 @@ ModelComparison compare_models(const RigEstimate& estimate,
   const auto models = candidates(estimate.rig);
   if (models.empty()) {
     comparison.not_compared =
-        "there is none richer than " + name_of(models_of(estimate.rig)) + " here";
+        "no richer model than " + name_of(models_of(estimate.rig)) + " is available";
     return comparison;
   }
   if (evidence.frames.size() < min_frames_to_compare) {
-    comparison.not_compared = fmt::format("{} frames are too few, it takes {}",
+    comparison.not_compared = fmt::format("{} frames are too few, at least {} are needed",
                                           evidence.frames.size(), min_frames_to_compare);
     return comparison;
   }

@@ -33,7 +33,7 @@ constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
 constexpr int wishart_draws = 2000;
 constexpr double min_p = 0.005;
 
-/// Makes the noisy copies of one calibration.
+/// Generates the noisy copies of one calibration.
 class Copies {
  public:
   Copies(const BoardObservations& observations,
@@ -124,12 +124,12 @@ Interval mean_interval(double q, double n, double probability) {
   return {chi_squared_quantile(tail, n * q) / n, chi_squared_quantile(1 - tail, n * q) / n};
 }
 
-/// Fills in what the errors (a column a copy) say of the covariance.
-void judge(const Eigen::MatrixXd& errors,
-           const Eigen::MatrixXd& covariance,
-           const ScaledRoot& root,
-           std::uint64_t seed,
-           MonteCarloCheck& check) {
+/// Evaluates the covariance with the errors (one column per copy).
+void evaluate_covariance(const Eigen::MatrixXd& errors,
+                         const Eigen::MatrixXd& covariance,
+                         const ScaledRoot& root,
+                         std::uint64_t seed,
+                         MonteCarloCheck& check) {
   const auto n = static_cast<double>(errors.cols());
   const Eigen::MatrixXd white = root.white * errors;
   const auto q = static_cast<int>(white.rows());
@@ -179,8 +179,8 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
                                   const MonteCarloOptions& options) {
   const int p = parameter_count(state.rig);
   if (covariance.rows() != p || covariance.cols() != p) {
-    throw Error("covariance", "it has another size than the rig has parameters",
-                "give it in full, with zeros for held parameters");
+    throw Error("covariance", "its size does not match the number of the rig's parameters",
+                "give it in full, with zeros for fixed parameters");
   }
   const ScaledRoot root(covariance);
   const Copies copies(observations, state, problem, options.seed);
@@ -198,12 +198,12 @@ MonteCarloCheck monte_carlo_check(const BoardObservations& observations,
   check.failed = options.trials - check.trials;
   if (check.trials < 2 * root.white.rows() || root.white.rows() == 0) {
     throw Error("Monte-Carlo check",
-                std::to_string(check.trials) + " copies were solved, too few to judge " +
+                std::to_string(check.trials) + " copies were solved, too few for " +
                     std::to_string(root.white.rows()) + " parameters",
                 "ask for more trials");
   }
   const Eigen::MatrixXd found = errors.leftCols(check.trials);
-  judge(found, covariance, root, options.seed, check);
+  evaluate_covariance(found, covariance, root, options.seed, check);
   return check;
 }
 

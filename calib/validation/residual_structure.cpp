@@ -53,7 +53,7 @@ ResidualStructure residual_structure(const std::vector<CornerResidual>& residual
                                      int columns,
                                      int rows) {
   if (columns < 1 || rows < 1 || !(pixel_sigma_px > 0)) {
-    throw Error("residuals", "no cells to gather them in, or no pixel noise",
+    throw Error("residuals", "no cells, or no pixel noise",
                 "give columns, rows and a pixel sigma above 0");
   }
   constexpr double limit_95 = 2.447746830680816;  // (−2 ln 0.05)^½

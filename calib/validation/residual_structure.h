@@ -9,14 +9,14 @@
 
 namespace vernier::internal {
 
-/// One corner of a calibration with what the model leaves of it unexplained.
+/// One corner of a calibration with its residual.
 struct CornerResidual {
   int frame = 0, id = 0;
   Eigen::Vector2d pixel_px{0, 0};
-  Eigen::Vector2d residual_px{0, 0};  ///< prediction less pixel
+  Eigen::Vector2d residual_px{0, 0};  ///< prediction minus pixel
 };
 
-/// Of one camera, in the order of the evidence. Throws Error where there is none.
+/// For one camera, in the order of the evidence. Throws Error if there is none.
 std::vector<CornerResidual> residuals_of_camera(const RigEstimate& estimate, int camera);
 
 /// A rectangle of an image with the mean residual of the corners in it.
@@ -28,9 +28,9 @@ struct ResidualCell {
 
 /// Residuals of one camera as noise and structure. For independent normal noise of standard
 /// deviation σ, corners · |mean|² / σ² of a cell is χ² with two degrees of freedom, so that a
-/// share exp(−x²/2) of the cells has in_sigmas > x: 5 % beyond 2.448. More is a fault that the
-/// camera model does not follow. (Fitting takes a little off every residual: the shares err on the
-/// safe side by the parameters' part of the coordinates.)
+/// fraction exp(−x²/2) of the cells has in_sigmas > x: 5 % beyond 2.448. More indicate errors of
+/// the camera model. (Fitting reduces the residuals a little: the fractions err on the safe side by
+/// the number of parameters relative to that of coordinates.)
 struct ResidualStructure {
   int columns = 0, rows = 0;
   std::vector<ResidualCell> cells;  ///< row by row, over the image
@@ -38,7 +38,7 @@ struct ResidualStructure {
   int beyond_95 = 0;                ///< of them, with in_sigmas > 2.448
   std::vector<int> histogram;       ///< of residual / σ, coordinates; the outermost bins are open
   double first_edge = 0, bin = 0;   ///< bin k spans [first_edge + k bin, first_edge + (k+1) bin)
-  double beyond_3_sigma = 0;        ///< share of coordinates; 0.0027 for a normal error
+  double beyond_3_sigma = 0;        ///< fraction of coordinates; 0.0027 for a normal error
 };
 
 /// Throws Error unless columns, rows and σ are above 0.

@@ -16,8 +16,8 @@
 namespace vernier::internal {
 namespace {
 
-/// How much larger than by the bound the pairs' share of an estimate's variance is, over what they
-/// improved, at least 1. C_0 is the bound before the pairs, P its inverse.
+/// Ratio of the pairs' contribution to an estimate's variance to that of the bound, in the mean
+/// over the directions they improved, at least 1. C_0 is the bound before the pairs, P its inverse.
 double scatter_of_pairs(const RigEstimate& estimate, const Eigen::MatrixXd& P) {
   const Eigen::MatrixXd& C = *estimate.covariance_mvb;
   const Eigen::MatrixXd from_before = C * P * C;

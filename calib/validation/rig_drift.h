@@ -11,24 +11,24 @@
 
 namespace vernier::internal {
 
-/// The rig as one batch of pairs alone saw it.
+/// The rig estimated from one batch of pairs.
 struct MonitoredBatch {
   std::string name;
   std::size_t pairs = 0, outliers = 0;
   double rms_px = 0;
   Eigen::VectorXd offset;  ///< from the combined rig, in its tangent
-  Eigen::VectorXd sigma;   ///< standard deviation of that offset; 0 where the batch says nothing
-  PriorConsistency agreement;  ///< with the inputs before it
-  bool is_all = false;         ///< no other batch is in the combination: there is no drift to see
+  Eigen::VectorXd sigma;   ///< standard deviation of that offset; 0 if the batch has no information
+  PriorConsistency agreement;  ///< with the previous inputs
+  bool is_all = false;         ///< the only batch in the combination, so drift is not observable
 };
 
-/// Drift: every batch of pairs solved with what `combination` knew before any pairs, beside the
-/// combined rig. With C the bounds of the batch (b) and of all (a), and P the information from
-/// before the pairs, which both have, the offset of a batch that is part of the combination has by
-/// the bounds the covariance C_b − C_a, and of one that was left out C_b + C_a − C_b P C_a − C_a P
-/// C_b. Of that (C_b − C_a) P (C_b − C_a) comes from before; the rest, from the pairs, is larger by
-/// the factor by which their scatter is in the whole combination, in the mean over what they
-/// improved.
+/// Drift: every batch of pairs is solved with what `combination` knew before any pairs, and
+/// compared with the combined rig. With C the bounds of the batch (b) and of all (a), and P the
+/// information before the pairs, common to both, the offset of a batch in the combination has by
+/// the bounds the covariance C_b − C_a, and of an excluded one C_b + C_a − C_b P C_a − C_a P C_b.
+/// Of that, (C_b − C_a) P (C_b − C_a) comes from before the pairs; the rest, from the pairs, is
+/// multiplied by the ratio of their scatter to the bound in the whole combination, in the mean over
+/// the directions they improved.
 std::vector<MonitoredBatch> monitor(const std::vector<CombineInput>& inputs,
                                     const Combination& combination);
 

@@ -20,10 +20,10 @@
 namespace vernier::internal {
 namespace {
 
-/// How many corners the views of each frame hold.
+/// Number of corners in the views of each frame.
 std::vector<int> corners_by_frame(const CalibrationEvidence& evidence, const std::string& place) {
   if (evidence.T_first_board.size() != evidence.frames.size()) {
-    throw Error(place, "its evidence has not one pose of the board a frame", "calibrate again");
+    throw Error(place, "its evidence does not have one board pose per frame", "calibrate again");
   }
   std::vector<int> corners(evidence.frames.size());
   for (const BoardView& view : evidence.observations.views) {
@@ -64,7 +64,7 @@ std::vector<ViewInfluence> view_influence(const ReducedNormalEquations& equation
 
 std::vector<ViewInfluence> view_influence(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.evidence) {
-    throw Error(place, "it holds no evidence, so what each view did to it is unknown",
+    throw Error(place, "it has no evidence, so the influence of its views is unknown",
                 "write it with vernier calibrate, without --no-evidence");
   }
   if (!estimate.calibration || !(estimate.calibration->pixel_sigma_px > 0)) {

@@ -177,7 +177,7 @@ class Combine(unittest.TestCase):
         self.assertIn('--prior', self.complaint('calibrate', '--pairs', 'pairs.csv', '-o', 'x.json'))
         self.assertIn('pairs are of no board', self.complaint(
             'calibrate', '--pairs', 'pairs.csv', '--prior', PRIOR, '--board', '9x6', '-o', 'x.json'))
-        self.assertIn('put a prior', self.complaint('combine', 'a.csv', '-o', 'x.json'))
+        self.assertIn('give a prior', self.complaint('combine', 'a.csv', '-o', 'x.json'))
         self.assertIn('nothing.csv', self.complaint('combine', '--prior', PRIOR, 'nothing.csv', '-o',
                                                     'x.json'))
         self.assertFalse((self.folder / 'x.json').exists())

@@ -185,10 +185,10 @@ class Advise(Rigs):
                 del rig[key]
         self.complains('advise', self.rig('bare.json', bare), of='the rig has no covariance')
         self.complains('advise', 'nominal', '--reduce', 'sharpness',
-                       of='use depth, projection, rectification, baseline or a parameter')
+                       of='supported: depth, projection, rectification, baseline or a parameter')
         self.complains('advise', 'nominal', '--board', '9x6', of='give both --board and --square-m')
         self.complains('advise', 'nominal', '--board', '9x1', '--square-m', '0.04',
-                       of='its corners lie on a line')
+                       of='its corners are collinear')
         self.complains('advise', 'nominal', '--views', '0', of='--views')
         for at in ('0', '-1', 'nan', 'inf'):
             self.complains('advise', 'nominal', '--at-m', at, of='')

@@ -111,7 +111,7 @@ class Convert(Case):
         self.out('models', 'left.cameramodel').write_text('old')
         os.mkfifo(self.out('models', 'right.cameramodel'))
         self.complains('convert', 'nominal', '--to', 'mrcal', '-o', self.out('models'),
-                       of='right.cameramodel: is there and is no regular file')
+                       of='right.cameramodel: exists and is not a regular file')
         self.assertEqual(self.out('models', 'left.cameramodel').read_text(), 'old')
         self.assertEqual(len(list(self.out('models').iterdir())), 2)
         self.complains('convert', 'nominal', '--to', 'mrcal', '-o', f'{self.out("no", "such")}/',
@@ -177,12 +177,12 @@ class Convert(Case):
                 (['nominal', '--unit-m', '0.001', '-o', out], '--unit-m: a rig.json is in metres'),
                 (['nominal', '--unit-m', '-1', '-o', out], '--unit-m'),
                 (['nominal', '--names', 'a', '-o', out], '1 names for 2 cameras'),
-                (['nominal', '--names', 'a,a', '-o', out], 'two cameras have one name'),
+                (['nominal', '--names', 'a,a', '-o', out], 'two cameras have the same name'),
                 (['nominal', '--names', '../a,b', '--to', 'ros', '-o', self.folder],
-                 'its name cannot be that of a file'),
+                 'its name is not valid as a file name'),
                 ([self.out('k.yaml'), '--model', 'pinhole', '-o', out],
                  'is not in the model pinhole; choose a larger model'),
-                (['nominal', '--model', 'fisheye9', '-o', out], 'there is no such model')):
+                (['nominal', '--model', 'fisheye9', '-o', out], 'unknown model')):
             with self.subTest(of):
                 self.complains('convert', *words, of=of, leaves=[out])
 
@@ -191,7 +191,7 @@ class Convert(Case):
         lines = self.out('r.yml').read_text().splitlines()
         self.out('r.yml').write_text('\n'.join(x for x in lines if not x.startswith('image_')))
         self.complains('convert', self.out('r.yml'), '-o', self.out('back.json'),
-                       of='the file does not say how large the images are')
+                       of='the file does not give the image size')
         self.works('convert', self.out('r.yml'), '--size', '640x480', '-o', self.out('back.json'))
         self.assertEqual(self.rig()['cameras'][0]['size_px'], [640, 480])
 

@@ -124,7 +124,7 @@ TEST_F(BoardDetectionTest, FramesThatDoNotPairAreAnError) {
     detect_images({pattern("L/*.pgm"), pattern("R/*.pgm")}, board);
     FAIL() << "no Error";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("has the frame number of an image before it"),
+    EXPECT_NE(std::string(error.what()).find("shares no frame number with the cameras before it"),
               std::string::npos)
         << error.what();
   }

@@ -46,7 +46,7 @@ TEST(BoardTarget, ImpossibleOnesAreNamed) {
             std::string::npos);
   EXPECT_NE(complaint_of(CharucoBoard{8, 6, 0.02, 0.03}).find("not smaller than its squares"),
             std::string::npos);
-  EXPECT_NE(complaint_of(CharucoBoard{8, 6, 0.03, 0.02, "4x5_50"}).find("it is one of 4x4_50, "),
+  EXPECT_NE(complaint_of(CharucoBoard{8, 6, 0.03, 0.02, "4x5_50"}).find("supported: 4x4_50, "),
             std::string::npos);
   EXPECT_NE(complaint_of(CharucoBoard{12, 12}).find("it has 72 markers, 4x4_50 has 50"),
             std::string::npos);
@@ -104,15 +104,15 @@ TEST_F(KalibrTarget, TagsMayBeSaidToCountFromZero) {
       "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\n";
   EXPECT_EQ(std::get<AprilTagGrid>(read(text + "codeOffset: 0\n")).columns, 6);
   EXPECT_EQ(error_output(text + "codeOffset: 12\n"),
-            ":6: codeOffset is \"12\"; Vernier counts tags from 0: give a board that does");
+            ":6: codeOffset is \"12\"; only codeOffset 0 is supported");
 }
 
 TEST_F(KalibrTarget, FaultsAreNamedWithTheirLine) {
   EXPECT_EQ(error_output("\ntarget_type: circlegrid\n"),
-            ":2: a circlegrid is not detected by Vernier; use a checkerboard, a ChArUco board or "
+            ":2: circlegrid targets are not supported; use a checkerboard, a ChArUco board or "
             "an aprilgrid");
   EXPECT_EQ(error_output("target_type: hexgrid\n"),
-            ":1: target_type is \"hexgrid\"; it is aprilgrid or checkerboard");
+            ":1: target_type is \"hexgrid\"; supported: aprilgrid, checkerboard");
   EXPECT_EQ(error_output("tagCols: 6\n").substr(0, 31), ": the key target_type is missin");
   EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: six\n"),
             ":2: tagCols is \"six\"; give a whole number above 0");

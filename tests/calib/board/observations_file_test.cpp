@@ -105,7 +105,7 @@ TEST_F(ObservationsFile, PixelsOutsideTheImageAreNamedByLineRowAndColumn) {
   EXPECT_NE(complaint_of(header + good).find("bad.csv: frame 0, camera 1: fewer than four corners"),
             std::string::npos);
   EXPECT_NE(complaint_of(header + "0,2,0,2,0,0,0,9,9\n")
-                .find("bad.csv: frame 0, camera 2: no image size is known"),
+                .find("bad.csv: frame 0, camera 2: the image size of this camera is unknown"),
             std::string::npos);
 }
 

@@ -280,9 +280,8 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
     const std::string said = error_message([&] { read_pairs(folder / "bad.csv"); });
     return said.substr(std::min(said.size(), said.find("bad.csv")));
   };
-  EXPECT_EQ(error_output("u,v\n").substr(0, 48),
-            "bad.csv:1: it does not begin with the header of ");
-  EXPECT_EQ(error_output(header), "bad.csv: it holds no pair; match some corners");
+  EXPECT_EQ(error_output("u,v\n").substr(0, 48), "bad.csv:1: it has no header of ");
+  EXPECT_EQ(error_output(header), "bad.csv: it contains no pair; match at least one corner");
   EXPECT_EQ(error_output(header + "0,1,2,3,4,0.3\n0,1,2,3,0.3\n").substr(0, 44),
             "bad.csv:3: 5 fields where 6 are expected; a ");
   EXPECT_EQ(error_output(header + "0,1,nan,3,4,0.3\n"),
@@ -290,7 +289,7 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
   EXPECT_EQ(error_output(header + "0,1,2,3,4,0\n"),
             "bad.csv:2: sigma_px is 0; give a standard deviation above 0 and below a million");
   EXPECT_EQ(error_output(header + "0,1,2,3,4,1\n1,1,2,3,4,1\n0,1,2,3,5,1\n"),
-            "bad.csv:4: image pair 0 comes a second time; keep its lines together");
+            "bad.csv:4: image pair 0 appears a second time; keep its lines together");
   std::filesystem::remove_all(folder);
 }
 
@@ -317,13 +316,14 @@ TEST_F(BadPairs, AreNamed) {
   EXPECT_EQ(said(bad), "p.csv:42: it repeats line 9; give every match once");
   bad = simulate_pairs(truth_, 96, 0, {.image_pairs = 1, .pairs_per_image = 12});
   EXPECT_EQ(said(bad),
-            "p.csv: 12 pairs for 16 free parameters; match more corners, or hold parameters");
+            "p.csv: 12 pairs for 16 free parameters; match more corners, or fix parameters");
   bad = pairs_;
   for (Eigen::Vector4d& y : bad.pixels_px) y = exchanged(y);
   EXPECT_NE(said(bad).find("left and right are swapped"), std::string::npos) << said(bad);
   bad = pairs_;
   bad.sigma_px = {0};
-  EXPECT_NE(said(bad).find("p.csv:2: its noise of 0 px is none"), std::string::npos) << said(bad);
+  EXPECT_NE(said(bad).find("p.csv:2: its noise of 0 px is invalid"), std::string::npos)
+      << said(bad);
 }
 
 TEST_F(BadPairs, SomeSwappedImagePairsAreNamed) {
@@ -365,8 +365,9 @@ TEST_F(BadPairs, APriorThatThePairsContradictIsADoubt) {
   narrow.covariance.matrix *= 1e-4;  // claims to know everything a hundred times better
   const JointCalibration joint = calibrate_from_pairs(pairs_, narrow);
   ASSERT_FALSE(joint.estimate.calibration->trust_warnings.empty());
-  EXPECT_NE(joint.estimate.calibration->trust_warnings.back().find("pairs and prior disagree"),
-            std::string::npos)
+  EXPECT_NE(
+      joint.estimate.calibration->trust_warnings.back().find("pairs and prior are inconsistent"),
+      std::string::npos)
       << joint.estimate.calibration->trust_warnings.back();
 }
 

@@ -59,8 +59,8 @@ TEST_F(ObservationChecks, OneMirroredViewIsNamed) {
   good_.views[5].image = "right02.png";
   EXPECT_EQ(complaint_of(good_),
             "frame 2, camera 1 (right02.png): the board is mirrored against the other 39 views; "
-            "corners run row by row, x right and y down as seen: turn the mirrored images or their "
-            "numbering round");
+            "corners must run row by row, x right and y down as seen: flip the mirrored images or "
+            "reverse their numbering");
 }
 
 TEST_F(ObservationChecks, AMirroredCameraIsNamed) {
@@ -108,11 +108,10 @@ TEST_F(ObservationChecks, AMirroredImageIsNamedAsMirroredNumbering) {
 
 TEST_F(ObservationChecks, AViewCountedTwiceIsNamed) {
   test::append_frame(good_, 4, 20);
-  EXPECT_EQ(
-      complaint_of(good_),
-      "frame 20, camera 0: it is the same view as frame 4 (their corners differ by 0 px), and "
-      "counting it twice would make the rig look better known than it is; remove one of the "
-      "two");
+  EXPECT_EQ(complaint_of(good_),
+            "frame 20, camera 0: it is the same view as frame 4 (their corners differ by 0 px), "
+            "and counting it twice would understate the uncertainty; remove one of the "
+            "two");
 }
 
 TEST_F(ObservationChecks, ARepeatedViewWithItsOwnNoiseIsAWarning) {
@@ -123,7 +122,7 @@ TEST_F(ObservationChecks, ARepeatedViewWithItsOwnNoiseIsAWarning) {
     for (auto& pixel : view.pixels_px) pixel += 0.05 * draws.normals(2);
   }
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
-  EXPECT_TRUE(holds(diagnosis.warnings, "the board had not moved between frames 4 and 20"));
+  EXPECT_TRUE(holds(diagnosis.warnings, "the board did not move between frames 4 and 20"));
   EXPECT_TRUE(diagnosis.trust_warnings.empty());
 }
 
@@ -136,8 +135,7 @@ TEST_F(ObservationChecks, LeftAndRightFromOneImageAreNamed) {
 
 TEST_F(ObservationChecks, RowsAndColumnsExchangedAreNamed) {
   good_.target_m = target_points(Chessboard{6, 9, 0.025});
-  EXPECT_NE(complaint_of(good_).find(
-                "frame 0, camera 0: its corners do not lie like those of a flat board"),
+  EXPECT_NE(complaint_of(good_).find("frame 0, camera 0: its corners do not fit a flat board"),
             std::string::npos);
   EXPECT_NE(complaint_of(good_).find("rows and columns of the board are not exchanged"),
             std::string::npos);
@@ -190,8 +188,8 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
     return complaint_of(good_);
   };
   const std::string expected =
-      "frame 5, camera 1 (right05.png): its corners, all but one at most, lie on one line of the "
-      "board, which fixes no pose of it; leave the view out";
+      "frame 5, camera 1 (right05.png): all its corners, or all but one, are collinear, which does "
+      "not determine the board's pose; leave the view out";
   EXPECT_EQ(error_output({9, 10, 11, 12, 13, 14, 15, 16, 17}), expected);  // a row
   EXPECT_EQ(error_output({0, 10, 20, 30, 40, 50}), expected);              // a diagonal
   EXPECT_EQ(error_output({0, 1, 2, 3, 31}), expected);                     // and one elsewhere
@@ -202,7 +200,7 @@ TEST_F(ObservationChecks, CornersOnOneLineAreNoView) {
 
 TEST_F(ObservationChecks, ATargetThatIsNotFlatIsRefused) {
   for (std::size_t i = 0; i < good_.target_m.size(); ++i) good_.target_m[i].z() = 0.02 * (i % 4);
-  EXPECT_EQ(complaint_of(good_).find("target: its corners lie in no plane z = 0"), 0u);
+  EXPECT_EQ(complaint_of(good_).find("target: its corners are not in the plane z = 0"), 0u);
 }
 
 TEST_F(ObservationChecks, UnpairedFramesAreCountedAndSaid) {
@@ -225,7 +223,7 @@ TEST_F(ObservationChecks, AnImageSizeTwiceTooLargeIsDoubted) {
 TEST_F(ObservationChecks, MillimetresAreSuspected) {
   for (auto& X : good_.target_m) X *= 1000;
   EXPECT_TRUE(holds(diagnosis_of(good_).trust_warnings,
-                    "the board measures 200 m, its points stand 25 m apart: did you mean 0.025?"));
+                    "the board measures 200 m, its points are 25 m apart: did you mean 0.025?"));
 }
 
 }  // namespace

@@ -208,8 +208,8 @@ BoardObservations mostly_displaced(double by_px) {
 
 TEST(Outliers, MoreThanHalfOfACamerasViewsAreNotLeftOut) {
   const std::string words =
-      "8 of the 13 views of camera 1 (\"right\") fit none of the others, more than may be left out "
-      "as outliers: look at the images of frames 5, 6, 7, 8, 9, 10 and 2 more";
+      "8 of the 13 views of camera 1 (\"right\") do not fit the others, too many to exclude as "
+      "outliers: inspect the images of frames 5, 6, 7, 8, 9, 10 and 2 more";
   const RigEstimate e = calibrate(mostly_displaced(4), {.check_input = false});
   EXPECT_EQ(e.calibration->outliers.size(), 0u);
   EXPECT_EQ(e.calibration->trust_warnings, std::vector<std::string>{words});
@@ -225,12 +225,12 @@ TEST(Outliers, FramesAndCamerasThatTheStateDoesNotHaveAreAnError) {
   BoardObservations strange = board.observations;
   strange.views.back().frame = 9;
   EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),
-            "frame 9: a view is of it, but no pose of the board is; give a pose for every frame of "
-            "the views");
+            "frame 9: it has a view but no board pose; give one board pose for every "
+            "frame with views");
   strange = board.observations;
   strange.views.back().camera = 2;
   EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),
-            "frame 3: the rig has 2 cameras, so none of number 2; give the corners of this rig");
+            "frame 3: the rig has 2 cameras, so no camera 2; give the corners of this rig");
 
   std::vector<CornerOutlier> outliers{{9, 0, 0, "", {0, 0}, 0}};
   measure_outliers(board.observations.target_m, board.truth, outliers);

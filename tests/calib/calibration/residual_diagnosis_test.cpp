@@ -61,7 +61,7 @@ TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
       simulate_board(wide, {}, 7, 0, {.frames = 15, .distance_m = 0.25, .tilt_rad = 0.35})
           .observations;
   const Found found = found_in(seen);
-  EXPECT_EQ(found.first().find("the lens needs another model: with "), 0u) << found.first();
+  EXPECT_EQ(found.first().find("the lens needs another model: "), 0u) << found.first();
   // follow the advice
   const std::string name = found.first().substr(found.first().rfind(' ') + 1);
   const RigEstimate better = calibrate(seen, {.model = camera_model(name)});
@@ -86,7 +86,7 @@ TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
           .observations;
   const RigEstimate estimate = calibrate(seen, {.model = Radial1{}});
   ASSERT_EQ(estimate.calibration->trust_warnings.size(), 1u);
-  EXPECT_NE(estimate.calibration->trust_warnings[0].find("the lens needs another model: with "),
+  EXPECT_NE(estimate.calibration->trust_warnings[0].find("the lens needs another model: "),
             std::string::npos)
       << estimate.calibration->trust_warnings[0];
 }
@@ -106,8 +106,8 @@ TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
     }
   }
   const Found found = found_in(seen);
-  EXPECT_EQ(found.first().find("the board is not flat: bent by 3.9 mm across and -2 mm along, it "
-                               "leaves 0.20 px"),
+  EXPECT_EQ(found.first().find(
+                "the board is not flat: a warp of 3.9 mm in x and -2 mm in y fits to 0.20 px"),
             0u)
       << found.first();
 }
@@ -117,8 +117,8 @@ TEST_F(ResidualDiagnosis, FramesTakenAtTwoTimesAreNamedAndLeavingThemOutHelps) {
     for (auto& pixel : test::view_of(good_, frame, 1).pixels_px) pixel.y() += 12;
   }
   const Found found = found_in(good_);
-  EXPECT_EQ(found.first().find("cameras 0 and 1 did not see the board at one place in 2 of 15 "
-                               "frames, each image fitting alone but not both together: 3 ("),
+  EXPECT_EQ(found.first().find("cameras 0 and 1 did not see the board at the same pose in 2 of 15 "
+                               "frames (each image fits alone, but not both together): 3 ("),
             0u)
       << found.first();
   std::erase_if(good_.views, [](const BoardView& v) { return v.frame == 3 || v.frame == 9; });
@@ -132,9 +132,9 @@ TEST_F(ResidualDiagnosis, ImagesThatCarryTheMisfitAreNamed) {
     view.pixels_px[i].x() += i % 3 == 0 ? 6 : i % 3 == 1 ? -6 : 0;
   }
   const Found found = found_in(good_);
-  EXPECT_EQ(found.first().find("1 of 30 images hold 9"), 0u) << found.first();
+  EXPECT_EQ(found.first().find("1 of 30 images account for 9"), 0u) << found.first();
   EXPECT_NE(found.first().find("frame 4, camera 0 (left04.png) ("), std::string::npos);
-  EXPECT_NE(found.first().find("the others leave 0.2"), std::string::npos) << found.first();
+  EXPECT_NE(found.first().find("the others have 0.2"), std::string::npos) << found.first();
 }
 
 TEST_F(ResidualDiagnosis, ACameraOutOfFocusIsNamed) {
@@ -170,8 +170,7 @@ TEST_F(ResidualDiagnosis, CalibrateSaysItAsADoubt) {
   const RigEstimate estimate = calibrate(good_, {.reject_outliers = false});
   ASSERT_EQ(estimate.calibration->trust_warnings.size(), 1u);
   EXPECT_NE(estimate.calibration->trust_warnings[0].find(
-                "px are no corner noise: cameras 0 and 1 did not "
-                "see the board at one place"),
+                "px exceed corner noise: cameras 0 and 1 did not see the board at the same pose"),
             std::string::npos)
       << estimate.calibration->trust_warnings[0];
 }

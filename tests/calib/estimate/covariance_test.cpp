@@ -96,7 +96,7 @@ TEST(Covariance, AFreeDirectionIsNamed) {
     minimum_variance_bound(equations, parameter_names(board.truth.rig));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("leave a direction free"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("leave a direction undetermined"), std::string::npos);
   }
 }
 
@@ -150,7 +150,7 @@ TEST(NormalEquations, ARowOfCornersFixesNoPose) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const SimulatedBoard board = rows_of_boards(seed);
     const std::string expected =
-        "frame 0: its corners do not fix the pose of the board; leave the frame out";
+        "frame 0: its corners do not determine the pose of the board; leave the frame out";
     EXPECT_EQ(test::error_message(
                   [&] { reduced_normal_equations(board.observations, board.truth, 0.2); }),
               expected)

@@ -37,11 +37,11 @@ RigEstimate with_outliers() {
 }
 
 TEST(OutlierLines, AViewLeftOutWholeIsOneLine) {
-  EXPECT_EQ(
-      outlier_lines(with_outliers()),
-      (std::vector<std::string>{"all 54 corners of frame 3, right, 4.5 to 9.8 px from their places",
-                                "corner 7 of frame 5, left, 4.2 px from its place",
-                                "corner 8 of frame 5, left, 12.0 px from its place"}));
+  EXPECT_EQ(outlier_lines(with_outliers()),
+            (std::vector<std::string>{
+                "all 54 corners of frame 3, right, 4.5 to 9.8 px from their predictions",
+                "corner 7 of frame 5, left, 4.2 px from its prediction",
+                "corner 8 of frame 5, left, 12.0 px from its prediction"}));
 }
 
 TEST(OutlierLines, WithoutEvidenceEachCornerIsOne) {
@@ -49,7 +49,7 @@ TEST(OutlierLines, WithoutEvidenceEachCornerIsOne) {
   estimate.evidence.reset();
   const std::vector<std::string> lines = outlier_lines(estimate);
   ASSERT_EQ(lines.size(), 56u);
-  EXPECT_EQ(lines[0], "corner 0 of frame 3, right, 9.8 px from its place");
+  EXPECT_EQ(lines[0], "corner 0 of frame 3, right, 9.8 px from its prediction");
 }
 
 TEST(OutlierLines, UnknownDistancesAreNotGiven) {

@@ -118,7 +118,7 @@ TEST(RigDifference, HoldsApartWhatIsHeldAtDifferentValues) {
   const RigDifference d = of(a, b);
   EXPECT_TRUE(std::isinf(d.mahalanobis2));
   EXPECT_EQ(d.p_value, 0);
-  EXPECT_TRUE(says(d.fixed_at_different_values, "left.ax is held at"));
+  EXPECT_TRUE(says(d.fixed_at_different_values, "left.ax is fixed at"));
 
   // held in one alone is no contradiction: the other's variance decides
   b.covariance->matrix(1, 1) = 1e-6;
@@ -141,7 +141,7 @@ TEST(RigDifference, ComparesTheRestOfARotationThatBothHoldInPart) {
   EXPECT_TRUE(d.fixed_at_different_values.empty());
   EXPECT_GT(d.p_value, 1e-3);
   EXPECT_TRUE(says(of(a, calibrated_with(2, -0.0201)).fixed_at_different_values,
-                   "right.wy_rad is held at"));
+                   "right.wy_rad is fixed at"));
 }
 
 TEST(RigDifference, NamesADirectionThatNeitherGivesAVariance) {
@@ -186,7 +186,7 @@ TEST(RigDifference, RefusesACovarianceOfOtherParameters) {
   wrong.names[0] = "left.g";
   EXPECT_NE(test::error_message([&] {
               rig_difference(a.rig, wrong, a.rig, *a.covariance);
-            }).find("first rig: its covariance is of other parameters"),
+            }).find("first rig: its covariance does not match the rig's parameters"),
             std::string::npos);
 }
 

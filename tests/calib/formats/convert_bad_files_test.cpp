@@ -76,15 +76,15 @@ TEST(ConvertBadFiles, Mrcal) {
       "left.cameramodel", good,
       {{"'lensmodel'", "'model'", "has no 'lensmodel'"},
        {"LENSMODEL_OPENCV5", "LENSMODEL_CAHVOR",
-        ":2: lensmodel: Vernier has no model like LENSMODEL_CAHVOR"},
+        ":2: lensmodel: unsupported lens model LENSMODEL_CAHVOR"},
        {"LENSMODEL_OPENCV5", "LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=30_Ny=20_fov_x_deg=150",
-        "no model like LENSMODEL_SPLINED"},
+        "unsupported lens model LENSMODEL_SPLINED"},
        {"LENSMODEL_OPENCV5", "LENSMODEL_OPENCV8", ":5: intrinsics: holds 9 values, not 12"},
        {"[ 526.05,", "[ 1e999,", "intrinsics[0]: is not a finite number"},
        {"[ 526.05,", "[ nan,", "intrinsics[0]: is not a finite number"},
        {"[ 526.05,", "[ -526.05,", "its focal lengths are -526.05 and 525"},
        {"[ 526.05,", "[ 'f',", "intrinsics[0]: is not a finite number"},
-       {"'extrinsics': [ 0,", "'extrinsics': [ 1,", "is another pose than rt_cam_ref"},
+       {"'extrinsics': [ 0,", "'extrinsics': [ 1,", "differs from rt_cam_ref"},
        {"'rt_cam_ref': [ 0,", "'rt_cam_ref': [", "rt_cam_ref: holds 5 values, not 6"},
        {"[ 640, 480 ]", "[ 640 ]", "imagersize: holds 1 values, not 2"},
        {"[ 640, 480 ]", "[ 640.5, 480 ]", "imagersize: is not [width, height]"},
@@ -120,7 +120,7 @@ TEST(ConvertBadFiles, MrcalKeysOfOldAndNewVersions) {
   parse("{'lensmodel': 'LENSMODEL_PINHOLE', " + core + "'extrinsics': " + pose +
         ", 'icam_intrinsics': 0, 'optimization_inputs': b'0@}]'}");
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(notes[0], "m: optimization_inputs is left behind");
+  EXPECT_EQ(notes[0], "m: optimization_inputs is ignored");
 }
 
 TEST(ConvertBadFiles, OpenCv) {
@@ -140,10 +140,10 @@ TEST(ConvertBadFiles, OpenCv) {
         "rows: 1\n   cols: 6\n   dt: d\n   "
         "data: [ 0, -0.12,",
         "D1: holds 6 coefficients; OpenCV has 4, 5, 8, 12 or 14"},
-       {"image_width_1: 640", "image_wide: 640", "does not say how large the images are"},
+       {"image_width_1: 640", "image_wide: 640", "does not give the image size"},
        {"image_width_1: 640", "image_width_1: -640", "is not a whole number above 0"},
        {"distortion_model_2: opencv", "distortion_model_2: omni",
-        "no distortion model like \"omni\""},
+        "unsupported distortion model \"omni\""},
        {"distortion_model_2: opencv", "distortion_model_2: fisheye", "cv::fisheye has 4"},
        {"---", "---\n\t: {", "is not YAML"}},
       read);
@@ -168,16 +168,17 @@ TEST(ConvertBadFiles, OpenCvSizesAndFisheyeMayBeSaidBesides) {
   const ImportedRig brown = read_opencv_calibration({file}, {.size_px = Eigen::Vector2i(640, 480)});
   EXPECT_TRUE(std::holds_alternative<OpenCv4>(brown.rig.cameras[0].model));
   ASSERT_EQ(brown.notes.size(), 2u);
-  EXPECT_NE(brown.notes[0].find("if cv::fisheye made them, ask for fisheye4"), std::string::npos);
+  EXPECT_NE(brown.notes[0].find("if they are from cv::fisheye, choose the model fisheye4"),
+            std::string::npos);
 
   const auto sized = folder.write(opencv_calibration(rig));
   EXPECT_NE(error_message([&] {
               read_opencv_calibration(sized, {.size_px = Eigen::Vector2i(320, 240)});
-            }).find("its images are 640x480 by the file and 320x240 as given"),
+            }).find("its images are 640x480 in the file, but 320x240 was given"),
             std::string::npos);
   EXPECT_NE(error_message([&] {
               read_opencv_calibration({sized[0], sized[0]});
-            }).find("is in another of the files too"),
+            }).find("is also in another of the files"),
             std::string::npos);
 }
 
@@ -186,18 +187,20 @@ TEST(ConvertBadFiles, Kalibr) {
   const std::string good = kalibr_camchain(rig_of_cameras(OpenCv4{}, 2))[0].text;
   expect_complaints(
       "camchain.yaml", good,
-      {{"cam0:", "left:", "is no camchain: it has no \"cam0\""},
-       {"camera_model: pinhole", "camera_model: omni", ":3: cam0.camera_model: Vernier has no"},
-       {"radtan", "fov", "cam0.distortion_model: Vernier has no distortion model like \"fov\""},
+      {{"cam0:", "left:", "is not a camchain: it has no \"cam0\""},
+       {"camera_model: pinhole", "camera_model: omni",
+        ":3: cam0.camera_model: unsupported camera model"},
+       {"radtan", "fov", "cam0.distortion_model: unsupported distortion model \"fov\""},
        {"intrinsics: [526.05, ", "intrinsics: [", "cam0.intrinsics: holds 3 numbers, not 4"},
        {"intrinsics: [526.05, ", "intrinsics: [nan, ", "cam0.intrinsics[0]: \"nan\" is not a"},
        {"resolution: [640, 480]", "resolution: [640, 0]", "is not [width, height]"},
        {"resolution", "size", "cam0: has no \"resolution\""},
-       {"radtan", "\"rad\\ntan\"", "cam0.distortion_model: \"rad?tan\" is not one line of text"},
+       {"radtan", "\"rad\\ntan\"",
+        "cam0.distortion_model: \"rad?tan\" is not a single-line string"},
        {"T_cn_cnm1", "T_cam_imu", "cam1: has no \"T_cn_cnm1\""},
        {"[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.1, 1.0]", "its last row is not 0 0 0 1"},
        {"  - [0.0, 0.0, 0.0, 1.0]\n", "", "cam1.T_cn_cnm1: is 3x4, not 4x4"},
-       {"  - [0.9", "  - [0.8", "cam1.T_cn_cnm1: is no rotation"}},
+       {"  - [0.9", "  - [0.8", "cam1.T_cn_cnm1: is not a rotation"}},
       read);
   expect_cuts_are_refused("camchain.yaml", good, read);
 }
@@ -212,7 +215,7 @@ TEST(ConvertBadFiles, KalibrChainsAndNames) {
   EXPECT_EQ(read.rig.cameras[0].name, "left");
   EXPECT_EQ(read.rig.cameras[2].name, "camera2");
   ASSERT_EQ(read.notes.size(), 1u);
-  EXPECT_NE(read.notes[0].find("cam1.timeshift_cam_imu is left behind"), std::string::npos);
+  EXPECT_NE(read.notes[0].find("cam1.timeshift_cam_imu is ignored"), std::string::npos);
   // The third camera's pose is the product of two links.
   EXPECT_LT((read.rig.T_camera_first[2].t - rig.T_camera_first[2].t).norm(), 1e-15);
   text = replaced(text, "/camera2/image_raw", "/right/image_raw");
@@ -227,13 +230,14 @@ TEST(ConvertBadFiles, Ros) {
   expect_complaints(
       "left.yaml", good,
       {{"camera_matrix", "matrix", "has no \"camera_matrix\""},
-       {"plumb_bob", "double_sphere", "no distortion model like \"double_sphere\""},
-       {"plumb_bob", "rational_polynomial", "holds 5 coefficients, which rational_polynomial"},
+       {"plumb_bob", "double_sphere", "unsupported distortion model \"double_sphere\""},
+       {"plumb_bob", "rational_polynomial",
+        "holds 5 coefficients, not a number that rational_polynomial"},
        {"data: [526.05, 0,", "data: [526.05, 1,", "has a skew of 1"},
        {"data: [526.05, 0,", "data: [0, 0,", "0: the camera was never calibrated"},
        {"image_width: 640", "image_width: 640.5", "image_width: 640.5 is not a whole number"},
        {"cols: 3\n  data: [1, 0", "cols: 3\n  data: [2, 0",
-        "rectification_matrix: is no rotation"}},
+        "rectification_matrix: is not a rotation"}},
       read);
   expect_cuts_are_refused("left.yaml", good, read);
 }
@@ -272,7 +276,7 @@ TEST(ConvertBadFiles, Colmap) {
   const auto read = [](const std::filesystem::path& file) { read_colmap_cameras(file); };
   Folder folder;
   expect_complaints("cameras.txt", colmap_cameras(one_camera(OpenCv4{}))[0].text,
-                    {{"1 OPENCV", "1 FOV", ":2: Vernier has no camera model like FOV"},
+                    {{"1 OPENCV", "1 FOV", ":2: unsupported camera model FOV"},
                      {"1 OPENCV", "1 FULL_OPENCV", ":2: has 12 words, not 16"},
                      {"1 OPENCV", "1 PINHOLE", ":2: has 12 words, not 8"},
                      {"1 OPENCV", "one OPENCV", ":2: \"one\" is not a finite number"},
@@ -283,7 +287,7 @@ TEST(ConvertBadFiles, Colmap) {
   const auto cameras = folder.write("cameras.txt", files[0].text);
   EXPECT_NE(error_message([&] {
               read(cameras);
-            }).find("holds 2 cameras and nothing beside it says where they are"),
+            }).find("holds 2 cameras, but no file next to it gives their poses"),
             std::string::npos);
   folder.write("images.txt", files[1].text + files[1].text);
   EXPECT_NE(error_message([&] { read(cameras); }).find("images.txt: holds 4 images of 2 cameras"),

@@ -110,7 +110,7 @@ TEST_P(EveryModel, Kalibr) {
   if (model_is("opencv5") || model_is("opencv8")) {
     EXPECT_NE(error_message([&] {
                 kalibr_camchain(rig());
-              }).find("camera \"left\": Kalibr's radtan has no place for k3 = -0.01 of the model"),
+              }).find("camera \"left\": Kalibr's radtan cannot represent k3 = -0.01 of the model"),
               std::string::npos);
     return;
   }
@@ -120,7 +120,7 @@ TEST_P(EveryModel, Kalibr) {
 TEST_P(EveryModel, Ros) {
   const auto files = folder_.write(ros_files(rig()));
   if (GetParam().cameras == 3) {
-    EXPECT_NE(error_message([&] { read_ros_camera_info(files); }).find("holds no pose"),
+    EXPECT_NE(error_message([&] { read_ros_camera_info(files); }).find("has no poses"),
               std::string::npos);
     return;
   }
@@ -157,11 +157,11 @@ TEST(Convert, SmallestModelThatHoldsTheCoefficients) {
   EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0});
             }),
-            "f: s3 = 2 is not in the model opencv8; Vernier has no model that holds it");
+            "f: s3 = 2 is not in the model opencv8; no supported model includes it");
   EXPECT_EQ(error_message([&] {
               model_of({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.5});
             }),
-            "f: ty = -0.5 is not in the model opencv8; Vernier has no model that holds it");
+            "f: ty = -0.5 is not in the model opencv8; no supported model includes it");
 }
 
 TEST(Convert, AModelAskedForMustHoldTheCoefficients) {
@@ -176,7 +176,7 @@ TEST(Convert, AModelAskedForMustHoldTheCoefficients) {
   EXPECT_EQ(error_message([&] {
               camera_from_opencv(in, {640, 480}, "f", Fisheye4{});
             }),
-            "f: is not a fisheye camera, which the model fisheye4 does not hold; choose another "
+            "f: is not a fisheye camera, which the model fisheye4 cannot represent; choose another "
             "model or none");
 }
 
@@ -198,10 +198,11 @@ TEST(Convert, NearestRotation) {
   EXPECT_LT((nearest - R).norm(), 3e-7);
   EXPECT_NE(error_message([&] {
               nearest_rotation(1.00001 * R, "f");
-            }).find("f: is no rotation: it is off orthonormal by 2e-05"),
+            }).find("f: is not a rotation: it deviates from orthonormal by 2e-05"),
             std::string::npos);
-  EXPECT_NE(error_message([&] { nearest_rotation(-R, "f"); }).find("a mirror"), std::string::npos);
-  EXPECT_NE(error_message([&] { nearest_rotation(R * NAN, "f"); }).find("no rotation"),
+  EXPECT_NE(error_message([&] { nearest_rotation(-R, "f"); }).find("a reflection"),
+            std::string::npos);
+  EXPECT_NE(error_message([&] { nearest_rotation(R * NAN, "f"); }).find("not a rotation"),
             std::string::npos);
 }
 
@@ -212,12 +213,14 @@ TEST(Convert, NamesThatAreNoFiles) {
     for (const auto& format : std::vector<std::function<void()>>{[&] { mrcal_cameramodels(rig); },
                                                                  [&] { ros_files(rig); },
                                                                  [&] { colmap_cameras(rig); }}) {
-      EXPECT_NE(error_message(format).find("its name cannot be that of a file"), std::string::npos)
+      EXPECT_NE(error_message(format).find("its name is not valid as a file name"),
+                std::string::npos)
           << name;
     }
   }
   rig.cameras[1].name = "the right";
-  EXPECT_NE(error_message([&] { colmap_cameras(rig); }).find("no blanks"), std::string::npos);
+  EXPECT_NE(error_message([&] { colmap_cameras(rig); }).find("cannot contain blanks"),
+            std::string::npos);
 }
 
 TEST(Convert, LengthsInMillimetres) {

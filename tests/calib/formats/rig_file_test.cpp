@@ -73,7 +73,7 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
   EXPECT_NE(
       complaint_of(replaced(text, "\"k1\"", "\"k7\"")).find("rig.json: cameras[0].parameters"),
       std::string::npos);
-  EXPECT_NE(complaint_of(replaced(text, "radial1", "radial9")).find("there is no such model"),
+  EXPECT_NE(complaint_of(replaced(text, "radial1", "radial9")).find("unknown model"),
             std::string::npos);
   EXPECT_NE(complaint_of(replaced(text, "\"ay\":1", "\"ay\":2")).find("null direction"),
             std::string::npos);
@@ -139,8 +139,8 @@ TEST(RigFile, WhatIsHeldIsOneOfTheRigsParameters) {
   RigEstimate e = estimate();
   e.calibration->held = {"left.ax", "port.ax"};
   EXPECT_EQ(complaint_of(format_rig(e)),
-            "rig.json: calibration.held[1]: the rig has no parameter \"port.ax\"; name it as "
-            "parameter_names does, after the camera");
+            "rig.json: calibration.held[1]: the rig has no parameter \"port.ax\"; use a name from "
+            "parameter_names");
 }
 
 TEST(RigFile, NewNamesOfCamerasStandEverywhere) {
@@ -154,8 +154,9 @@ TEST(RigFile, NewNamesOfCamerasStandEverywhere) {
   EXPECT_NE(test::error_message([&] { rename_cameras(e, {"a"}); }).find("1 names for 2 cameras"),
             std::string::npos);
   for (const std::vector<std::string>& names : {std::vector<std::string>{"a", "a"}, {"a", ""}}) {
-    EXPECT_NE(test::error_message([&] { rename_cameras(e, names); }).find("two cameras have one"),
-              std::string::npos);
+    EXPECT_NE(
+        test::error_message([&] { rename_cameras(e, names); }).find("two cameras have the same"),
+        std::string::npos);
   }
 }
 

@@ -326,7 +326,7 @@ TEST_F(Answer, NullsAreNoNumbersAndTheWorst) {
 }
 
 TEST_F(Answer, WhatIsNoJsonOrTooLittleIsAnError) {
-  const std::string said = "mrcal: its Python's answer is not what was asked for";
+  const std::string said = "mrcal: its Python script gave an unexpected answer";
   EXPECT_NE(error_output(ones("a['projection'][0][0][0][0] = math.nan")).find(said),
             std::string::npos);
   EXPECT_NE(error_output(ones("del a['projection'][0][0]")).find(said), std::string::npos);

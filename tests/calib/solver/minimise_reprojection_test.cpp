@@ -45,8 +45,8 @@ class CameraWithoutViews : public testing::Test {
 
 TEST_F(CameraWithoutViews, IsNamed) {
   const std::string expected =
-      "camera 1 (\"right\"): no view of the board is left of it, and nothing else is known of its "
-      "f_px; give views of it, or hold or know all of its parameters";
+      "camera 1 (\"right\"): it has no view of the board, and no prior gives its f_px; add views "
+      "of it, or give fixed values or priors for all of its parameters";
   EXPECT_EQ(error_output({}), expected);
   EXPECT_EQ(error_output({.held = held_mask(rig_, {{"right.k1", {}}})}), expected);
 }
@@ -57,9 +57,8 @@ TEST_F(CameraWithoutViews, MayBeHeld) {
   EXPECT_EQ(solved.rig.cameras[1].parameters, rig_.cameras[1].parameters);
   EXPECT_NE(solved.rig.cameras[0].parameters, rig_.cameras[0].parameters);
   all_.erase(all_.begin() + 6);
-  EXPECT_NE(
-      error_output({.held = held_mask(rig_, all_)}).find("nothing else is known of its wy_rad"),
-      std::string::npos);
+  EXPECT_NE(error_output({.held = held_mask(rig_, all_)}).find("no prior gives its wy_rad"),
+            std::string::npos);
 }
 
 TEST_F(CameraWithoutViews, MayBeKnownFromElsewhere) {
@@ -82,12 +81,12 @@ TEST(MinimiseReprojection, RefusesAProblemOfAnotherRig) {
     return error_message([&] { minimise_reprojection(board.observations, board.truth, problem); });
   };
   EXPECT_EQ(error_output({.held = held_mask(test::stereo_rig(Pinhole{}), {})}),
-            "held parameters: there is not one flag a parameter of the rig; make them with "
+            "held parameters: there is not one flag per rig parameter; make them with "
             "held_mask");
   EXPECT_EQ(error_output({.priors = {{board.truth.rig, Eigen::MatrixXd::Identity(3, 3)}}}),
-            "prior: it is of other parameters than the rig's; make it with rig_prior");
+            "prior: it does not match the rig's parameters; make it with rig_prior");
   EXPECT_EQ(error_output({.corner_weights = {{1.0}}}),
-            "corner weights: there is not one a corner; give one a corner");
+            "corner weights: there is not one per corner; give one per corner");
 }
 
 }  // namespace

@@ -205,7 +205,7 @@ TEST(Resolver, NamesWhatIsWrong) {
   EXPECT_EQ(message([&] { resolver.resolve(pixels); }),
             "corner 77: its pixel is not finite; leave the corner out");
   EXPECT_EQ(message([&] { resolver.resolve(Eigen::Matrix2Xd::Zero(2, 5)); }),
-            "pixels: there are 5 for 1008 corners; give one a corner, in the order of the "
+            "pixels: there are 5 for 1008 corners; give one per corner, in the order of the "
             "observations");
   BoardState other = board.truth;
   other.frames[3] = 99;
@@ -215,12 +215,12 @@ TEST(Resolver, NamesWhatIsWrong) {
     return message([&] { Resolver(board.observations, board.truth, problem); });
   };
   EXPECT_EQ(fault({.held = {true}}),
-            "held parameters: there is not one flag a parameter of the rig; make them with "
+            "held parameters: there is not one flag per rig parameter; make them with "
             "held_mask");
   EXPECT_EQ(fault({.priors = {{board.truth.rig, Eigen::MatrixXd::Identity(3, 3)}}}),
-            "prior: it is of other parameters than the rig's; make it with rig_prior");
+            "prior: it does not match the rig's parameters; make it with rig_prior");
   EXPECT_EQ(fault({.corner_weights = {{1.0}}}),
-            "corner weights: there is not one a corner; give one a corner");
+            "corner weights: there is not one per corner; give one per corner");
   EXPECT_EQ(fault({.pixel_sigma_px = 0}),
             "pixel sigma: it is not positive; give a standard deviation in pixels");
 }

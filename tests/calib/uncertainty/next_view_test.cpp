@@ -118,9 +118,10 @@ TEST(NextView, HeldParametersStayHeld) {
   const Eigen::MatrixXd F = ScaledDecomposition(*estimate.covariance).factor();
   const auto candidates = candidates_of(estimate.rig, {.places = 3, .angles = 3});
   EXPECT_EQ(updated_factor(F, candidates[0].information).row(1).norm(), 0);
-  EXPECT_NE(test::error_message([&] {
-              advise_views(F, candidates, target_quantity(estimate.rig, "left.ax", 5));
-            }).find("left.ax: it has no error to reduce: what it depends on is held"),
+  EXPECT_NE(test::error_message(
+                [&] { advise_views(F, candidates, target_quantity(estimate.rig, "left.ax", 5)); })
+                .find("left.ax: its standard deviation is already 0: the parameters it depends on "
+                      "are fixed"),
             std::string::npos);
 }
 
@@ -196,11 +197,11 @@ TEST(BoardPlacements, RefuseABoardThatFitsNowhere) {
       test::error_message([&] {
         placed_boards(rig, target_points(Chessboard{9, 6, 0.01}));
       }),
-      "board: nowhere do all cameras see it whole; give a larger board, which is held farther "
-      "away, or let one camera see a part of it (--partly)");
+      "board: no placement shows it whole in all cameras; use a larger board farther away, or let "
+      "one camera see a part of it (--partly)");
   EXPECT_NE(test::error_message([&] {
               placed_boards(rig, target_points(Chessboard{9, 1, 0.01}));
-            }).find("board: its corners lie on a line"),
+            }).find("board: its corners are collinear"),
             std::string::npos);
 }
 
@@ -235,7 +236,7 @@ TEST(TargetQuantity, RectificationSeesWhatPartsTheRows) {
 TEST(TargetQuantity, RefusesWhatIsNoError) {
   const Rig rig = test::stereo_rig();
   const std::string unknown = test::error_message([&] { target_quantity(rig, "sharpness", 5); });
-  EXPECT_NE(unknown.find("\"sharpness\": there is no such error to reduce; use depth, projection, "
+  EXPECT_NE(unknown.find("\"sharpness\": unknown quantity; supported: depth, projection, "
                          "rectification, baseline or a parameter: left.f_px"),
             std::string::npos)
       << unknown;

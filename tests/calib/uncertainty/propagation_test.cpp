@@ -398,7 +398,7 @@ TEST(ProjectionUncertainty, BadInputIsNamed) {
                  ProjectionUncertainty(rig, Eigen::MatrixXd::Identity(3, 3), 0,
                                        PointFixedTo::camera);
                }),
-               "of other parameters than the rig's");
+               "does not match the rig's parameters");
 }
 
 TEST(RigAndBoards, WhatIsMissingIsNamed) {
@@ -466,7 +466,7 @@ TEST(Triangulation, OfARigOfOneCameraIsRefused) {
                  TriangulationUncertainty(estimate().rig, estimate().covariance->matrix)
                      .at({{1, 1}, {1, 1}}, -1);
                }),
-               "pixel noise is not a number of 0 or more");
+               "pixel noise is negative or not a number");
 }
 
 TEST(TriangulationUncertainty, ALengthIsBetterKnownThanItsEnds) {
@@ -558,7 +558,7 @@ TEST(SampledPropagation, BadInputIsNamed) {
   EXPECT_PRED2(says, error_output([&] {
                  sampled_triangulation(sampler, {}, TriangulationFrame::rig, {&parting, 1}, 0);
                }),
-               "no point under the rig itself");
+               "cannot be triangulated with the rig itself");
 }
 
 }  // namespace

@@ -82,8 +82,8 @@ TEST(ModelComparison, SaysWhyItComparesNothing) {
   });
   const CalibrationOptions options{.held = {{"right.k1", -0.132}}};
   const ModelComparison c = compared(seen, options);
-  EXPECT_EQ(c.not_compared.find("with some views left out, camera 1 (\"right\"): no view of the "
-                                "board is left of it"),
+  EXPECT_EQ(c.not_compared.find(
+                "with some views left out, camera 1 (\"right\"): it has no view of the board"),
             0u)
       << c.not_compared;
   EXPECT_TRUE(c.richer.empty());

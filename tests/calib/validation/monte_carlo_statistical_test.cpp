@@ -168,10 +168,11 @@ TEST(MonteCarloCheck, NamesWhatIsWrong) {
     return std::string("nothing thrown");
   };
   EXPECT_EQ(message([&] { calibrated.check(Eigen::MatrixXd::Identity(3, 3)); }),
-            "covariance: it has another size than the rig has parameters; give it in full, with "
-            "zeros for held parameters");
+            "covariance: its size does not match the number of the rig's parameters; give it in "
+            "full, with "
+            "zeros for fixed parameters");
   EXPECT_EQ(message([&] { calibrated.check(calibrated.covariance, 20); }),
-            "Monte-Carlo check: 20 copies were solved, too few to judge 16 parameters; ask for "
+            "Monte-Carlo check: 20 copies were solved, too few for 16 parameters; ask for "
             "more trials");
 }
 

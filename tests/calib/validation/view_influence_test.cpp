@@ -130,7 +130,7 @@ TEST(ViewInfluence, SaysWhatIsMissing) {
   without.evidence.reset();
   EXPECT_NE(test::error_message([&] {
               view_influence(without, "a.json");
-            }).find("a.json: it holds no evidence"),
+            }).find("a.json: it has no evidence"),
             std::string::npos);
   without = estimate;
   without.calibration.reset();
@@ -146,12 +146,12 @@ TEST(ViewInfluence, AViewOfAnUnknownFrameIsAnError) {
   RigEstimate estimate = calibrate(some_views(41));
   estimate.evidence->observations.views.back().frame = 99;
   EXPECT_EQ(test::error_message([&] { view_influence(estimate); }),
-            "frame 99: a view is of it, but no pose of the board is; give a pose for every frame "
-            "of the views");
+            "frame 99: it has a view but no board pose; give one board pose for every "
+            "frame with views");
   estimate.evidence->frames.push_back(99);
   EXPECT_NE(test::error_message([&] {
               view_influence(estimate);
-            }).find("its evidence has not one pose of the board a frame"),
+            }).find("its evidence does not have one board pose per frame"),
             std::string::npos);
 }
 

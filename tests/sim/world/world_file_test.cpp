@@ -233,7 +233,7 @@ TEST(WorldFile, NamesAMissingOrWrongHeader) {
 TEST(WorldFile, NamesTheLineOfASyntaxError) {
   const std::string message = message_of(kHead + "name = \n");
   EXPECT_EQ(message.rfind("w.world.toml:3: not TOML: ", 0), 0u) << message;
-  EXPECT_NE(message.find("; mend the syntax"), std::string::npos) << message;
+  EXPECT_NE(message.find("; correct the syntax"), std::string::npos) << message;
 }
 
 TEST(WorldFile, ReadsTenThousandSegmentsQuickly) {

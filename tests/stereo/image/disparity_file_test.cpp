@@ -170,16 +170,16 @@ TEST_F(DisparityFile, RefusesBadNumpyArrays) {
   for (const std::size_t length : {6, 9, 10, 30}) {
     expect_complaint(good.substr(0, length), "cut off in its NumPy header");
   }
-  expect_complaint(npy("<f4", data, "(2, 3)", "True"), "Fortran order");
+  expect_complaint(npy("<f4", data, "(2, 3)", "True"), "Fortran (column-major) order");
   expect_complaint(npy("<f4", data, "(6,)"), "has 1 dimensions, not 2");
   expect_complaint(npy("<f4", data, "(2, 3, 1)"), "has 3 dimensions, not 2");
-  expect_complaint(npy("<f4", "", "(0, 3)"), "a side of 0 pixels");
-  expect_complaint(npy("<f4", data, "(-2, 3)"), "a side of -2 pixels");
-  expect_complaint(npy("<f4", data, "(2.5, 3)"), "a side of 2.5 pixels");
-  expect_complaint(npy("<f4", data, "(1e18, 3)"), "a side of 1e18 pixels");
+  expect_complaint(npy("<f4", "", "(0, 3)"), "a dimension of 0");
+  expect_complaint(npy("<f4", data, "(-2, 3)"), "a dimension of -2");
+  expect_complaint(npy("<f4", data, "(2.5, 3)"), "a dimension of 2.5");
+  expect_complaint(npy("<f4", data, "(1e18, 3)"), "a dimension of 1e18");
   expect_complaint(npy("<f4", data, "(1000000, 1000000)"), "fewer than the 4000000000000");
   for (const char* type : {"<c8", "|b1", "<f2", "<U4", "|O", "", "<i3", "f4", "xf4"}) {
-    expect_complaint(npy(type, data), std::string("numbers of type ") + type);
+    expect_complaint(npy(type, data), std::string("data type ") + type);
   }
   std::string other = good;
   other[6] = '\x07';

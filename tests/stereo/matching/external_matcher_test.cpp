@@ -209,7 +209,7 @@ TEST_F(ExternalMatcher, TellsWhatWentWrongInTheProgram) {
   expect_complaint(
       script("fails", "echo one >&2; echo 'two\ttabs' >&2; echo >&2; exit 3\n") + names,
       "ended with status 3: two tabs; try the command by hand");
-  expect_complaint(script("silent", "exit 1\n") + names, "ended with status 1: no word of why");
+  expect_complaint(script("silent", "exit 1\n") + names, "ended with status 1: no output");
   expect_complaint(script("says", "echo to standard output; exit 1\n") + names,
                    "ended with status 1: to standard output");
   expect_complaint(script("long", "printf 'x%.0s' $(seq 5000) >&2; exit 1\n") + names,

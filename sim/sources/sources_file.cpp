@@ -22,7 +22,7 @@ const SourceParameter& parameter_of(std::string_view key) {
                        [&](const SourceParameter& parameter) { return parameter.name == key; });
 }
 
-/// Four digits: more than any interval here is worth.
+/// Four digits, more than any interval here justifies.
 double rounded(double value) {
   return vernier::internal::to_real(fmt::format("{:.4g}", value)).value_or(value);
 }
@@ -69,7 +69,7 @@ SourceEntry lateral_shift_entry(const MeasuredLateralShift& shift, ShiftMode mod
   return entry;
 }
 
-/// Fit for a comment.
+/// Replaces control characters by blanks, for use in a comment.
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(),

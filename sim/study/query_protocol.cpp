@@ -53,9 +53,8 @@ bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& p
   return inside;
 }
 
-/// Whether a way of short straight steps, free of surfaces at the height of the eye, leads from a
-/// point to one of the route: first one look at all of the route, then a search over a grid through
-/// the point.
+/// Whether a path of short straight steps, free of surfaces at eye height, connects a point to the
+/// route: first a direct line of sight to the route, then a search over a grid through the point.
 class WayToRoute {
  public:
   WayToRoute(const Visibility& visibility, double height_m)
@@ -102,7 +101,7 @@ class WayToRoute {
   bool sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
     return visibility_.sees({from.x(), from.y(), height_m_}, {to.x(), to.y(), height_m_});
   }
-  /// Sees a little beyond, because a point on a surface is seen from both of its sides.
+  /// Extends the line of sight a little, because a point on a surface is visible from both sides.
   bool steps(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
     constexpr double beyond = 0.04;
     return sees(from, to + beyond * (to - from));
@@ -156,7 +155,7 @@ ProtocolSpan span(QueryProtocol protocol) {
 }
 
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
-  constexpr double floor_m = 0.02;  // what lies lower is the floor itself
+  constexpr double floor_m = 0.02;  // surfaces below are the floor itself
   for (const WorldSurface& surface : world.surfaces) {
     double low = surface.polygon_m[0].z(), high = low;
     for (const auto& point : surface.polygon_m) {

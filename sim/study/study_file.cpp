@@ -56,7 +56,7 @@ class StudyReader : private TomlReader {
   StudyFile read(const toml::table& root, const std::filesystem::path& sources);
 
  private:
-  /// A table of the root, or nothing where it is left out.
+  /// A table of the root, or null if absent.
   const toml::table* section(const toml::table& root, const char* name) const {
     const toml::node* node = root.get(name);
     return node ? &table(*node, fmt::format("[{}]", name)) : nullptr;
@@ -81,7 +81,7 @@ class StudyReader : private TomlReader {
   void read_sweep(const toml::table& root, StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
 
-  SourceSettings sources_;  // what [sources] of the study begins with
+  SourceSettings sources_;  // initial values of the study's [sources]
 };
 
 double StudyReader::number_in(const toml::node& node,
@@ -120,7 +120,7 @@ void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
   }
 }
 
-/// The file that [sources] names, and its values.
+/// The file that [sources] refers to, and its values.
 std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
                                                      const std::filesystem::path& instead) {
   const toml::table* own = section(root, "sources");
@@ -250,7 +250,7 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
 void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   const auto* sweep = section(root, "sweep");
   if (!sweep) return;
-  // toml++ keeps tables sorted by key; the file's order decides which sweep is slowest.
+  // toml++ sorts tables by key; the order in the file decides which sweep is slowest.
   std::vector<std::pair<toml::source_position, std::string>> keys;
   for (const auto& [key, value] : *sweep) {
     keys.emplace_back(key.source().begin, std::string(key.str()));
@@ -276,7 +276,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     std::vector<std::string> values;
     for (const toml::node& value : list(node, "sweep." + key)) {
       values.push_back(text_of(value));
-      toml::table changed = root;  // each value by itself first, so that a complaint finds its line
+      toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
       StudyReader reader(place(), value.source().begin.line);
       reader.sources_ = sources_;
@@ -288,7 +288,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   }
 }
 
-/// Every setting in effect, by its dotted key: what tells one cell from another.
+/// Every setting in effect, by its dotted key: identifies a cell.
 std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   std::map<std::string, std::string> all;
   for (const SourceParameter& p : source_parameters()) {

@@ -90,7 +90,7 @@ struct StudyStore::Connection {
     if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
   }
 
-  /// A prepared statement that finishes itself.
+  /// A prepared statement that is finalised on destruction.
   class Statement {
    public:
     Statement(const Connection& connection, const char* sql) : connection_(connection) {

@@ -28,8 +28,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double skirting_m = 0.08;
-constexpr double route_end_m = 0.6;    ///< from the end walls of the corridor
-constexpr double window_room_m = 1.2;  ///< between the end of a room's leg and its outer wall
+constexpr double route_end_m = 0.6;  ///< distance from the end walls of the corridor
+constexpr double window_room_m =
+    1.2;  ///< distance between the end of a room's leg and its outer wall
 constexpr std::uint32_t corridor_number = 0;  ///< rooms count from 1
 constexpr std::uint32_t door_place_item = 100;
 
@@ -40,7 +41,7 @@ struct Room {
   RouteLeg leg;
 };
 
-/// Everything that follows from the options before anything is drawn, and the rooms' doors.
+/// Everything determined by the options before any draw, and the rooms' doors.
 struct Plan {
   Vector3d size_m;
   double south_m = 0, north_m = 0;  ///< the corridor's faces
@@ -123,7 +124,7 @@ std::vector<double> doors(const Plan& plan, int window_side) {
   return middles;
 }
 
-// A line along x that leaves out `half` to both sides of every door.
+// A line along x, interrupted by `half` on both sides of every door.
 void broken_line(Shapes& shapes,
                  double x0,
                  double x1,
@@ -179,7 +180,7 @@ void raise_corridor_wall(Shapes& shapes, const Plan& plan, int window_side) {
 
 void raise_walls(Shapes& shapes, const Plan& plan) {
   const Vector3d& size = plan.size_m;
-  // Nothing lies beyond the outer walls, so that their inner faces stand for them.
+  // Nothing lies beyond the outer walls, so they are represented by their inner faces.
   shapes.surfaces_of_box(Vector3d::Zero(), size, all_faces);
   raise_corridor_wall(shapes, plan, 0);
   raise_corridor_wall(shapes, plan, 2);

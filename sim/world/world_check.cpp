@@ -57,7 +57,8 @@ std::optional<WorldError> segment_error(const Eigen::Vector3d& a_m, const Eigen:
   }
   const double length_m = (b_m - a_m).norm();
   if (length_m == 0) return WorldError{"has no length", "move one end or remove it"};
-  // Coordinates have a tenth of a millimetre, so that exactly 1 mm must survive rounding.
+  // Coordinates are rounded to a tenth of a millimetre, so that exactly 1 mm must be accepted
+  // despite rounding.
   if (length_m < kTolerance_m * (1 - 1e-6)) {
     return WorldError{"is shorter than 1 mm", "move one end or remove it"};
   }
@@ -72,7 +73,7 @@ std::optional<WorldError> surface_error(const std::vector<Eigen::Vector3d>& poly
   for (std::size_t i = 0; i < polygon_m.size(); ++i) {
     if (!polygon_m[i].allFinite()) return WorldError{"is not finite", "give finite numbers"};
     const Eigen::Vector3d from = polygon_m[i] - polygon_m[0];
-    // Newell's normal: the sum over the border holds for polygons that are not convex, too.
+    // Newell's normal, valid for non-convex polygons too.
     area += 0.5 * from.cross(polygon_m[(i + 1) % polygon_m.size()] - polygon_m[0]);
     centre += polygon_m[i] / static_cast<double>(polygon_m.size());
   }

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 
-/// Turns parsed TOML into a description. Every complaint carries the file and the line.
+/// Converts parsed TOML to a description. Every error has the file and the line.
 class WorldReader : private TomlReader {
  public:
   using TomlReader::TomlReader;
@@ -187,7 +187,7 @@ void WorldReader::check_header(const toml::table& root) const {
 
 WorldDescription WorldReader::read(const toml::table& root) {
   check_header(root);
-  // [[view_dependency]] belongs to the visibility that reads it, and is no fault here.
+  // [[view_dependency]] is read by the visibility and accepted here.
   check_keys(root,
              {"format", "version", "name", "template", "instance", "loose", "segment", "surface",
               "corner", "route", "view_dependency"},

@@ -29,7 +29,7 @@ bool near_image(const Camera& camera, const Eigen::Vector2d& pixel) {
 
 }  // namespace
 
-/// What a left pixel brings: its ray and how that depends on the pixel and on the left intrinsics.
+/// The ray of a left pixel and its derivatives by the pixel and the left intrinsics.
 struct EpipolarBand::Ray {
   Eigen::Vector3d direction;                           ///< (x, y, 1), left frame
   Eigen::Matrix2d by_pixel;                            ///< of (x, y)
@@ -58,7 +58,7 @@ EpipolarBand::EpipolarBand(const Rig& rig,
 std::optional<BandNode> EpipolarBand::node(const Ray& ray, double inverse_depth) const {
   const Pose& T = rig_.T_camera_first[1];
   const Eigen::Vector3d turned = T.R * ray.direction;
-  const Eigen::Vector3d x = turned + inverse_depth * T.t;  // the point over its left depth
+  const Eigen::Vector3d x = turned + inverse_depth * T.t;  // the point divided by its left depth
   if (!(x.z() > 1e-3 * x.norm())) return std::nullopt;
   ProjectionJacobian J;
   BandNode node{inverse_depth, project(rig_.cameras[1], x, J)};
@@ -103,7 +103,7 @@ void EpipolarBand::subdivide(const Ray& ray,
   nodes.back().follows = true;
 }
 
-/// The last node on the way from one that is near the image to an inverse depth that is not.
+/// The last node between one near the image and an inverse depth whose node is not.
 BandNode EpipolarBand::edge(const Ray& ray, BandNode in, double out) const {
   for (int i = 0; i < edge_halvings; ++i) {
     const double middle = 0.5 * (in.inverse_depth + out);

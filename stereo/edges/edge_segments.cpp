@@ -19,11 +19,11 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double end_sigma_px = 3;       // along the line, of an end that is no corner
-constexpr double corner_reach_px = 8;    // from a segment's last point to the corner
-constexpr double corner_sigma_px = 0.5;  // a corner less well known than this is none
+constexpr double end_sigma_px = 3;     // along the line, of an end that is not a corner
+constexpr double corner_reach_px = 8;  // maximum distance of a segment's last point from the corner
+constexpr double corner_sigma_px = 0.5;  // maximum standard deviation of a corner
 
-/// A closed chain from where it turns most, so that no side is cut in two.
+/// Rotates a closed chain to begin where it turns most, so that no side is cut in two.
 void start_at_a_corner(const std::vector<EdgePoint>& points, std::vector<int>& chain) {
   const std::size_t size = chain.size();
   constexpr std::size_t step = 3;
@@ -46,7 +46,7 @@ struct End {
   bool is_corner = false;
 };
 
-/// Where two lines meet, if near both ends and well known.
+/// Intersection of two lines, if near both ends and accurate enough.
 std::optional<End> corner_of(const EdgeLine& one,
                              const Eigen::Vector2d& one_end,
                              const EdgeLine& other,
@@ -107,7 +107,7 @@ class ChainSegments {
   }
 
  private:
-  /// An end that is no corner.
+  /// An end that is not a corner.
   End plain_end(const EdgeLine& line, int point) const {
     const double along = line.along(points_[point].pixel_px.cast<double>());
     return {line.at(along),

@@ -53,10 +53,10 @@ Pair mean_of(const std::vector<std::vector<Pair>>& pairs,
   return {mean.density / n, mean.own / n, mean.peer / n};
 }
 
-/// Not a number where both are 0.
+/// NaN if both are 0.
 double ratio_of(const Pair& pair) { return pair.own / pair.peer; }
 
-/// The setting of the largest ratio.
+/// The setting with the largest ratio.
 std::size_t best_setting(const std::vector<std::vector<Pair>>& pairs,
                          std::span<const std::size_t> scenes) {
   std::size_t best = 0;

@@ -44,7 +44,7 @@ constexpr std::array<std::string_view, 4> truth_kinds = {"exact", "measured", "r
                                                          "labelled"};
 constexpr int max_disparity_px = 1 << 15;
 
-/// Turns the tables of a list into pairs. Every complaint carries the file and the line.
+/// Converts the tables of a list to pairs. Every error has the file and the line.
 class SceneReader : private TomlReader {
  public:
   explicit SceneReader(const std::filesystem::path& file)

@@ -18,9 +18,9 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double beyond_px = 3, beyond_corner_px = 9;  // ends from the last points shown
+constexpr double beyond_px = 3, beyond_corner_px = 9;  // of ends from the last visible points
 
-/// A straight line through (s, d).
+/// A straight line fitted to (s, d).
 struct TruthLine {
   double at_zero = 0, slope = 0, rms = 0;
   double operator()(double s) const { return at_zero + slope * s; }

@@ -27,14 +27,14 @@ namespace {
 
 constexpr double png_scale = 256;  // of written files
 
-/// A map as its file holds it.
+/// A map as stored in its file.
 struct StoredMap {
   int width = 0, height = 0;
   bool of_whole_numbers = false;
-  std::vector<double> values;  ///< row by row from the top
+  std::vector<double> values;  ///< row-major from the top
 };
 
-/// The next word of a PFM's head.
+/// The next token of a PFM header.
 std::string_view next_word(std::string_view bytes, std::size_t& at, const std::string& place) {
   const std::string_view blanks(" \t\r\n");
   const std::size_t begin = bytes.find_first_not_of(blanks, at);
@@ -82,7 +82,7 @@ StoredMap parse_pfm(std::string_view bytes, const std::string& place) {
   return map;
 }
 
-/// The only channel, or one of three that are equal.
+/// The only channel, or one of three equal ones.
 cv::Mat one_channel(const cv::Mat& pixels, const std::string& place) {
   cv::Mat first;
   cv::extractChannel(pixels, first, 0);

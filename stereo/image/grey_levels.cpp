@@ -18,14 +18,14 @@ using namespace vernier::internal;
 
 namespace {
 
-/// What a grey value is multiplied by, so that the file's range becomes 0 to 255.
+/// Factor that maps the file's range to 0 to 255.
 double scale_of(const cv::Mat& pixels, std::string_view bytes) {
   const int stated = is_png(bytes) ? 0 : largest_grey_value(bytes);
   if (stated > 0) return 255.0 / stated;
   return pixels.depth() == CV_8U ? 1 : 1.0 / 257;
 }
 
-/// What is done to the image, and whether it holds hardly anything of its range.
+/// Describes the conversion, and whether the image uses hardly any of its range.
 std::string remark_on(const cv::Mat& pixels, double scale) {
   const bool is_colour = pixels.channels() > 1, is_deep = pixels.depth() == CV_16U;
   if (!is_colour && !is_deep && scale == 1) return "";

@@ -22,15 +22,16 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr int fine = 16;      // of OpenCV's disparities a pixel, and what their number divides
-constexpr int max_px = 2000;  // 16 bits hold them
+// OpenCV's subdivisions of a pixel, and the divisor of its number of disparities.
+constexpr int fine = 16;
+constexpr int max_px = 2000;  // limit of 16-bit disparities
 
-/// How the images are prolonged: so far that no pixel of theirs is in OpenCV's unsearched band.
+/// Padding of the images, so that none of their pixels is in OpenCV's unsearched band.
 struct Border {
   int sides_px = 0, left_px = 0, right_px = 0;
 };
 
-/// The disparities that OpenCV is told to search.
+/// The disparity range passed to OpenCV.
 struct DenseSearch {
   int min_px = 0, count = 0;
   Border border;
@@ -59,7 +60,7 @@ void check(bool good, const char* place, const char* fault, const char* remedy) 
   if (!good) throw Error(place, fault, remedy);
 }
 
-/// What OpenCV found, without what lies outside of the range or of the right image.
+/// OpenCV's result, without disparities outside the range or matches outside the right image.
 DisparityMap cut_out(const cv::Mat& found,
                      const DenseSearch& search,
                      const RectifiedPair& pair,
@@ -136,7 +137,7 @@ DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, cons
   matcher->setUniquenessRatio(o.uniqueness_percent);
   matcher->setDisp12MaxDiff(o.disp12_max_diff_px);
   matcher->setSpeckleWindowSize(o.speckle_px);
-  matcher->setSpeckleRange(o.speckle_range_px * fine);  // here in 1/16 px, in SGBM in pixels
+  matcher->setSpeckleRange(o.speckle_range_px * fine);  // in 1/16 px here, in pixels for SGBM
   return run(*matcher, pair, range, search, "bm");
 }
 

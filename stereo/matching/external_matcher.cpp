@@ -42,9 +42,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> outputs =
      {"{output.png}", "output.png"},
      {"{output.npy}", "output.npy"}}};
 
-/// A command parted into words, and the name of the map that it writes.
+/// A command split into words, and the name of the map that it writes.
 struct Command {
-  std::string place;  ///< in messages
+  std::string place;  ///< used in error messages
   std::vector<std::string> words;
   std::string output;
 };
@@ -105,7 +105,7 @@ Command parse_command(const std::string& command) {
 
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-/// In one go: what is put in may look like a placeholder itself.
+/// In a single pass: inserted values may look like placeholders themselves.
 std::string filled(std::string_view word, const Values& values) {
   std::string text;
   while (!word.empty()) {
@@ -147,7 +147,7 @@ void write_image(const fs::path& file, const GreyLevels& grey) {
   write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Throws Error for a program that did not do its work.
+/// Throws Error for a program that failed.
 void check_run(const ProgramRun& run, const Command& command, double time_limit_s) {
   std::string fault;
   if (run.start_error == ENOENT) {
@@ -165,7 +165,7 @@ void check_run(const ProgramRun& run, const Command& command, double time_limit_
   if (!fault.empty()) throw Error(command.place, fault, "try the command by hand");
 }
 
-/// The program's map; its faults are the program's.
+/// Reads the program's map; errors refer to the program.
 DisparityMap read_output(const fs::path& file,
                          const Command& command,
                          const DisparityRange& range,

@@ -14,7 +14,8 @@
 namespace vernier::stereo::internal {
 namespace {
 
-/// Whether there is a step along a line of `count` pixels from (x, y) in direction (dx, dy).
+/// Whether there is a discontinuity along a line of `count` pixels from (x, y) in direction (dx,
+/// dy).
 bool line_has_step(const DisparityMap& map, int x, int y, int dx, int dy, int count) {
   int last = -1;
   float before = 0;

@@ -58,7 +58,7 @@ bool agrees(const StretchBlock& a, const StretchBlock& b, double gradient) {
          static_cast<float>(gradient) * std::hypot(across, static_cast<float>(a.y - b.y));
 }
 
-/// Calls visit(block) for the blocks of a grid at a place and around it.
+/// Calls visit(block) for the blocks of a grid at a position and around it.
 template <class Blocks, class Visit>
 void for_each_about(Blocks& grid, int column, int row, const Visit& visit) {
   for (int y = std::max(0, row - 1); y <= std::min(grid.rows - 1, row + 1); ++y) {
@@ -68,7 +68,7 @@ void for_each_about(Blocks& grid, int column, int row, const Visit& visit) {
   }
 }
 
-/// Says of every block what becomes of it.
+/// Sets the status of every block.
 void decide(const StretchOptions& options, StretchBlocks& grid) {
   const auto good = [&](const StretchBlock& block) {
     return block.searched > 0 && block.score >= static_cast<float>(options.min_score);
@@ -89,8 +89,8 @@ void decide(const StretchOptions& options, StretchBlocks& grid) {
   }
 }
 
-/// What kept blocks of `from`, each of its pixels `scale` wide, had about every block; everything
-/// where there are none.
+/// Search ranges from the kept blocks of `from` around every block, with pixels `scale` wide; the
+/// full range if there are none.
 std::vector<BlockRange> ranges_about(const StretchBlocks& from,
                                      int scale,
                                      const StretchBlocks& grid,
@@ -135,7 +135,7 @@ GreyLevels halved(const GreyLevels& image) {
   return half;
 }
 
-/// Blocks of the images at half their size, if they are not too small for that.
+/// Blocks of the images at half size, unless they are too small.
 StretchBlocks coarser_blocks(const RectifiedPair& pair,
                              const std::vector<EdgePoint>& left_edges,
                              const DisparityRange& range,
@@ -156,7 +156,7 @@ StretchBlocks coarser_blocks(const RectifiedPair& pair,
   return stretch_blocks(half, edges, half_range, options);
 }
 
-/// Ranges that the last frame leaves, and the whole one for some blocks all the same.
+/// Ranges from the last frame, and the full range for some blocks.
 std::vector<BlockRange> ranges_after(const StretchBlocks& last,
                                      std::uint32_t frame,
                                      const StretchBlocks& grid,
@@ -177,7 +177,7 @@ std::vector<BlockRange> ranges_after(const StretchBlocks& last,
   return ranges;
 }
 
-/// For every pixel the kept block of the best score that holds it, −1 for none.
+/// For every pixel, the kept block with the best score that contains it, −1 if none.
 class BestBlocks {
  public:
   BestBlocks(const StretchBlocks& grid, const StretchOptions& options, int width, int height)

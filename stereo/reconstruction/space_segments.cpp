@@ -29,7 +29,7 @@ void check(const SpaceSegmentOptions& o) {
   throw Error("space segments", "an option is not above 0", "give a depth and a share above 0");
 }
 
-/// The part that needs no more than the rectified geometry.
+/// The part that needs only the rectified geometry.
 MeasuredSegment placed(const SegmentDisparity& s,
                        const RectifiedGeometry& g,
                        const SpaceSegmentOptions& options) {
@@ -54,7 +54,7 @@ MeasuredSegment placed(const SegmentDisparity& s,
   return result;
 }
 
-/// Where the raw images have a rectified segment.
+/// Raw positions of a rectified segment.
 std::optional<StereoSegment> raw_segment(const SegmentDisparity& s,
                                          const RawPixels& left,
                                          const RawPixels& right) {

@@ -25,7 +25,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ByPose = Eigen::Matrix<double, 3, 6>;
 
-/// Derivative of the unit vector of a vector with a derivative.
+/// Derivative of v / |v| for a vector v with a given derivative.
 ByPose of_unit(const Vector3d& vector, const ByPose& by_pose) {
   const Vector3d unit = vector.normalized();
   return (Matrix3d::Identity() - unit * unit.transpose()) * by_pose / vector.norm();

@@ -54,7 +54,7 @@ Eigen::RowVectorXd through_ray(const Camera& camera,
   return -row.head<2>() * inverse * J.camera;
 }
 
-/// The part of J C Jᵀ that no column of X can explain, as its trace: tr(C JᵀJ) − tr(C (QᵀJ)ᵀ QᵀJ)
+/// The part of J C Jᵀ outside the column space of X, as its trace: tr(C JᵀJ) − tr(C (QᵀJ)ᵀ QᵀJ)
 /// with Q an orthonormal basis of X.
 double unexplained(const Eigen::MatrixXd& J, const Eigen::MatrixXd& C, const Eigen::MatrixXd& X) {
   const Eigen::MatrixXd Q = orthonormal_basis(X);
@@ -83,7 +83,7 @@ void check_grid(const Rig& rig, int columns, int rows, double distance_m) {
   }
 }
 
-/// Root mean variances from the derivatives J of the seen points at (x, y).
+/// Root mean variances from the derivatives J of the visible points at (x, y).
 void summarise(const Eigen::MatrixXd& J,
                const Eigen::MatrixXd& C,
                const Eigen::MatrixXd& affine,
@@ -207,7 +207,7 @@ std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampl
   }
   std::vector<SampledDisparity> result;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double mean = sum[k] / count[k];  // 0/0, NaN, where no draw is physical
+    const double mean = sum[k] / count[k];  // 0/0, NaN, if no draw is physical
     const double spread = squares[k] - count[k] * mean * mean;
     result.push_back({mean, std::sqrt((spread < 0 ? 0 : spread) / (count[k] - 1)),
                       1 - static_cast<double>(count[k]) / options.samples});

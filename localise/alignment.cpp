@@ -40,7 +40,8 @@ void check(const AlignmentOptions& o) {
   if (!good(o.max_turn_rad, o.turn_step_rad) || !good(o.max_shift_m, o.shift_step_m) ||
       !(o.position_sigma_m > 0)) {
     throw Error("alignment options",
-                "turns and shifts need steps above 0, at most 1000 either way, and a sigma above 0",
+                "turn and shift steps and the sigma must be above 0, with at most 1000 steps to "
+                "either side",
                 "");
   }
 }

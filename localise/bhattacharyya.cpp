@@ -91,7 +91,8 @@ HWY_EXPORT(best_matches);
 BestMatches best_matches(const Eigen::Ref<const HistogramRows>& queries,
                          const Eigen::Ref<const HistogramRows>& stored) {
   if (queries.cols() != stored.cols()) {
-    throw Error("histogram comparison", "the two sets have different bins", "use the same options");
+    throw Error("histogram comparison", "the two sets have different bins",
+                "use the same options for both");
   }
   BestMatches best{Eigen::VectorXf::Zero(queries.rows()), Eigen::VectorXf::Zero(stored.rows())};
   if (queries.rows() == 0 || stored.rows() == 0) return best;

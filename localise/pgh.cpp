@@ -43,7 +43,8 @@ void check(const PghOptions& o) {
   if (o.angle_bins < 1 || o.distance_bins < 1 || o.height_bands < 1 || !(o.max_distance > 0) ||
       !(o.band_height_m > 0) || !(o.angle_sigma_rad > 0) || !(o.distance_sigma > 0) ||
       o.max_lines < 2) {
-    throw Error("histogram options", "bins, bands, distances and sigmas must be above zero", "");
+    throw Error("histogram options", "bins, bands, distances and sigmas must be above 0",
+                "use positive values");
   }
 }
 

@@ -64,7 +64,8 @@ PlaceView select_lines(std::span<const SpaceSegment> segments,
                        const CameraMount& mount,
                        const PlaceLineOptions& options) {
   if (segments.size() != images.size()) {
-    throw Error("place view", "segments and image lines differ in number", "");
+    throw Error("place view", "segments and image lines differ in number",
+                "give one image line per segment");
   }
   const Pose T = T_robot_camera(mount);
   PlaceView view;

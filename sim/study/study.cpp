@@ -217,7 +217,7 @@ std::string command_key(const std::string& command) { return "command " + comman
 void run_study(const Study& study, const StudyRun& run) {
   if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
     throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
-                "is not index/count with 0 <= index < count", "");
+                "not a valid index/count", "use 0 <= index < count");
   }
   std::filesystem::create_directories(run.folder);
   const Visibility visibility(study.world);
@@ -364,8 +364,8 @@ bool share_queries(const CellResult& a, const CellResult& b) {
 PairedComparison compare(const CellResult& a, const CellResult& b) {
   if (!share_queries(a, b)) {
     throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",
-                "the cells have no queries in common, or asked in different places",
-                "compare cells of one protocol and seed");
+                "the cells have no common queries",
+                "compare cells with the same protocol and seed");
   }
   const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
   PairedComparison c;

@@ -53,8 +53,8 @@ std::uint32_t stretch_feature(int segment, int run, std::size_t segments) {
       32 * (page * segments + static_cast<std::uint64_t>(segment)) + run % 32;
   if (feature >> 31 != 0) {  // another bit identifies the piece of the run
     throw Error("segment " + std::to_string(segment),
-                "its visible stretch " + std::to_string(run) + " has no number of 31 bits",
-                "use a smaller world, or one with fewer things in front of one edge");
+                "the identity of visible run " + std::to_string(run) + " exceeds 31 bits",
+                "use a smaller world, or fewer occluders in front of this edge");
   }
   return static_cast<std::uint32_t>(feature);
 }
@@ -70,7 +70,7 @@ NoiseFreeView look(const Visibility& visibility,
                    const NoiseFreeViewOptions& options) {
   if (rig.cameras.size() != 2) {
     throw Error("simulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   const World& world = visibility.world();
   const Pose T_left = T_left_world(pose, options.mount);

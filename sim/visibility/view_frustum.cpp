@@ -146,8 +146,8 @@ Eigen::Vector2d outermost_ray(const Camera& camera, const Eigen::Vector2d& pixel
   auto ray = plain_ray(camera, centre);
   if (!ray) {
     throw Error("camera \"" + camera.name + "\"",
-                "its distortion cannot be inverted even in the middle of the image",
-                "use other coefficients, or a smaller psi_c");
+                "its distortion cannot be inverted at the image centre",
+                "change the coefficients, or reduce psi_c");
   }
   double good = 0, bad = 1;
   for (int i = 0; i < 30; ++i) {
@@ -168,9 +168,10 @@ ViewFrustum::ViewFrustum(const Camera& camera, double near_m, double far_m)
     : camera_(camera), near_m_(near_m), far_m_(far_m) {
   const std::string place = "camera \"" + camera.name + "\"";
   if (!(near_m > 0 && far_m > near_m)) {
-    throw Error(place, "its range of depths is empty", "choose 0 < near_m < far_m");
+    throw Error(place, "the depth range is empty", "use 0 < near_m < far_m");
   }
-  if (camera.size_px.minCoeff() < 1) throw Error(place, "its image has no pixels", "set size_px");
+  if (camera.size_px.minCoeff() < 1)
+    throw Error(place, "the image size is not positive", "set size_px");
   check_parameters(camera);
   bound_border();
 }

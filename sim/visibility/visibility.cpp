@@ -22,10 +22,10 @@ namespace {
 
 void check(const Pose& T_camera_world, const VisibilityOptions& options) {
   if (!(options.surface_gap_m >= 0)) {
-    throw Error("visibility", "surface_gap_m is negative or no number", "give 0 or more");
+    throw Error("visibility", "surface_gap_m is negative or NaN", "use 0 or more");
   }
   if (!T_camera_world.R.allFinite() || !T_camera_world.t.allFinite()) {
-    throw Error("visibility", "the camera's pose is not finite", "give a rotation and metres");
+    throw Error("visibility", "the camera's pose is not finite", "use finite values");
   }
 }
 

@@ -55,15 +55,17 @@ void check_options(const OfficeOptions& options) {
   };
   if (!size.allFinite() || !std::isfinite(options.corridor_width_m) ||
       !std::isfinite(options.room_width_m)) {
-    refuse("a size is not finite", "give finite lengths in metres");
+    refuse("a size is not finite", "use finite lengths in metres");
   }
-  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "make it smaller");
-  if (size.z() < 2.3) refuse("the ceiling is below 2.3 m", "doors and frames need that height");
-  if (options.corridor_width_m < 1.2) refuse("the corridor is below 1.2 m", "widen it");
-  if (options.room_width_m < 2.8) refuse("rooms are below 2.8 m wide", "widen them");
-  if (size.x() < 2.8) refuse("no room fits in its length", "make it 2.8 m or longer");
+  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "use at most 200 m");
+  if (size.z() < 2.3)
+    refuse("the height is below 2.3 m", "use at least 2.3 m, for the door frames");
+  if (options.corridor_width_m < 1.2)
+    refuse("the corridor is narrower than 1.2 m", "use at least 1.2 m");
+  if (options.room_width_m < 2.8) refuse("the rooms are narrower than 2.8 m", "use at least 2.8 m");
+  if (size.x() < 2.8) refuse("no room fits in the length", "use at least 2.8 m");
   if ((size.y() - options.corridor_width_m) / 2 - wall_thickness_m < 2.8) {
-    refuse("no room fits beside the corridor", "rooms must be 2.8 m deep, make it wider");
+    refuse("no room fits beside the corridor", "increase the width; rooms must be 2.8 m deep");
   }
 }
 

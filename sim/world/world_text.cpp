@@ -58,7 +58,7 @@ WorldDescription rounded(const WorldDescription& description) {
 // Integer arithmetic: the bytes do not depend on the locale or printf.
 std::string number(double value) {
   if (!(std::abs(value) < largest)) {
-    throw Error("world", "a number is beyond 1e9 or not finite", "check the description");
+    throw Error("world", "a number exceeds 1e9 or is not finite", "check the description");
   }
   const std::int64_t steps = std::llround(value * steps_per_unit);
   const std::int64_t size = steps < 0 ? -steps : steps;

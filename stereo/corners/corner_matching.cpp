@@ -183,11 +183,11 @@ std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
 
 void check(const CornerMatchingOptions& options) {
   if (!(options.gate_probability > 0 && options.gate_probability < 1)) {
-    throw Error("matching", "the gate's probability is not between 0 and 1", "give 0.997, say");
+    throw Error("matching", "gate_probability is not between 0 and 1", "use e.g. 0.997");
   }
   if (options.patch_half_px < 1 || options.aligned_half_px < 2 || options.neighbours < 1) {
-    throw Error("matching", "a patch has no pixels, or no neighbours are to be asked",
-                "give whole numbers above 1");
+    throw Error("matching", "the patch size or the number of neighbours is not positive",
+                "use integers above 1");
   }
 }
 

@@ -42,16 +42,17 @@ EpipolarBand::EpipolarBand(const Rig& rig,
                            const BandOptions& options)
     : rig_(rig), covariance_(covariance), options_(options) {
   if (rig.cameras.size() != 2) {
-    throw Error("rig", "it has " + std::to_string(rig.cameras.size()) + " cameras, a pair has 2",
-                "give the rig of the two cameras that took the images");
+    throw Error("rig", "it has " + std::to_string(rig.cameras.size()) + " cameras instead of 2",
+                "use the rig of the two cameras that took the images");
   }
   const Eigen::Index n = parameter_count(rig);
   if (covariance.rows() != n || covariance.cols() != n) {
-    throw Error("rig", "its covariance is not of its parameters", "give both of one rig");
+    throw Error("rig", "the covariance does not have the size of its parameters",
+                "use both of one rig");
   }
   if (!(options.nearest_m > 0) || !(options.corner_sigma_px >= 0)) {
-    throw Error("epipolar band", "the nearest depth is not above 0 or the corners' sigma below it",
-                "give metres and pixels");
+    throw Error("epipolar band", "nearest_m is not above 0 or corner_sigma_px is negative",
+                "use metres and pixels");
   }
 }
 

@@ -186,19 +186,19 @@ void check(const GreyLevels& image, const CannyOptions& options) {
   const auto values = static_cast<std::size_t>(std::max(0, image.width_px)) *
                       static_cast<std::size_t>(std::max(0, image.height_px));
   if (image.width_px < 0 || image.height_px < 0 || image.values.size() != values) {
-    throw Error("canny_edges", "the image's values do not fill its size",
-                "give width times height of them");
+    throw Error("canny_edges", "the number of values does not match the image size",
+                "give width x height values");
   }
   int not_finite = 0;
   for (const float value : image.values) not_finite |= static_cast<int>(!std::isfinite(value));
   if (not_finite != 0) {
-    throw Error("canny_edges", "a grey level is not finite", "give numbers from 0 to 255");
+    throw Error("canny_edges", "a grey level is not finite", "use 0 to 255");
   }
   if (!(options.scale_px >= 0.5 && options.scale_px <= 20)) {
-    throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "choose one near 1 px");
+    throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "use e.g. 1 px");
   }
   if (!(options.low > 0 && options.high >= options.low)) {
-    throw Error("canny_edges", "the thresholds are not 0 < low <= high", "choose 2 and 5, say");
+    throw Error("canny_edges", "the thresholds are not 0 < low <= high", "use e.g. 2 and 5");
   }
 }
 

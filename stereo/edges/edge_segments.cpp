@@ -132,22 +132,22 @@ void check(const std::vector<EdgePoint>& points, const EdgeSegmentOptions& optio
     return a.y > b.y || (a.y == b.y && a.x >= b.x);
   };
   if (std::adjacent_find(points.begin(), points.end(), not_after) != points.end()) {
-    throw Error("edge_segments", "the points are not sorted by y, then x, one a pixel",
-                "give them as canny_edges returns them");
+    throw Error("edge_segments", "the points are not sorted by y, then x, with one per pixel",
+                "use the order of canny_edges");
   }
   if (!points.empty() &&
       (points.front().y < 0 || std::any_of(points.begin(), points.end(),
                                            [](const EdgePoint& point) { return point.x < 0; }))) {
-    throw Error("edge_segments", "a point's pixel is negative", "number pixels from 0");
+    throw Error("edge_segments", "a point has a negative pixel", "count pixels from 0");
   }
   if (!(options.max_rms_px > 0)) {
-    throw Error("edge_segments", "the largest rms is not above 0 px", "choose 0.15 px, say");
+    throw Error("edge_segments", "max_rms_px is not above 0", "use e.g. 0.15 px");
   }
   if (options.min_points < 4) {
-    throw Error("edge_segments", "fewer than 4 points make no segment", "choose 8, say");
+    throw Error("edge_segments", "a segment needs at least 4 points", "use e.g. 8");
   }
   if (!(options.scale_px > 0)) {
-    throw Error("edge_segments", "the scale is not above 0 px", "give that of canny_edges");
+    throw Error("edge_segments", "the scale is not above 0 px", "use that of canny_edges");
   }
 }
 

@@ -36,8 +36,8 @@ void check(const std::vector<DensityCurves>& scenes) {
                        [](const auto& curve) { return curve.empty(); });
   };
   if (!scenes.empty() && std::none_of(scenes.begin(), scenes.end(), is_bad)) return;
-  throw Error("equal density", "there is a scene without curves, or none",
-              "give a curve of both matchers, and of as many settings, on every scene");
+  throw Error("equal density", "no scenes, or a scene without curves",
+              "give one curve per matcher and setting for every scene");
 }
 
 Pair mean_of(const std::vector<std::vector<Pair>>& pairs,

@@ -21,8 +21,8 @@ void check_sizes(const std::vector<EdgePoint>& edges,
                  const std::vector<EdgeDisparity>& found,
                  const std::vector<TruthAtEdge>& truth) {
   if (edges.size() == found.size() && edges.size() == truth.size()) return;
-  throw Error("evaluation", "edges, disparities and truth are not of one number",
-              "give one of each for every edge");
+  throw Error("evaluation", "edges, disparities and truth differ in number",
+              "give one of each per edge");
 }
 
 /// Running counts for EdgeMetrics.

@@ -133,9 +133,9 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
 StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right) {
   if (right && (right->width_px != left.width_px || right->height_px != left.height_px)) {
     throw Error("ground truth",
-                "the left image's has the size " + size_text(left.width_px, left.height_px) +
-                    " and the right one's " + size_text(right->width_px, right->height_px),
-                "give both of one pair");
+                "the left map has the size " + size_text(left.width_px, left.height_px) +
+                    " and the right one " + size_text(right->width_px, right->height_px),
+                "use both of one pair");
   }
   check_known(left, "ground truth");
   StereoTruth truth;

@@ -50,7 +50,7 @@ void check_sizes(const RectifiedPair& pair,
                   "rig rectifies to {}x{} px",
                   pair.left.width_px, pair.left.height_px, pair.right.width_px,
                   pair.right.height_px, map.width_px, map.height_px, size_px[0], size_px[1]),
-      "give the rig that the pair was rectified by");
+      "use the rig that the pair was rectified with");
 }
 
 DisparityMap map_of_unknown(int width_px, int height_px) {

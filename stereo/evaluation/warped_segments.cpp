@@ -137,8 +137,8 @@ std::vector<WarpedSegment> warped_segments(const ImageEdges& left,
                                            const StereoTruth& truth,
                                            const WarpOptions& options) {
   if (truth.disparity.width_px != left.width_px || truth.disparity.height_px != left.height_px) {
-    throw Error("warped segments", "the ground truth is not of the left image's size",
-                "give the truth of this image");
+    throw Error("warped segments", "the ground truth differs in size from the left image",
+                "use the ground truth of this image");
   }
   const SegmentWarp warp(left, truth, options);
   std::vector<WarpedSegment> warped;

@@ -227,9 +227,9 @@ void check_edges(const std::vector<EdgePoint>& edges, const GreyLevels& image) {
         i == 0 || edges[i - 1].y < e.y || (edges[i - 1].y == e.y && edges[i - 1].x < e.x);
     if (inside && in_order) continue;
     throw Error("edge",
-                inside ? "the edge points are not in the order of their rows and columns"
-                       : "an edge point lies outside of the left image",
-                "give those that canny_edges finds in it");
+                inside ? "the edge points are not sorted by row and column"
+                       : "an edge point is outside the left image",
+                "use the points of canny_edges");
   }
 }
 

@@ -217,20 +217,22 @@ void check(const std::vector<EdgePoint>& edges,
            const SegmentDisparityOptions& o) {
   const std::string place = "segment disparities";
   if (edges.size() != disparities.size()) {
-    throw Error(place, "edges and disparities are not of one number", "give one for every edge");
+    throw Error(place, "edges and disparities differ in number", "give one disparity per edge");
   }
   const auto is_none = [&](int p) { return p < 0 || p >= static_cast<int>(edges.size()); };
   for (const EdgeSegment& s : segments) {
     if (s.points.size() < 2 || std::any_of(s.points.begin(), s.points.end(), is_none)) {
-      throw Error(place, "a segment has fewer than two points, or one that is none of the edges",
-                  "give the edges that the segments are of");
+      throw Error(
+          place,
+          "a segment has fewer than two points, or refers to a point that is not in the edges",
+          "use the edges that the segments were made from");
     }
   }
   if (o.min_points < 3 || !(o.min_share >= 0) || !(o.max_off_sigma > 0) || !(o.reach_px >= 0) ||
       !(o.end_sigma_px > 0) || !(o.unstated_sigma_px > 0) || !(o.floor_px >= 0) ||
       !(o.floor_length_px > 0) || !(o.scale_px > 0)) {
-    throw Error(place, "an option is out of its range",
-                "ask for 3 points or more, and deviations and lengths above 0");
+    throw Error(place, "an option is out of range",
+                "use at least 3 points, and deviations and lengths above 0");
   }
 }
 
@@ -241,15 +243,15 @@ std::string_view describe(SegmentStatus status) {
     case SegmentStatus::placed:
       return "placed";
     case SegmentStatus::along_row:
-      return "it lies along the row, where a disparity says nothing";
+      return "too close to horizontal: disparity not observable";
     case SegmentStatus::unmatched:
       return "too few of its points have a disparity";
     case SegmentStatus::disagree:
-      return "its points' disparities agree on no line";
+      return "the disparities of its points fit no common line";
     case SegmentStatus::behind:
-      return "an end's disparity is not above 0";
+      return "the disparity of an end is not above 0";
     case SegmentStatus::no_ray:
-      return "an end's pixel has no ray under the rig";
+      return "the pixel of an end cannot be unprojected";
   }
   return "";
 }

@@ -23,7 +23,7 @@ namespace {
 void require_pair(const Rig& rig) {
   if (rig.cameras.size() != 2) {
     throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
+                "use a rig of two cameras");
   }
 }
 

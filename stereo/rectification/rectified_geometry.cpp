@@ -36,10 +36,9 @@ void check(const RectifiedGeometryOptions& o) {
     return;
   }
   throw Error("rectification",
-              fmt::format("an image of {}x{} px, a focal length of {} px, a share of blank pixels "
-                          "of {} and zooms from {} to {}",
+              fmt::format("invalid options: size {}x{} px, f {} px, max_blank {}, zoom {} to {}",
                           o.size_px[0], o.size_px[1], o.f_px, o.max_blank, o.min_zoom, o.max_zoom),
-              "give sizes and focal lengths above 0, or 0 to have them chosen");
+              "use sizes and focal lengths above 0, or 0 for automatic");
 }
 
 /// Position of the image centre on the rectified camera's plane z = 1; its optical axis if the

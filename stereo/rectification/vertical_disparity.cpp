@@ -72,14 +72,14 @@ void check_grid(const Rig& rig, int columns, int rows, double distance_m) {
   const std::string place = "vertical disparity";
   if (rig.cameras.size() != 2) {
     throw Error(place, fmt::format("the rig has {} cameras", rig.cameras.size()),
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   if (columns < 2 || rows < 2) {
-    throw Error(place, fmt::format("a grid of {}x{}", columns, rows), "give at least 2x2");
+    throw Error(place, fmt::format("the grid is {}x{}", columns, rows), "use at least 2x2");
   }
   if (!(distance_m > 0)) {
-    throw Error(place, fmt::format("a distance of {} m", distance_m),
-                "give distances above 0, or inf");
+    throw Error(place, fmt::format("the distance is {} m", distance_m),
+                "use a distance above 0, or inf");
   }
 }
 
@@ -192,7 +192,8 @@ std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampl
                                                          std::span<const PixelPair> pairs,
                                                          double rectified_f_px,
                                                          const SamplingOptions& options) {
-  if (options.samples < 2) throw Error("vertical disparity", "fewer than 2 samples", "give more");
+  if (options.samples < 2)
+    throw Error("vertical disparity", "fewer than 2 samples", "use at least 2");
   std::vector<double> sum(pairs.size(), 0), squares(pairs.size(), 0);
   std::vector<int> count(pairs.size(), 0);
   for (int i = 0; i < options.samples; ++i) {

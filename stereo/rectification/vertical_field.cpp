@@ -45,7 +45,7 @@ void check(const RectifiedPair& pair,
     throw Error(place,
                 fmt::format("the left image is {}x{} px, the right one {}x{} px", l.width_px,
                             l.height_px, r.width_px, r.height_px),
-                "give a rectified pair");
+                "use a rectified pair");
   }
   for (const GreyLevels* image : {&l, &r}) {
     const auto pixels = static_cast<std::size_t>(std::max(0, image->width_px)) *
@@ -54,16 +54,18 @@ void check(const RectifiedPair& pair,
     throw Error(place,
                 fmt::format("an image of {}x{} px has {} values", image->width_px, image->height_px,
                             image->values.size()),
-                "give a value a pixel");
+                "give one value per pixel");
   }
   if (range.min_px > range.max_px) {
-    throw Error(place, fmt::format("no disparity is from {} to {} px", range.min_px, range.max_px),
-                "give the smaller one first");
+    throw Error(place,
+                fmt::format("the disparity range {} to {} px is empty", range.min_px, range.max_px),
+                "give the smaller value first");
   }
   if (options.band_px < 1 || options.band_px > 10 || options.corners < 1) {
-    throw Error(place,
-                fmt::format("a band of {} rows, {} corners", options.band_px, options.corners),
-                "give 1 to 10 rows and some corners");
+    throw Error(
+        place,
+        fmt::format("the band has {} rows, with {} corners", options.band_px, options.corners),
+        "use 1 to 10 rows and at least one corner");
   }
 }
 
@@ -219,40 +221,43 @@ std::string describe(const VerticalField& field) {
   const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
   if (!field.known && !field.unrectified) {
     return fmt::format(
-        "too few corners match, or too near each other, to tell whether one image lies lower ({} "
-        "of {})",
+        "too few corners match, or they are too close together, to estimate a vertical offset ({} "
+        "of "
+        "{})",
         field.matched, field.corners);
   }
   if (!field.known) {
     return fmt::format(
-        "the images are not rectified, or not of one scene, or left and right are exchanged or "
-        "disparities beyond the range: {} of {} corners have a partner within {} rows, and {} of "
-        "these agree on a vertical field",
+        "the images are not rectified, not of one scene, swapped, or their disparities exceed the "
+        "range: {} of {} corners have a partner within {} rows, and {} of these agree on a "
+        "vertical "
+        "field",
         field.matched, field.corners, field.band_px, field.used);
   }
   const std::string of = fmt::format("from {} of {} matched corners", field.used, field.matched);
   if (!field.significant) {
     return fmt::format(
-        "the right image lies level with the left one: {:+.2f} px (± {:.2f}) in the "
-        "middle, nowhere more than {:.2f} px, {}",
+        "no significant vertical offset of the right image: {:+.2f} px (± {:.2f}) at the centre, "
+        "at "
+        "most {:.2f} px, {}",
         p[0], sd[0], field.largest_px(), of);
   }
-  return fmt::format(
-      "the right image lies {:.2f} px {} (± {:.2f}) in the middle, {}, {}, {}{}", std::abs(p[0]),
-      p[0] >= 0 ? "lower" : "higher", sd[0], tilt(p[1], sd[1], "right", "left"),
-      tilt(p[2], sd[2], "lower", "upper"), of,
-      field.unrectified ? fmt::format("; that leaves the {} rows that were searched, so the images "
-                                      "are hardly rectified",
-                                      field.band_px)
-                        : "");
+  return fmt::format("the right image is {:.2f} px {} (± {:.2f}) at the centre, {}, {}, {}{}",
+                     std::abs(p[0]), p[0] >= 0 ? "lower" : "higher", sd[0],
+                     tilt(p[1], sd[1], "right", "left"), tilt(p[2], sd[2], "lower", "upper"), of,
+                     field.unrectified
+                         ? fmt::format("; this exceeds the search band of {} rows, so the images "
+                                       "are probably not rectified",
+                                       field.band_px)
+                         : "");
 }
 
 GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field) {
   if (right.width_px != field.width_px || right.height_px != field.height_px) {
     throw Error("vertical field",
-                fmt::format("it is of {}x{} px, the image is {}x{} px", field.width_px,
+                fmt::format("the field is for {}x{} px, the image is {}x{} px", field.width_px,
                             field.height_px, right.width_px, right.height_px),
-                "give the image it was found in");
+                "use an image of the pair it was estimated from");
   }
   if (!field.significant) return right;
   GreyLevels repaired = right;

@@ -131,7 +131,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
                       : instead;
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) {
-    fail(*node, "sources.file: " + file.string() + " does not exist",
+    fail(*node, "sources.file: no such file: " + file.string(),
          "give the path relative to the study file");
   }
   const toml::table theirs = parse_toml(read_whole(file), file.string());

@@ -44,8 +44,8 @@ void check_all_paired(const FilesByNumber& own, const FilesByNumber& others, con
     if (others.count(number)) continue;
     throw Error(file.string(),
                 std::string("no ") + side + " image has the number " + std::to_string(number) +
-                    " (" + std::to_string(own.size()) + " images and " +
-                    std::to_string(others.size()) + ")",
+                    " (" + std::to_string(own.size()) + " images here, " +
+                    std::to_string(others.size()) + " on the other side)",
                 "images of one pair must have the same last number in their names");
   }
 }

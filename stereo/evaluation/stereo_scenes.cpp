@@ -121,7 +121,7 @@ class SceneReader : private TomlReader {
     const std::filesystem::path file = folder_ / text(node, key);
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) {
-      fail(node, std::string(key) + ": " + file.string() + " does not exist",
+      fail(node, std::string(key) + ": no such file: " + file.string(),
            "give the path relative to the list");
     }
     return file;

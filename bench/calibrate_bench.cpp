@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// The solver of record beside OpenCV's on the same corners, one thread each.
+// The calibration solver and OpenCV's on the same corners, one thread each.
 #include <benchmark/benchmark.h>
 
 #include <opencv2/calib3d.hpp>

@@ -10,8 +10,8 @@
 
 namespace vernier::counted {
 
-/// A number that counts what is done with it: a sum, product or quotient is one operation, a fused
-/// multiply-add two. The formulas of a corner run on it as they run on registers.
+/// A number that counts floating-point operations: a sum, product or quotient is one, a fused
+/// multiply-add two. The formulas of a corner run on it as they do on registers.
 struct Counted {
   double value = 0;
   static inline long operations = 0;
@@ -52,8 +52,8 @@ long row_operations() {
   return Counted::operations;
 }
 
-/// Operations of one corner in the sums: a fused multiply-add for each product of two columns that
-/// a row has.
+/// Operations of one corner in the sums: a fused multiply-add for each product of two columns of a
+/// row.
 template <class Model>
 long sum_operations() {
   const long columns = static_cast<long>(Model::distortion_names.size()) + 9;

@@ -7,8 +7,8 @@
 namespace vernier {
 
 /// Runs `rounds` rounds of two steps of eight independent chains of fused multiply-adds on
-/// registers of doubles, with the best instruction set here. Returns the floating-point operations
-/// done, two a lane; `sink` keeps the work.
+/// registers of doubles, with the best available instruction set. Returns the number of
+/// floating-point operations, two per lane; `sink` prevents removal by the compiler.
 std::int64_t fma_chains(std::int64_t rounds, double& sink);
 
 }  // namespace vernier

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// Comparing histograms: the kernel beside the plain loop of square roots that a direct reading of
-// the Bhattacharyya coefficient gives, and beside Eigen's matrix product; then a whole query.
+// Histogram comparison: the SIMD kernel, the plain loop of square roots that follows directly from
+// the definition of the Bhattacharyya coefficient, and Eigen's matrix product; then a complete
+// query.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -28,7 +29,7 @@ using namespace vernier::localise;
 using namespace vernier::localise::internal;
 using namespace vernier::sim;
 
-/// 80 lines of a query against 80 of a node, 720 bins, as in the defaults.
+/// 80 query lines against 80 node lines, 720 bins, as with the default options.
 HistogramRows rows(std::uint64_t seed, int count) {
   HistogramRows H(count, 720);
   RandomStream draws({.seed = seed});

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// The solver of record beside mrcal's on the same corners, from the same start, for the same model,
-// one thread each, each stopping by its own rule (ours later: docs/calibration.md). CPU time.
+// The calibration solver and mrcal's on the same corners, from the same start, for the same model,
+// one thread each, each with its own stopping rule (ours stops later: docs/calibration.md). CPU
+// time.
 #include <benchmark/benchmark.h>
 
 #include <map>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// Peak memory of one solve: mrcal_memory vernier|resolver|mrcal FRAMES. One line: solver, frames,
-// MiB held before, MiB more at the peak. Run once a process (bench/memory_vs_mrcal.sh).
+// Peak memory of one solve: mrcal_memory vernier|resolver|mrcal FRAMES. Prints one line: solver,
+// frames, MiB before the solve, additional MiB at the peak. One run per process
+// (bench/memory_vs_mrcal.sh).
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const std::string solver = argv[1];
   const bench::StereoProblem p = bench::stereo_problem(std::atoi(argv[2]));
-  std::ofstream("/proc/self/clear_refs") << 5;  // the peak counts from here
+  std::ofstream("/proc/self/clear_refs") << 5;  // reset the peak counter
   const double before = status_mib("VmRSS");
   if (solver == "vernier") minimise_reprojection(p.observations, p.start);
   if (solver == "resolver") Resolver(p.observations, p.start).resolve();

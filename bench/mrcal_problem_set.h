@@ -20,7 +20,7 @@ struct StereoProblem {
   BoardState start;
 };
 
-/// Views of 100 corners that both cameras see, opencv4, and the start that calibrate would take.
+/// Views of 100 corners visible in both cameras, opencv4, and the initial values of calibrate.
 inline StereoProblem stereo_problem(int frames) {
   Rig rig = datasets::nominal_truth();
   for (Camera& camera : rig.cameras) {

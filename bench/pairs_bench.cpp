@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Calibration from matched pairs: a pass over the pairs and a whole solution, beside Ceres with the
-// same residual by automatic differentiation. CPU time, one thread.
+// Calibration from matched pairs: one pass over the pairs and a complete solution, compared with
+// Ceres and the same residual by automatic differentiation. CPU time, one thread.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
@@ -27,7 +27,7 @@ RigPrior prior_of(const Rig& mean) {
   return {mean, Eigen::MatrixXd(test::datasheet_sd().cwiseAbs2().cwiseInverse().asDiagonal())};
 }
 
-/// Half a standard deviation of the prior away in every parameter, signs in turn.
+/// Displaced by half a standard deviation of the prior in every parameter, with alternating signs.
 Rig start_of(const Rig& truth) {
   Eigen::VectorXd away = 0.5 * test::datasheet_sd();
   for (Eigen::Index i = 0; i < away.size(); i += 2) away[i] = -away[i];

@@ -18,7 +18,7 @@ namespace vernier {
 
 using namespace vernier::internal;
 
-/// A calibration as a Ceres user writes it, one analytic block of all residuals a view, for
+/// A calibration as usually written for Ceres, one analytic block with all residuals of a view, for
 /// ceres::Covariance.
 class PlainProblem {
  public:

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""Projection uncertainty over a 60x45 grid: ours and mrcal's, in CPU time, in one run.
+"""Compares the CPU time of projection uncertainty over a 60x45 grid with mrcal, in one run.
 
     bench/projection_vs_mrcal.py [--build build/release] [--frames 40]
 
-Corners of a 10x10 board in --frames poses before a pair are made with mrcal's projection, calibrated
-by Vernier, and the answer is handed to mrcal.projection_uncertainty (Debian's python3-mrcal) as its
-optimisation problem. Both then go from the corners and the answer to the grid's covariances:
-linearisation and factorisation are inside both times. Prints the largest relative difference of the
+Corners of a 10x10 board in --frames poses in front of a pair are simulated with mrcal's projection and
+calibrated by Vernier. The solution is passed to mrcal.projection_uncertainty (Debian's python3-mrcal) as
+its optimisation problem. Both times include everything from the corners and the solution to the
+covariances of the grid, with linearisation and factorisation. Prints the largest relative difference of the
 covariances and the ratio of the CPU times.
 """
 import argparse
@@ -35,7 +35,7 @@ GRID = (60, 45)
 
 
 def synthetic(frames, seed=3):
-    """Pixels, frames x cameras x BOARD x BOARD x 2, of boards that both cameras see in full."""
+    """Pixels, frames x cameras x BOARD x BOARD x 2, of boards fully visible in both cameras."""
     rng = np.random.default_rng(seed)
     intrinsics = np.array([[600, 602, 325, 236, -.2, .08, 4e-4, -3e-4],
                            [604, 603, 314, 246, -.22, .08, 4e-4, -3e-4]])
@@ -67,7 +67,7 @@ def write_observations(pixels, file):
 
 
 def optimization_inputs(rig, pixels):
-    """The rig file's answer as mrcal's problem."""
+    """The solution in the rig file as an mrcal problem."""
     def intrinsics(camera):
         p = camera['parameters']
         return [p['f_px'] * p['ax'], p['f_px'], p['ox_px'], p['oy_px'],

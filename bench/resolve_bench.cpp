@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// The re-solver beside the solver of record, mrcal and OpenCV: the same corners (100 a view, both
-// cameras see every frame), the same model (opencv4, all parameters free), the same start, one
-// thread each, each stopping by its own rule. Read the CPU times of one run as ratios;
-// scripts/plot_growth.py draws them. Covariances and the share of peak stand beside.
+// The re-solver compared with the calibration solver, mrcal and OpenCV: the same corners (100 per
+// view, both cameras see every frame), the same model (opencv4, all parameters free), the same
+// start, one thread each, each with its own stopping rule. Compare CPU times of one run as ratios;
+// scripts/plot_growth.py draws them. Covariances and the fraction of peak performance are measured
+// as well.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
@@ -84,7 +85,7 @@ const Scene& scene_of(const benchmark::State& state) {
   return scene(static_cast<int>(state.range(0)));
 }
 
-/// One solve for new pixels, as Monte-Carlo does it; the structure stands.
+/// One solve for new pixels, as in Monte Carlo; the structure is reused.
 void resolve(benchmark::State& state) {
   const Scene& s = scene_of(state);
   const Resolver resolver(s.board.observations, s.board.truth);
@@ -95,7 +96,7 @@ void resolve(benchmark::State& state) {
   if (result.status != ResolveStatus::converged) state.SkipWithError("did not converge");
 }
 
-/// The same from the truth.
+/// The same, starting from the true values.
 void resolve_from_truth(benchmark::State& state) {
   const Scene& s = scene_of(state);
   const Resolver resolver(s.board.observations, s.board.truth);
@@ -187,7 +188,7 @@ void covariance_by_ceres(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(problem.rig_covariance());
 }
 
-/// One linearisation's sums over corners of eight views, and its share of the peak.
+/// Sums of one linearisation over the corners of eight views, and the fraction of peak performance.
 void corner_sums(benchmark::State& state) {
   const Scene& s = scene(8);
   const BoardState& at = s.board.truth;

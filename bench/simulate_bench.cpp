@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated look costs, in parts.
+// Cost of a simulated view, by part.
 #include <benchmark/benchmark.h>
 
 #include "calib/pose.h"

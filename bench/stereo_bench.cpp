@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Stereo on rendered pairs of 450 x 375 pixels beside OpenCV's three-way SGBM in the same run, one
-// thread. The argument is the number of disparities.
+// Stereo on rendered pairs of 450 x 375 pixels, compared with OpenCV's three-way SGBM in the same
+// run, one thread. The argument is the number of disparities.
 #include <benchmark/benchmark.h>
 
 #include <opencv2/core/utility.hpp>
@@ -36,7 +36,7 @@ void sgbm_three_ways(benchmark::State& state) {
 }
 BENCHMARK(sgbm_three_ways)->Arg(32)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond);
 
-/// The same with as many threads as the machine has; wall time. `edge` has one thread.
+/// The same on all cores; wall time. `edge` uses one thread.
 void sgbm_all_threads(benchmark::State& state) {
   const auto most = static_cast<int>(state.range(0));
   const RectifiedPair pair = scene(most);
@@ -52,7 +52,7 @@ BENCHMARK(sgbm_all_threads)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
-/// Finding the edges is part of it.
+/// Edge detection is included.
 void edge(benchmark::State& state, bool refine) {
   const auto most = static_cast<int>(state.range(0));
   const RectifiedPair pair = scene(most);
@@ -77,8 +77,9 @@ BENCHMARK_CAPTURE(edge, support_alone, false)
     ->Arg(128)
     ->Unit(benchmark::kMillisecond);
 
-/// How time grows: width (heights are 5/6 of it), disparities and the leaves' least radius, which
-/// says how many edges there are. Drawn by scripts/plot_stereo_growth.py.
+/// Growth of the time with width (height is 5/6 of it), number of disparities, and the minimum
+/// radius of the leaves, which determines the number of edges. Drawn by
+/// scripts/plot_stereo_growth.py.
 template <class Work>
 void growth(benchmark::State& state, const Work& work) {
   cv::setNumThreads(1);

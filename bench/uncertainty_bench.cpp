@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-// Projection uncertainty over a 60x45 grid: from the evidence on, everything that mrcal's function
-// does too (linearisation of all residuals, covariance, grid), and from the prepared object. The
-// rig is that of the file in VERNIER_BENCH_RIG, which bench/projection_vs_mrcal.py sets to compare,
-// or else a simulated calibration.
+// Projection uncertainty over a 60x45 grid: starting from the evidence, with the same steps as
+// mrcal's function (linearisation of all residuals, covariance, grid), and starting from the
+// prepared object. The rig is read from the file in VERNIER_BENCH_RIG, which
+// bench/projection_vs_mrcal.py sets for the comparison; default: a simulated calibration.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

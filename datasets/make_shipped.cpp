@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 // Writes the two frozen inputs of every study, worlds/workshop.world.toml and
-// rigs/nominal.rig.json, into a folder. tests/datasets/ checks that what is shipped is what this
-// makes, and its sha256: neither is ever tuned to a method under test.
+// rigs/nominal.rig.json, to a folder. tests/datasets/ checks that the shipped files equal this
+// program's output, and their sha256: neither may be tuned to a method under test.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -11,20 +11,20 @@
 #include "sim/world.h"
 #include "sim/world/office.h"
 
-/// Recipes of the shipped world and rig.
+/// Generators of the shipped world and rig.
 namespace vernier::datasets {
 
 using namespace vernier::sim;
 using namespace vernier::sim::internal;
 
-/// An office floor of the memo's size, seed 1.
+/// A generated office floor of the size used in Tina Memo 2017-001, seed 1.
 inline WorldDescription workshop() {
   WorldDescription world = make_office(1);
   world.name = "workshop";
   return world;
 }
 
-/// A pair of 640 x 480 cameras, f 525 px, baseline 0.2 m, a little barrel distortion.
+/// Two cameras of 640 x 480 px, f 525 px, baseline 0.2 m, slight barrel distortion.
 inline Rig nominal_truth() {
   Rig rig;
   for (const char* name : {"left", "right"}) {
@@ -38,8 +38,8 @@ inline Rig nominal_truth() {
   return rig;
 }
 
-/// What a calibration of that pair finds from 20 simulated views of a 9 x 6 board of 40 mm squares
-/// at about 0.8 m, corners at 0.2 px.
+/// The calibration of that pair from 20 simulated views of a 9 x 6 board of 40 mm squares at about
+/// 0.8 m, with corner noise of 0.2 px.
 inline RigEstimate nominal() {
   const SimulatedBoard board =
       simulate_board(nominal_truth(), {9, 6, 0.04}, 1, 0,

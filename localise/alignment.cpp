@@ -17,30 +17,31 @@
 namespace vernier::localise::internal {
 namespace {
 
-/// Level lines whose heights differ by more are not the same.
+/// Maximum height difference of matching level lines.
 constexpr double level_height_m = 0.15;
 
-/// An upright line on the plan.
+/// A vertical line on the floor plan.
 struct Upright {
   Eigen::Vector2d at_m;
   double low_m, high_m, sigma_m;
 };
 
-/// A level line on the plan.
+/// A level line on the floor plan.
 struct Level {
   Eigen::Vector2d a_m, b_m, direction;
   double length_m, height_m, sigma_m;
 };
 
 void check(const AlignmentOptions& o) {
-  constexpr double most_steps = 1000;  // the votes of shifts fill a square of them
+  constexpr double most_steps = 1000;  // the translation votes fill a square of them
   const auto good = [](double most, double step) {
     return step > 0 && most >= 0 && most / step <= most_steps;
   };
   if (!good(o.max_turn_rad, o.turn_step_rad) || !good(o.max_shift_m, o.shift_step_m) ||
       !(o.position_sigma_m > 0)) {
     throw Error("alignment options",
-                "turns and shifts need steps above 0, at most 1000 either way, and a sigma above 0",
+                "turn and shift steps and the sigma must be above 0, with at most 1000 steps to "
+                "either side",
                 "");
   }
 }
@@ -71,7 +72,7 @@ double overlap(const Upright& p, const Upright& q) {
   return std::min(p.high_m, q.high_m) - std::max(p.low_m, q.low_m);
 }
 
-/// How well an upright line at `at` agrees with one of the node, in [0, 1].
+/// Agreement of a vertical line at `at` with one of the node, in [0, 1].
 double agreement(const Upright& query,
                  const Eigen::Vector2d& at,
                  const Upright& node,
@@ -84,7 +85,7 @@ double agreement(const Upright& query,
   return (0.3 + 0.7 * common) * std::exp(-0.5 * d2 / (sigma * sigma));
 }
 
-/// The same for level lines, the query's already turned and shifted.
+/// The same for level lines, the query's already transformed.
 double agreement(const Level& query, const Level& node, double position_sigma_m) {
   const double sine =
       std::abs(query.direction.x() * node.direction.y() - query.direction.y() * node.direction.x());
@@ -97,13 +98,13 @@ double agreement(const Level& query, const Level& node, double position_sigma_m)
   return std::exp(-0.5 * across * across / (sigma * sigma) - 0.5 * sine * sine / 0.02);
 }
 
-/// For every line of the query the lines of the node that it may come to lie on while the pose is
-/// refined: those near it at the start.
+/// For every query line, the node lines that it may match while the pose is refined: those near it
+/// at the start.
 class Neighbours {
  public:
   Neighbours(const Plan& query, const Plan& node, const Pose2D& T, double position_sigma_m)
       : query_(query), node_(node), position_sigma_m_(position_sigma_m) {
-    constexpr double travel_m = 0.5;  // refinement seldom goes farther; lines beyond do not count
+    constexpr double travel_m = 0.5;  // refinement seldom moves farther; lines beyond are ignored
     const Eigen::Rotation2Dd R(T.heading_rad);
     const Eigen::Vector2d t(T.x_m, T.y_m);
     uprights_.resize(query.uprights.size());
@@ -134,7 +135,7 @@ class Neighbours {
     }
   }
 
-  /// Sum over the query's lines of their best agreement with a line of the node.
+  /// Sum over the query's lines of their best agreement with a node line.
   double score(const Pose2D& T) const {
     double sum = 0;
     visit_best(T, [&](double agreed, int) { sum += agreed; });
@@ -153,8 +154,8 @@ class Neighbours {
   }
 
  private:
-  /// Calls visit(agreement, node line) with every query line's best partner, -1 where none agrees;
-  /// level lines of the node count on from its uprights.
+  /// Calls visit(agreement, node line) with every query line's best partner, -1 if none agrees;
+  /// indices of the node's level lines follow those of its vertical lines.
   template <class Visit>
   void visit_best(const Pose2D& T, Visit visit) const {
     const Eigen::Rotation2Dd R(T.heading_rad);
@@ -191,7 +192,7 @@ class Neighbours {
   std::vector<std::vector<int>> uprights_, levels_;
 };
 
-/// Votes of pairs of upright lines for the shift, at one turn.
+/// Translation votes of pairs of vertical lines, for one rotation.
 class ShiftVotes {
  public:
   ShiftVotes(const Plan& query, const Plan& node, const AlignmentOptions& o)
@@ -209,7 +210,8 @@ class ShiftVotes {
     }
   }
 
-  /// The shift with most votes at this turn, and its votes; neighbouring cells count half.
+  /// The translation with the most votes at this rotation, and its votes; neighbouring cells count
+  /// half.
   std::pair<Eigen::Vector2d, double> best(double turn) {
     std::fill(votes_.begin(), votes_.end(), 0.0f);
     const double c = std::cos(turn) / options_.shift_step_m;
@@ -245,7 +247,7 @@ class ShiftVotes {
     Eigen::Vector2d query, node;
     float weight;
   };
-  /// Cells have a border of one all around, always empty.
+  /// Cells have an empty border of one all around.
   std::size_t cell(int x, int y) const {
     return static_cast<std::size_t>(y + half_ + 1) * stride_ + x + half_ + 1;
   }
@@ -303,7 +305,7 @@ Alignment align(const PlaceView& query_view,
   Alignment result;
   const Neighbours lines(query, node, start, options.position_sigma_m);
   result.query_in_node = ascend(lines, start);
-  // A few lines more on both sides keep small views from scoring by chance.
+  // The offset keeps small views from high scores by chance.
   result.score = lines.mutual_score(result.query_in_node) /
                  std::sqrt((query.count() + 5) * (node.count() + 5));
   return result;

@@ -14,8 +14,8 @@
 namespace vernier::localise::internal {
 namespace {
 
-/// Bhattacharyya coefficient of two histograms stored as square roots, computed from the
-/// histograms themselves as a plain implementation does: Σ √(p q).
+/// Bhattacharyya coefficient Σ √(p q) of two histograms stored as square roots, computed from the
+/// squared values as a plain implementation does.
 float coefficient(const HistogramRows& P, Eigen::Index p, const HistogramRows& Q, Eigen::Index q) {
   float sum = 0;
   for (Eigen::Index k = 0; k < P.cols(); ++k) {
@@ -49,7 +49,7 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
       }
     }
   }
-  // The filter: score the surviving nodes by the lines above a threshold, drop the lowest, raise
+  // The filter: score the remaining nodes by the lines above a threshold, drop the lowest, raise
   // the threshold, until one is left.
   std::vector<int> alive(nodes);
   for (int n = 0; n < static_cast<int>(nodes); ++n) alive[n] = n;
@@ -72,7 +72,7 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
   answer.node = alive[0];
   answer.pose = map_.nodes[alive[0]].pose;
   answer.score = score(alive[0]);
-  // the threshold has risen since the last was dropped; nothing above it decides nothing
+  // The threshold has been raised since the last drop; without lines above it there is no decision.
   answer.status = answer.score > 0 ? LocalisationStatus::answered : LocalisationStatus::tie;
   return answer;
 }

@@ -11,7 +11,8 @@
 
 namespace vernier::localise::internal {
 
-/// The memo's way as far as it is known, kept plain on purpose. See make_localiser.
+/// The method of Tina Memo 2017-001 as far as it is documented, implemented plainly. See
+/// make_localiser.
 class BaselineLocaliser : public Localiser {
  public:
   explicit BaselineLocaliser(const TopologicalMap& map);
@@ -21,7 +22,7 @@ class BaselineLocaliser : public Localiser {
  private:
   const TopologicalMap& map_;
   PghOptions options_;
-  std::vector<Pgh> histograms_;  // of the nodes' image lines, not square-rooted back
+  std::vector<Pgh> histograms_;  // of the nodes' image lines; square roots as in Pgh
 };
 
 }  // namespace vernier::localise::internal

@@ -16,7 +16,8 @@ namespace vernier::localise::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Dot products of 4 rows of A with 2 rows of B over n columns, fused multiply-add where there is.
+/// Dot products of 4 rows of A with 2 rows of B over n columns, with fused multiply-add if
+/// available.
 void dot_4x2(const float* A,
              std::ptrdiff_t lda,
              const float* B,
@@ -65,7 +66,7 @@ void best_matches(const float* queries,
                   float* of_stored) {
   float out[4][2];
   for (int s = 0; s < ns; s += 2) {
-    const std::ptrdiff_t second = s + 1 < ns ? lds : 0;  // an odd last row is taken twice
+    const std::ptrdiff_t second = s + 1 < ns ? lds : 0;  // an odd last row is used twice
     for (int q = 0; q < nq; q += 4) {
       dot_4x2(queries + q * ldq, ldq, stored + s * lds, second, n, out);
       for (int r = 0; r < 4; ++r) {
@@ -90,11 +91,12 @@ HWY_EXPORT(best_matches);
 BestMatches best_matches(const Eigen::Ref<const HistogramRows>& queries,
                          const Eigen::Ref<const HistogramRows>& stored) {
   if (queries.cols() != stored.cols()) {
-    throw Error("histogram comparison", "the two sets have different bins", "use the same options");
+    throw Error("histogram comparison", "the two sets have different bins",
+                "use the same options for both");
   }
   BestMatches best{Eigen::VectorXf::Zero(queries.rows()), Eigen::VectorXf::Zero(stored.rows())};
   if (queries.rows() == 0 || stored.rows() == 0) return best;
-  // Queries in blocks of four rows; empty rows fill the last block and match nothing.
+  // Queries in blocks of four rows; the last block is padded with empty rows that match nothing.
   const Eigen::Index padded = (queries.rows() + 3) / 4 * 4;
   HistogramRows block;
   const float* data = queries.data();

@@ -6,10 +6,10 @@
 
 namespace vernier::localise::internal {
 
-/// For every row of `queries` the largest dot product with a row of `stored`, and conversely: with
-/// square-rooted unit histograms, each line's best Bhattacharyya coefficient among the other
-/// view's lines. Both matrices need the same number of columns (else Error); an empty partner
-/// gives zeros. One pass over `stored`; SIMD chosen at run time (calib/base/instruction_set.h).
+/// For every row of `queries` the largest dot product with a row of `stored`, and vice versa: for
+/// square-rooted unit histograms, each line's best Bhattacharyya coefficient among the other view's
+/// lines. Both matrices must have the same number of columns (else Error); an empty partner gives
+/// zeros. One pass over `stored`; SIMD selected at run time (calib/base/instruction_set.h).
 struct BestMatches {
   Eigen::VectorXf of_queries;
   Eigen::VectorXf of_stored;

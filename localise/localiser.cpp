@@ -32,7 +32,7 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const LocaliserOptions& options) {
   if (method == "pgh") return std::make_unique<PghLocaliser>(map, options);
   if (method == "pgh_baseline") return std::make_unique<BaselineLocaliser>(map);
-  throw Error("localiser \"" + std::string(method) + "\"", "there is no such method",
+  throw Error("localiser \"" + std::string(method) + "\"", "unknown method",
               "use pgh or pgh_baseline");
 }
 

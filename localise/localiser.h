@@ -14,22 +14,22 @@ namespace vernier::localise {
 
 enum class LocalisationStatus {
   answered,
-  too_few_lines,  ///< not enough in view to say anything
-  tie,            ///< two places more than 1 m apart are equally good
-  no_match,       ///< no place of the map agrees at all
+  too_few_lines,  ///< fewer than min_lines lines
+  tie,            ///< two positions more than 1 m apart have the same best score
+  no_match,       ///< no node of the map matches
 };
 
 std::string_view name(LocalisationStatus status);
 
 struct LocalisationAnswer {
   LocalisationStatus status = LocalisationStatus::too_few_lines;
-  int node = -1;  ///< the map's node, the memo's answer
-  Pose2D pose;    ///< refined from it, metric
+  int node = -1;  ///< index of the map node, the memo's answer
+  Pose2D pose;    ///< refined metric pose
   double score = 0;
   double runner_up = 0;  ///< score of the best node more than 1 m away
 };
 
-/// Says where a view was taken. Implementations keep no state between queries.
+/// Estimates where a view was taken. Implementations keep no state between queries.
 class Localiser {
  public:
   virtual ~Localiser() = default;
@@ -37,18 +37,18 @@ class Localiser {
 };
 
 struct LocaliserOptions {
-  int candidates = 12;  ///< best-ranked nodes that are verified by alignment
-  int min_lines = 6;    ///< fewer lines in space: no answer
+  int candidates = 12;  ///< number of best-ranked nodes verified by alignment
+  int min_lines = 6;    ///< minimum number of lines in space for an answer
 };
 
-/// The localiser called `method` on a map, which must outlive it:
+/// Creates the localiser named `method` on a map, which must outlive it:
 ///
-/// - `pgh`: spatial histograms rank the nodes by Bhattacharyya coefficients, rigid alignment of
-///   the best verifies them and gives the metric pose;
-/// - `pgh_baseline`: image-line histograms compared in a plain loop, and the memo's filter that
-///   drops the lowest node until one is left. For comparison, not for use.
+///  - `pgh`: spatial histograms rank the nodes by Bhattacharyya coefficients; rigid alignment of
+///    the best ones verifies them and gives the metric pose;
+///  - `pgh_baseline`: image-line histograms compared in a plain loop, and the memo's filter that
+///    eliminates the lowest node until one is left. For comparison only.
 ///
-/// Throws Error for another name, listing these.
+/// Throws Error for any other name, listing these.
 std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const TopologicalMap& map,
                                           const LocaliserOptions& options = {});

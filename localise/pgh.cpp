@@ -23,8 +23,8 @@ namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
 
-/// What line `other` enters into the histogram of a reference line: an angle, and up to four
-/// stretches of distance, each with its share of the line.
+/// Contribution of line `other` to the histogram of a reference line: an angle, and up to four
+/// intervals of distance, each with its fraction of the line.
 struct Entry {
   double angle_rad = 0;
   int band = 0;
@@ -43,12 +43,13 @@ void check(const PghOptions& o) {
   if (o.angle_bins < 1 || o.distance_bins < 1 || o.height_bands < 1 || !(o.max_distance > 0) ||
       !(o.band_height_m > 0) || !(o.angle_sigma_rad > 0) || !(o.distance_sigma > 0) ||
       o.max_lines < 2) {
-    throw Error("histogram options", "bins, bands, distances and sigmas must be above zero", "");
+    throw Error("histogram options", "bins, bands, distances and sigmas must be above 0",
+                "use positive values");
   }
 }
 
-/// Shares of an angle in [0, pi/2] among the bins after its Gaussian error, reflected at both ends
-/// (-5 degrees between undirected lines is 5 degrees).
+/// Distributes an angle in [0, pi/2] with Gaussian error over the bins, reflected at both ends (-5
+/// degrees between undirected lines is 5 degrees).
 void angle_shares(double angle, const PghOptions& o, std::vector<double>& shares) {
   shares.resize(o.angle_bins);
   const double width = right_angle / o.angle_bins;
@@ -84,7 +85,7 @@ void add_entry(const Entry& entry,
   }
 }
 
-/// Builds every row from `entry_of(reference, other)`, scales it, drops empty ones.
+/// Builds every row from `entry_of(reference, other)`, normalises it, and drops empty ones.
 template <class EntryOf, class WeightOf>
 Pgh build(const std::vector<int>& chosen,
           int bands,
@@ -119,7 +120,7 @@ Pgh build(const std::vector<int>& chosen,
 /// Whether a line of this length has a direction.
 bool has_direction(double length) { return length > 1e-9 && std::isfinite(length); }
 
-/// Indices of the `most` largest lengths, in their old order; 0 stands for a line to leave out.
+/// Indices of the `most` largest lengths in their original order; length 0 marks a line to drop.
 std::vector<int> longest(const std::vector<double>& lengths, int most) {
   std::vector<int> order;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
@@ -134,9 +135,9 @@ std::vector<int> longest(const std::vector<double>& lengths, int most) {
   return order;
 }
 
-/// Distances from the line (p, unit u) of the points of a segment: a hyperbola that falls to the
-/// point nearest the line and rises from there. Each branch is taken as two stretches in which the
-/// distance grows evenly.
+/// Distances of a segment's points from the line (p, unit u): a hyperbola that falls to the point
+/// nearest the line and rises from there. Each branch is approximated by two intervals with
+/// linearly growing distance.
 void add_stretches(const Eigen::Vector3d& p,
                    const Eigen::Vector3d& u,
                    const PlaceLine& other,
@@ -177,7 +178,7 @@ PghOptions image_pgh_options() {
 
 Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& options) {
   check(options);
-  std::vector<double> subtended;  // as in the image: length over range
+  std::vector<double> subtended;  // angular size: length over range
   std::vector<Eigen::Vector3d> directions;
   for (const PlaceLine& line : lines) {
     const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
@@ -219,7 +220,7 @@ Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& opti
       return u.x() * y.y() - u.y() * y.x();
     };
     const double a = across(o.a_px), b = across(o.b_px);
-    if (a * b < 0) {  // it crosses the reference line
+    if (a * b < 0) {  // crosses the reference line
       const double share = std::abs(a) / (std::abs(a) + std::abs(b));
       entry.add(0, std::abs(a), share);
       entry.add(0, std::abs(b), 1 - share);

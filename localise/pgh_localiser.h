@@ -8,7 +8,7 @@
 
 namespace vernier::localise::internal {
 
-/// Rank by histograms, verify and refine by rigid alignment. See make_localiser.
+/// Ranks nodes by histograms, verifies and refines by rigid alignment. See make_localiser.
 class PghLocaliser : public Localiser {
  public:
   PghLocaliser(const TopologicalMap& map, const LocaliserOptions& options)

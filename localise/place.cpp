@@ -17,7 +17,7 @@ using namespace stereo;
 
 namespace {
 
-/// Whether the ends' depths differ by no more than their error explains.
+/// Whether the depths of the ends are equal within their error.
 bool may_be_vertical(const SpaceSegment& segment,
                      const ImageSegment& image,
                      const PlaceLineOptions& options) {
@@ -64,7 +64,8 @@ PlaceView select_lines(std::span<const SpaceSegment> segments,
                        const CameraMount& mount,
                        const PlaceLineOptions& options) {
   if (segments.size() != images.size()) {
-    throw Error("place view", "segments and image lines differ in number", "");
+    throw Error("place view", "segments and image lines differ in number",
+                "give one image line per segment");
   }
   const Pose T = T_robot_camera(mount);
   PlaceView view;
@@ -76,7 +77,7 @@ PlaceView select_lines(std::span<const SpaceSegment> segments,
     if (may_be_vertical(segment, images[i].left, options)) {
       const Eigen::Vector2d mean = 0.5 * (line.a_m + line.b_m).head<2>();
       const auto upright = [&](const Eigen::Vector3d& end) {
-        // along its ray to the mean distance, which corrects the height too
+        // Moves it along its ray to the mean distance, which corrects the height as well.
         const double scale = mean.norm() / std::max(end.head<2>().norm(), 1e-9);
         return Eigen::Vector3d(mean.x(), mean.y(),
                                mount.height_m + scale * (end.z() - mount.height_m));

@@ -10,8 +10,8 @@
 namespace vernier::localise::internal {
 namespace {
 
-/// Φ and its integral z Φ(z) + φ(z), tabulated over [-8, 8]; beyond, both are their limits to
-/// 1e-15. Each entry spans 1/256: cubic interpolation with the exact slope errs by less than 1e-11.
+/// Φ and its integral z Φ(z) + φ(z), tabulated over [-8, 8]; outside, both equal their limits to
+/// 1e-15. Table step 1/256: the error of cubic interpolation with exact slopes is below 1e-11.
 class NormalTable {
  public:
   NormalTable() {
@@ -36,7 +36,7 @@ class NormalTable {
   static constexpr double step = 1.0 / 256;
   using Column = std::array<double, steps + 1>;
 
-  /// Hermite's cubic from values and slopes.
+  /// Cubic Hermite interpolation from values and slopes.
   static double interpolate(double z, const Column& value, const Column& slope) {
     const double at = (z + reach) / step;
     const int i = std::min(static_cast<int>(at), steps - 1);
@@ -66,7 +66,7 @@ void add_smeared_ramp(
     std::span<float> bins, double max, double low, double high, double sigma, double mass) {
   const int n = static_cast<int>(bins.size());
   const double width = max / n;
-  constexpr double reach = 4;  // sigmas that count: beyond is 6e-5 of the mass
+  constexpr double reach = 4;  // in sigmas: 6e-5 of the mass is beyond
   const int first = std::max(0, static_cast<int>((low - reach * sigma) / width));
   const int last = std::min(n - 1, static_cast<int>((high + reach * sigma) / width));
   const auto below = [&](double x) {

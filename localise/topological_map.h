@@ -9,20 +9,20 @@
 
 namespace vernier::localise {
 
-/// A place on the map: where it was recorded and what was seen from there.
+/// A map node: the pose where it was recorded and the view from there.
 struct MapNode {
   Pose2D pose;
   PlaceView view;
 };
 
-/// Views recorded along a path, with the histograms of their lines.
+/// Views recorded along a route, with the histograms of their lines.
 struct TopologicalMap {
   std::vector<MapNode> nodes;
-  PghOptions options;           ///< queries must use the same
-  std::vector<Pgh> histograms;  ///< one a node
+  PghOptions options;           ///< queries must use the same options
+  std::vector<Pgh> histograms;  ///< one per node
 };
 
-/// Computes every node's spatial histograms.
+/// Computes the spatial histograms of every node.
 TopologicalMap make_map(std::vector<MapNode> nodes, const PghOptions& options = {});
 
 }  // namespace vernier::localise

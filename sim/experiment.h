@@ -22,9 +22,9 @@
 
 namespace vernier::sim {
 
-/// Which rig the map's recorder was told.
+/// Which rig is assumed when the map is recorded.
 enum class MapRig {
-  recalibrated,  ///< a draw of its own, once a block
+  recalibrated,  ///< an independent draw, one per block
   same,          ///< the draw of the query
 };
 
@@ -34,34 +34,34 @@ struct ExperimentSettings {
   QueryProtocol protocol = QueryProtocol::path;
   MapRig map_rig = MapRig::recalibrated;
   double map_spacing_m = 0.5;
-  int map_headings = 0;  ///< a node; 0: along the route
+  int map_headings = 0;  ///< per node; 0: along the route
   std::string method = "pgh";
-  bool knows_endpoint_sigma = false;  ///< the estimator is told sources.endpoint_sigma_px
+  bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
 
-/// The end-point error that the estimator reckons with: 0.15 px, or max(0.1 px, psi_g) where it
-/// knows psi_g.
+/// End-point standard deviation assumed by the estimator: 0.15 px, or max(0.1 px, psi_g) with
+/// knows_endpoint_sigma.
 double told_endpoint_sigma_px(const ExperimentSettings& settings);
 
-/// The sensed segments in space, in the left camera's frame of the rig that the estimator is told.
+/// Triangulates the sensed segments, in the left camera frame of the rig assumed by the estimator.
 std::vector<stereo::SpaceSegment> reconstruct(const Rig& told,
                                               const StereoObservation& sighting,
                                               const ExperimentSettings& settings);
 
-/// One localisation trial: where the robot was, what was answered, and what that cost.
+/// One localisation trial: true pose, answer and time.
 struct TrialResult {
   std::uint32_t trial = 0;
   localise::Pose2D truth;
   localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
   localise::Pose2D answer;  ///< refined pose
   localise::Pose2D node;    ///< the map's node
-  double error_m = 0;       ///< of the answer on the floor; NaN without one
+  double error_m = 0;  ///< distance between answer and truth on the floor; NaN without an answer
   double node_error_m = 0;
   double heading_error_rad = 0;
-  int lines = 0;              ///< in space, as the localiser had them
+  int lines = 0;              ///< in space, as given to the localiser
   int corners = 0;            ///< corner pairs sensed (for corner-based methods)
-  int corner_mismatches = 0;  ///< of them with a wrong partner
+  int corner_mismatches = 0;  ///< number of them with a wrong partner
   double score = 0, runner_up = 0;
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 
@@ -69,35 +69,35 @@ struct TrialResult {
   bool success() const { return answered() && error_m <= 1.0; }
 };
 
-/// The noise-free looks of a map's places: they depend on world, true rig and mount alone, so
-/// blocks and cells that differ in noise share them.
+/// Noise-free views from the map's nodes. They depend only on world, true rig and mount, so blocks
+/// and cells that differ in noise share them.
 using MapViews = std::vector<NoiseFreeView>;
 MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings);
 
-/// A simulated robot that records a map with one calibration of its rig and localises with
-/// another. The true rig is the estimate's; what an estimator is told is drawn around it.
+/// A simulated robot that records a map with one calibration of its rig and localises with another.
+/// The estimate is the true rig; the rigs assumed by the estimator are drawn around it.
 class LocalisationExperiment {
  public:
   /// Keeps a reference to `visibility`; `looks` is needed for maps and blocks only. Throws Error
-  /// for bad settings or a rig without covariance where sources.calibration > 0.
+  /// for settings out of range, or a rig without covariance if sources.calibration > 0.
   LocalisationExperiment(const Visibility& visibility,
                          const RigEstimate& rig,
                          std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings);
 
-  /// The trials first, first + 1 … of one block: the map is recorded once, with draws of the
-  /// block's own. With MapRig::same the map is recorded again for every trial. Results depend on
-  /// (settings, block, trial) only.
+  /// Runs trials first, first + 1 … of one block: the map is recorded once, with draws of its own.
+  /// With MapRig::same the map is recorded again for every trial. Results depend on (settings,
+  /// block, trial) only.
   std::vector<TrialResult> run_block(std::uint32_t block,
                                      std::uint32_t first,
                                      std::uint32_t count) const;
 
-  /// The map as recorded in a block, told `rig`.
+  /// The map as recorded in a block under the assumption of `rig`.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
-  /// What the estimator of a trial is told.
+  /// The rig assumed by the estimator in a trial.
   Rig estimator_rig(std::uint32_t trial) const;
   Rig map_estimator_rig(std::uint32_t block) const;
 
@@ -112,7 +112,7 @@ class LocalisationExperiment {
   std::shared_ptr<const MapViews> map_views_;
   ExperimentSettings settings_;
   Sensor sensor_;
-  std::unique_ptr<RigSampler> sampler_;  // none where calibration error is off
+  std::unique_ptr<RigSampler> sampler_;  // null without calibration error
 };
 
 }  // namespace vernier::sim

@@ -13,29 +13,29 @@
 
 namespace vernier::sim {
 
-/// Identity of a visible stretch of an edge, `run` counting from 0: with S segments in the world
+/// Identity of a visible run of a segment, `run` counting from 0: with S segments in the world
 ///
 ///     32 (S (run div 32) + segment) + run mod 32
 ///
-/// so that no two stretches share their draws. Throws Error where 31 bits do not hold it.
+/// so that no two runs share their draws. Throws Error if it exceeds 31 bits.
 std::uint32_t stretch_feature(int segment, int run, std::size_t segments);
 
-/// An edge that both eyes see, without any error: ends in the true left camera's frame.
+/// An edge visible in both cameras, without error: ends in the true left camera frame.
 struct VisibleEdge {
   Eigen::Vector3d a_m, b_m;
-  int segment = 0;            ///< of the world
-  std::uint32_t feature = 0;  ///< segment and visible run; identity for draws
+  int segment = 0;            ///< index in the world
+  std::uint32_t feature = 0;  ///< segment and visible run; key of its random draws
   std::int32_t object = 0;
-  Eigen::Vector3d object_centre_m;  ///< true left camera's frame
+  Eigen::Vector3d object_centre_m;  ///< true left camera frame
 };
 
-/// A corner that both eyes see.
+/// A corner visible in both cameras.
 struct VisibleCorner {
-  Eigen::Vector3d at_m;       ///< true left camera's frame
-  std::uint32_t feature = 0;  ///< the world's corner
+  Eigen::Vector3d at_m;       ///< true left camera frame
+  std::uint32_t feature = 0;  ///< index of the world's corner
 };
 
-/// What there is to see from one pose: the noise-free view that all sources act on.
+/// The noise-free view from one pose, which all error sources act on.
 struct NoiseFreeView {
   localise::Pose2D pose;
   std::vector<VisibleEdge> edges;
@@ -48,11 +48,11 @@ struct NoiseFreeViewOptions {
   bool with_corners = false;
 };
 
-/// Pose of the left camera for a robot standing at `pose`.
+/// Pose of the left camera of a robot at `pose`.
 Pose T_left_world(const localise::Pose2D& pose, const localise::CameraMount& mount);
 
-/// Edges in the stretches that both cameras of the true rig see, at least min_length_px long in
-/// the left image. Throws Error unless the rig is a pair.
+/// The runs of edges visible in both cameras of the true rig, at least min_length_px long in the
+/// left image. Throws Error unless the rig has two cameras.
 NoiseFreeView look(const Visibility& visibility,
                    const Rig& rig,
                    const localise::Pose2D& pose,

@@ -12,8 +12,8 @@
 
 namespace vernier::sim {
 
-/// How far from the recorded route queries are asked. Worth more than any other setting, so it is
-/// part of every result.
+/// How far from the recorded route queries are drawn. It affects results more than any other
+/// setting and is part of every result.
 enum class QueryProtocol {
   near_path,  ///< ± 0.1 m across the route, ± 5°
   path,       ///< ± 0.3 m, ± 15°
@@ -21,30 +21,30 @@ enum class QueryProtocol {
 };
 
 std::string_view name(QueryProtocol protocol);
-/// Throws Error for a name that is none of near_path, path, anywhere.
+/// Throws Error for a name other than near_path, path, anywhere.
 QueryProtocol query_protocol(std::string_view name);
 
-/// Half the span across the route (metres) and of heading (radians).
+/// Half the range across the route (metres) and of heading (radians).
 struct ProtocolSpan {
   double across_m, heading_rad;
 };
 ProtocolSpan span(QueryProtocol protocol);
 
-/// Whether a robot of the given radius can stand at a point: no surface lower than `height_m` comes
-/// nearer than the radius.
+/// Whether a robot of the given radius can stand at a point: no surface below `height_m` is closer
+/// than the radius.
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m);
 
-/// Why a robot's camera cannot be at a pose, as the rest of a sentence that the pose begins; empty
-/// where it can. It cannot outside the box of the world, where a robot of 0.12 m radius that rises
-/// 0.2 m above its camera could not stand, and, in a world with a route, in a space that surfaces
-/// at the camera's height close off from the route (the inside of a wall or of a cupboard).
+/// Why a robot's camera cannot be at a pose, as a predicate for a sentence about the pose; empty if
+/// it can. It cannot be outside the bounding box of the world, where a robot of 0.12 m radius that
+/// extends 0.2 m above its camera could not stand, and, in a world with a route, in a space that
+/// surfaces at the camera's height close off from the route (the inside of a wall or a cupboard).
 std::string standing_fault(const Visibility& visibility,
                            const localise::Pose2D& pose,
                            double eye_height_m);
 
-/// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
-/// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place
-/// from the route. Throws Error where 1000 draws find no place.
+/// Pose of query `trial`: uniform along the route, across it and in heading; drawn again (from the
+/// same stream) where a robot of 0.12 m radius could not stand or a surface separates the position
+/// from the route. Throws Error after 1000 draws without success.
 localise::Pose2D draw_query(const Visibility& visibility,
                             QueryProtocol protocol,
                             double eye_height_m,

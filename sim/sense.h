@@ -16,20 +16,20 @@
 
 namespace vernier::sim {
 
-/// What a pair of cameras hands to an estimator, with the truth beside it for scoring only.
+/// The measurements that an estimator gets, with the ground truth for scoring only.
 struct StereoObservation {
   std::vector<stereo::StereoSegment> segments;
-  std::vector<VisibleEdge> true_edges;  ///< one a segment
+  std::vector<VisibleEdge> true_edges;  ///< one per segment
   std::vector<SensedCorner> corners;
 };
 
-/// The true rig looking at the world through all sources that are on.
+/// The true rig observing the world through all enabled error sources.
 class Sensor {
  public:
-  /// Throws Error for settings out of range or a rig that is no pair.
+  /// Throws Error for settings out of range or a rig without exactly two cameras.
   Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
 
-  /// The same (look, seed, trial, frame) gives the same sighting to the bit.
+  /// The same (look, seed, trial, frame) gives the same observation to the bit.
   StereoObservation sense(const NoiseFreeView& look,
                           std::uint64_t seed,
                           std::uint32_t trial,

@@ -13,13 +13,13 @@
 
 namespace vernier::sim {
 
-/// An edge on its way through the sources: its true ends, and by how much each end is displaced in
-/// each eye. Ends are projected only when asked for, so that a piece cut off an edge still has its
-/// ends exactly on it, whatever the lens.
+/// An edge passing through the error sources: its true ends, and the displacement of each end in
+/// each camera. Ends are projected on demand, so that the ends of a cut piece lie exactly on the
+/// edge, for any lens.
 struct SensedEdge {
   VisibleEdge truth;
   std::array<std::array<Eigen::Vector2d, 2>, 2> offset_px{};  ///< [eye][end]
-  std::uint32_t piece = 0;  ///< which part after a gap was cut out
+  std::uint32_t piece = 0;  ///< index of the part left by an edge-loss gap
 
   SensedEdge() {
     for (auto& eye : offset_px) eye.fill(Eigen::Vector2d::Zero());
@@ -29,7 +29,7 @@ struct SensedEdge {
 /// A corner pair in both images.
 struct SensedCorner {
   VisibleCorner truth;
-  std::array<Eigen::Vector2d, 2> pixel_px;  ///< [eye]
+  std::array<Eigen::Vector2d, 2> pixel_px;  ///< [camera]
   bool mismatched = false;
 };
 
@@ -38,7 +38,7 @@ struct SensedView {
   std::vector<SensedCorner> corners;
 };
 
-/// The true rig, and where in the experiment a view stands: with it every draw has its place.
+/// The true rig and the trial's identity, which keys every random draw.
 struct SensingContext {
   const Rig& rig;
   const stereo::Rectification& rectification;
@@ -47,7 +47,7 @@ struct SensingContext {
   std::uint32_t frame = 0;
 };
 
-/// The edge as an eye (0 left, 1 right) sees it, displacements included.
+/// The edge in the image of a camera (0 left, 1 right), displacements included.
 stereo::ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye);
 
 }  // namespace vernier::sim

@@ -12,8 +12,8 @@
 namespace vernier::sim {
 
 /// One source of geometric error. Sources act in a fixed order on the noise-free view of the true
-/// rig; each draws from its own stream, keyed by what it acts on, so that switching one on or off
-/// leaves the draws of all others as they were.
+/// rig; each draws from its own stream, keyed by the feature it acts on, so that enabling or
+/// disabling one does not change the draws of the others.
 class UncertaintySource {
  public:
   virtual ~UncertaintySource() = default;
@@ -21,9 +21,9 @@ class UncertaintySource {
   virtual void apply(const SensingContext& context, SensedView& view) const = 0;
 };
 
-/// The sources that these settings switch on, in order: lateral shift, edge loss, end-point error,
-/// epipolar rejection, stereo mismatch, corner loss, corner mismatch. (The seventh of the memo,
-/// calibration, acts on the rig that the estimator is told: see RigSampler.)
+/// The sources enabled by these settings, in order: lateral shift, edge loss, end-point error,
+/// epipolar rejection, stereo mismatch, corner loss, corner mismatch. (The memo's seventh source,
+/// calibration, acts on the rig assumed by the estimator: see RigSampler.)
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px);
 

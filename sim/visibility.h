@@ -12,41 +12,41 @@
 namespace vernier::sim {
 
 struct VisibilityOptions {
-  double near_m = 0.1;          ///< nothing closer along the optical axis is seen
-  double far_m = 30;            ///< nor farther
+  double near_m = 0.1;          ///< minimum depth along the optical axis
+  double far_m = 30;            ///< maximum depth
   double min_length_px = 10;    ///< shorter visible runs are not detected as lines
-  double surface_gap_m = 1e-3;  ///< a point this close behind a surface lies on it
+  double surface_gap_m = 1e-3;  ///< a point within this distance behind a surface counts as on it
 };
 
-/// A stretch of a segment that one camera sees, x(t) = a + t (b - a), t in [t0, t1].
+/// A visible run of a segment in one camera, x(t) = a + t (b - a), t in [t0, t1].
 struct VisibleInterval {
   int segment = 0;  ///< index into World::segments
-  int run = 0;      ///< counts the runs of this segment from a to b
+  int run = 0;      ///< index of the run on this segment, from a to b
   double t0 = 0, t1 = 1;
 };
 
 /// Hidden-line removal in a world of opaque surfaces, exact up to rounding.
 ///
-/// A point x is hidden from the eye o by a convex surface P with plane n·x = d exactly where it
+/// A point x is hidden from the eye o by a convex surface P with plane n·x = d if and only if it
 /// lies in P's shadow: beyond the plane as seen from o, and inside every half-space through o and
 /// an edge of P. All of these are linear along a segment, so each surface hides one interval of t,
-/// found analytically in double precision (Appel, "The notion of quantitative invisibility",
-/// 1967, has the idea). Surfaces that cannot matter are left out by a grid over the view.
+/// computed analytically in double precision (idea: Appel, "The notion of quantitative
+/// invisibility", 1967). A grid over the view skips irrelevant surfaces.
 class Visibility {
  public:
-  /// Keeps a reference to `world`, which must outlive this. Non-convex surfaces are cut into
-  /// convex ones once, here.
+  /// Keeps a reference to `world`, which must outlive this. Splits non-convex surfaces into convex
+  /// ones once.
   explicit Visibility(const World& world);
   ~Visibility();
   Visibility(Visibility&&) noexcept;
 
-  /// What one camera at T_camera_world sees of every segment: inside the image (distortion
+  /// Visible runs of all segments for a camera at T_camera_world: inside the image (distortion
   /// included), between near and far, not hidden; ordered by segment, then by t.
   std::vector<VisibleInterval> visible_intervals(const Camera& camera,
                                                  const Pose& T_camera_world,
                                                  const VisibilityOptions& options = {}) const;
 
-  /// Indices of the corners that the camera sees, ascending.
+  /// Indices of the visible corners, ascending.
   std::vector<int> visible_corners(const Camera& camera,
                                    const Pose& T_camera_world,
                                    const VisibilityOptions& options = {}) const;

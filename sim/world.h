@@ -10,38 +10,36 @@
 
 namespace vernier::sim {
 
-/// A straight edge of the wire frame, in metres, z up. `object` says what it belongs to.
+/// A straight edge of the wire frame, in metres, z up. `object` is its owner.
 struct WorldSegment {
   Eigen::Vector3d a_m, b_m;
   std::int32_t object = 0;
 };
 
-/// A point where edges meet, seen as a corner in an image.
+/// A point where edges meet, detected as a corner in an image.
 struct WorldCorner {
   Eigen::Vector3d position_m;
   std::int32_t object = 0;
 };
 
-/// A planar polygon, opaque from both sides. It need not be convex; its border does not cross
-/// itself.
+/// A planar polygon, opaque from both sides. It may be non-convex but must not intersect itself.
 struct WorldSurface {
   std::vector<Eigen::Vector3d> polygon_m;
   std::int32_t object = 0;
 };
 
-/// One placed thing: an instance of a template, or the loose features of the world (template
-/// name empty).
+/// An object of the world: an instance of a template, or the loose features (empty template name).
 struct WorldObject {
   std::string template_name;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< mean of its segments' ends
 };
 
-/// One leg of a route to record a map along: a polyline on the floor.
+/// One leg of a map route: a polyline on the floor.
 struct RouteLeg {
   std::vector<Eigen::Vector2d> points_m;
 };
 
-/// A building as a wire frame with opaque surfaces, all of it in world coordinates.
+/// A building as a wire frame with opaque surfaces, in world coordinates.
 struct World {
   std::string name;
   std::vector<WorldSegment> segments;
@@ -69,7 +67,7 @@ struct WorldInstance {
   double yaw_rad = 0;  ///< about z, counter-clockwise
 };
 
-/// What a .world.toml says: named templates placed many times, and loose features.
+/// Content of a .world.toml: named templates, their instances, and loose features.
 struct WorldDescription {
   std::string name;
   std::vector<WorldTemplate> templates;
@@ -78,15 +76,15 @@ struct WorldDescription {
   std::vector<RouteLeg> route;
 };
 
-/// Places every instance. Object 0 holds the loose features, object i + 1 instance i. Throws Error
-/// for an instance of an unknown template, a segment shorter than 1 mm, a surface of fewer than
-/// three points or one that is not planar to 1 mm; the place names template and index.
+/// Instantiates the templates. Object 0 holds the loose features, object i + 1 instance i. Throws
+/// Error for an instance of an unknown template, a segment shorter than 1 mm, and a surface with
+/// fewer than three points or not planar to 1 mm, naming template and index.
 World build_world(const WorldDescription& description);
 
-/// Share of the world's segments that belong to templates placed at least twice, in [0, 1].
+/// Fraction of the world's segments that belong to templates used at least twice, in [0, 1].
 double repeated_share(const World& world);
 
-/// Lower and upper corner of the box around all segments, metres.
+/// Lower and upper corner of the bounding box of all segments, metres.
 struct WorldExtent {
   Eigen::Vector3d low_m, high_m;
 };

@@ -10,18 +10,18 @@
 namespace vernier::sim {
 
 /// Reads a .world.toml (format "vernier/world", version 1; see docs/file-formats.md). Throws Error
-/// with file, line and key for anything malformed: TOML syntax, an unknown key, a wrong type, a
+/// with file, line and key for malformed input: TOML syntax, an unknown key, a wrong type, a
 /// segment that is not six numbers, a zero-length segment, an unknown template.
 WorldDescription read_world(const std::filesystem::path& file);
 
-/// The same text from memory; `place` stands for the file in messages.
+/// The same from text in memory; `place` stands for the file name in messages.
 WorldDescription parse_world(const std::string& text, const std::string& place);
 
-/// The text of a .world.toml. Lengths with a tenth of a millimetre, so that the same description
-/// always gives the same bytes, and reading it back gives the same text again.
+/// The text of a .world.toml. Lengths are written to a tenth of a millimetre, so that the same
+/// description always gives the same bytes, and reading and writing them again gives the same text.
 std::string format_world(const WorldDescription& description);
 
-/// Writes that text; the file appears whole, by rename, or not at all.
+/// Writes that text atomically: to a temporary file that is then renamed.
 void write_world(const WorldDescription& description, const std::filesystem::path& file);
 
 }  // namespace vernier::sim

@@ -10,31 +10,35 @@
 namespace vernier::stereo {
 
 struct CannyOptions {
-  double scale_px = 1.0;   ///< σ of the Gaussian that the gradient is taken behind
-  double low = 2;          ///< grey levels a pixel: weaker points are none
-  double high = 5;         ///< grey levels a pixel: a string needs one point as strong
-  int min_points = 10;     ///< shorter strings are dropped
-  bool with_sigma = true;  ///< else it is not a number, which saves a quarter of the time
+  double scale_px = 1.0;  ///< σ of the Gaussian filter that precedes the gradient
+  double low = 2;  ///< hysteresis threshold below which points are discarded, grey levels per pixel
+  /// Hysteresis threshold: an edge needs one point above it, grey levels per pixel.
+  double high = 5;
+  int min_points = 10;     ///< shorter edges are dropped
+  bool with_sigma = true;  ///< false: sigma_px is NaN, which saves a quarter of the time
 };
 
 /// Edges of an image, sorted by (y, x) (Canny, "A computational approach to edge detection", PAMI
-/// 8, 1986): pixels where the gradient g behind a Gaussian is largest along its own direction n = g
-/// / |g|, in 8-connected strings all of which are above `low` and one of which is above `high`.
+/// 8, 1986): pixels where the magnitude of the Gaussian-smoothed gradient g is a maximum along its
+/// own direction n = g / |g|, linked into 8-connected edges that lie above `low` and exceed `high`
+/// at one point at least.
 ///
-/// The place is the peak along n of the quadratic that fits log |g| in the 3 x 3 pixels best,
+/// The sub-pixel position is the peak along n of the least squares quadratic through log |g| in the
+/// 3 x 3 neighbourhood,
 ///
 ///     log |g(c + r)| ~ a + bᵀ r + rᵀ C r,   p = c + t n,   t = −nᵀb / (2 nᵀC n)
 ///
-/// for the gradient across a blurred step is nearly a Gaussian, and its logarithm is a parabola:
-/// the place has no bias from the interpolation between pixels. Its standard deviation is that of
-/// the linearised formula under the image's own white noise (image_noise.h) of σ grey levels,
+/// The gradient across a blurred step is nearly a Gaussian and its logarithm a parabola, so
+/// interpolation adds no bias. The standard deviation follows from the linearised formula with
+/// white image noise (image_noise.h) of σ grey levels,
 ///
-///     δt = Σ_i q_i nᵀ δg_i,   q_i = ∂t / ∂log|g_i| / |g_i|,   var t = σ² Σ_ij q_i q_j nᵀ R(i − j)
-///     n
+///     δt = Σ_i q_i nᵀ δg_i,   q_i = ∂t / ∂log|g_i| / |g_i|
+///     var t = σ² Σ_ij q_i q_j nᵀ R(i − j) n
 ///
-/// with R the autocorrelation of the gradient's filter. It says nothing of what a lens, a shadow or
-/// a neighbouring edge displaces (docs/edges.md). Throws Error on an image whose values do not fill
-/// it and on options that name no edges; an image smaller than the filter has none.
+/// with R the autocorrelation of the gradient filter. It does not include displacements by a lens,
+/// a shadow or a neighbouring edge (docs/edges.md). Throws Error if the number of values does not
+/// match the image size and for options out of range; an image smaller than the filter has no
+/// edges.
 std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& options = {});
 
 }  // namespace vernier::stereo

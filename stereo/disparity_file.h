@@ -10,8 +10,8 @@
 
 namespace vernier::stereo {
 
-/// A dense disparity map u_left − u_right of the left image, in pixels, row by row from the top;
-/// not a number where it is not known.
+/// A dense disparity map u_left − u_right of the left image, in pixels, row-major from the top; NaN
+/// where unknown.
 struct DisparityMap {
   int width_px = 0, height_px = 0;
   std::vector<float> values;
@@ -24,28 +24,31 @@ struct DisparityMap {
 };
 
 struct DisparityFileOptions {
-  double scale = 1;  ///< values a pixel, in every format: disparity = value / scale (KITTI: 256)
-  std::optional<bool> zero_is_unknown;  ///< unset: in files of whole numbers, not of real ones
-  double min_px = -std::numeric_limits<double>::infinity();  ///< smaller ones are unknown
+  /// File values per pixel of disparity, in every format: disparity = value / scale (KITTI: 256).
+  double scale = 1;
+  /// Default: true for integer formats, false for floating-point ones.
+  std::optional<bool> zero_is_unknown;
+  /// Smaller disparities are set to unknown.
+  double min_px = -std::numeric_limits<double>::infinity();
 };
 
-/// Reads a disparity map; its content, not its name, says which format it has:
+/// Reads a disparity map; the format is detected from the content, not the name:
 ///
-///  - PFM of one channel ("Pf"): either order of bytes, rows from the bottom; what is not finite is
-///    unknown. The magnitude of its scale is ignored: Middlebury's files hold 1/255 there and
-///    pixels nevertheless.
+///  - PFM with one channel ("Pf"): either byte order, rows from the bottom; non-finite values are
+///    unknown. The magnitude of its scale is ignored: Middlebury files store 1/255 there although
+///    their values are pixels.
 ///  - PNG of 8 or 16 bits, grey or with three equal channels, and binary PGM: 0 is unknown.
-///  - NumPy's .npy of two dimensions in C order, either order of bytes: real numbers of 4 or 8
-///    bytes (what is not finite is unknown) or whole ones of 1 to 8 bytes (0 is unknown). No .npz.
+///  - NumPy .npy with two dimensions in C order, either byte order: floats of 4 or 8 bytes
+///    (non-finite is unknown) or integers of 1 to 8 bytes (0 is unknown). .npz is not supported.
 ///
-/// Throws Error for any other file, one that is cut off or has bytes left over, and a size of 0.
+/// Throws Error for any other file, truncated files, trailing bytes, and a size of 0.
 DisparityMap read_disparity(const std::filesystem::path& file,
                             const DisparityFileOptions& options = {});
 
-/// Writes a map as its name ends: .pfm, .npy (both float32: they read back as the same bits;
-/// unknown is infinity in the first, not a number in the second), or .png of 16 bits with 256 a
-/// pixel as KITTI's (unknown is 0, known disparities below 1/512 px become 1/256 px). Throws Error
-/// for other names and, PNG, for disparities below 0 or above 255.99 px.
+/// Writes a map in the format of the file's extension: .pfm and .npy (both float32, so reading them
+/// back gives the same bits; unknown is infinity in .pfm and NaN in .npy), or 16-bit .png with
+/// KITTI's 256 per pixel (unknown is 0; known disparities below 1/512 px become 1/256 px). Throws
+/// Error for other extensions and, for PNG, for disparities below 0 or above 255.99 px.
 void write_disparity(const std::filesystem::path& file, const DisparityMap& map);
 
 }  // namespace vernier::stereo

@@ -9,7 +9,7 @@
 
 namespace vernier::stereo {
 
-/// A grey image in memory: grey levels from 0 to 255, row by row, between whole numbers too.
+/// A grey image: levels from 0 to 255, fractions allowed, row-major.
 struct GreyLevels {
   int width_px = 0, height_px = 0;
   std::vector<float> values;
@@ -20,9 +20,9 @@ struct GreyLevels {
   }
 };
 
-/// An image file as grey levels. `remark` is set to what was done to an image that is not 8-bit
-/// grey (colour weighed by ITU-R BT.601, more bits scaled by their whole range), else empty. Throws
-/// Error for what is no image or is cut off.
+/// Reads an image file. `remark` is set to the conversion applied to an image that is not 8-bit
+/// grey (colour weighted by ITU-R BT.601, higher bit depths scaled by their full range), else to an
+/// empty string. Throws Error for a file that is not an image or is truncated.
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
 }  // namespace vernier::stereo

@@ -12,24 +12,24 @@
 
 namespace vernier::stereo {
 
-/// What a matcher says at a point of the left image.
+/// A matcher's result at an edge point of the left image.
 struct EdgeDisparity {
-  float disparity_px = std::numeric_limits<float>::quiet_NaN();  ///< not a number: no match
-  float sigma_px = std::numeric_limits<float>::quiet_NaN();      ///< not a number: not stated
-  float confidence = 0;  ///< larger is surer, for curves of error against density
+  float disparity_px = std::numeric_limits<float>::quiet_NaN();  ///< NaN: no match
+  float sigma_px = std::numeric_limits<float>::quiet_NaN();  ///< standard deviation; NaN: not given
+  float confidence = 0;  ///< larger is more certain; used for error–density curves
 
   bool matched() const { return disparity_px == disparity_px; }
 };
 
-/// A stereo matcher: disparities of the pair at the left edge points, one for each. Throws Error on
-/// images of unequal size or an empty range.
+/// Signature of a stereo matcher: disparities of the pair at the left edge points, one per point.
+/// Throws Error for images of different sizes or an empty range.
 using MatchEdges = std::function<std::vector<EdgeDisparity>(
     const RectifiedPair& pair, const std::vector<EdgePoint>& left_edges, const DisparityRange&)>;
 
 struct Matcher {
   std::string name;
   MatchEdges match;
-  bool of_edges = false;  ///< works on edges, so that finding them is part of its time
+  bool of_edges = false;  ///< sparse: works on edges, so edge detection counts towards its time
 };
 
 }  // namespace vernier::stereo

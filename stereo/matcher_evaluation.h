@@ -11,53 +11,56 @@
 
 namespace vernier::stereo {
 
-/// What counts as right within a pixel of a step of the truth.
+/// Which disparity counts as correct within a pixel of a truth discontinuity.
 enum class DiscontinuityRule {
-  either,  ///< any disparity of the 3 x 3 pixels: which surface an edge is of is not known better
+  either,      ///< any disparity of the 3 x 3 pixels: the edge may belong to either surface
   foreground,  ///< the largest of them
 };
 
 struct EvaluationOptions {
-  double min_angle_rad = 0.0873;  ///< edges nearer to the row (5°) are not asked
-  int border_px = 3;              ///< nor those nearer to the left and right border
+  double min_angle_rad = 0.0873;  ///< edges closer to horizontal (5°) are not scored
+  int border_px = 3;              ///< edges closer to the left or right border are not scored
   DiscontinuityRule outline = DiscontinuityRule::either;
 };
 
-/// Figures over some of the edges. Shares are 0 where there is nothing to share.
+/// Statistics over a subset of the edges. Fractions of an empty set are 0.
 struct EdgeMetrics {
-  int edges = 0;       ///< with a known truth that the right image shows
-  int matched = 0;     ///< of them
-  double density = 0;  ///< matched over edges
-  double bad_0_5 = 0, bad_1 = 0, bad_2 = 0, bad_3 = 0;  ///< of the matched, |error| above, px
-  double rms_inlier_px = 0;                             ///< of errors up to 1 px
-  double bias_inlier_px = 0;                            ///< their mean
+  int edges = 0;       ///< with known truth and visible in the right image
+  int matched = 0;     ///< number of them that are matched
+  double density = 0;  ///< matched / edges
+  /// Fractions of the matched edges with |error| above 0.5, 1, 2 and 3 px.
+  double bad_0_5 = 0, bad_1 = 0, bad_2 = 0, bad_3 = 0;
+  double rms_inlier_px = 0;   ///< RMS of errors up to 1 px
+  double bias_inlier_px = 0;  ///< their mean
 };
 
-/// How a matcher did at the left edges of a pair.
+/// Score of a matcher at the left edges of a pair.
 struct MatcherScore {
-  EdgeMetrics all, smooth, discontinuity;  ///< … away from steps of the truth, and at them
-  std::vector<EdgeMetrics> by_angle;       ///< nine bins of 10° from the row to upright
-  int occluded = 0;                        ///< edges that the right image does not show …
-  int occluded_matched = 0;                ///< … and that were matched all the same
-  double mismatch = 0;  ///< |error| > 3 px among all matched, occluded ones included
-  /// Of smooth matched edges with a standard deviation: how many errors are within 1.96 of it, and
-  /// the root mean square of error over it, without those above 1 px.
+  EdgeMetrics all, smooth, discontinuity;  ///< smooth: away from truth discontinuities
+  std::vector<EdgeMetrics> by_angle;       ///< nine bins of 10°, from horizontal to vertical
+  int occluded = 0;                        ///< edges not visible in the right image …
+  int occluded_matched = 0;                ///< … of which matched nevertheless
+  /// Fraction of all matched edges, occluded ones included, with |error| > 3 px.
+  double mismatch = 0;
+  /// For smooth matched edges with a standard deviation: fraction of errors within 1.96 of it, and
+  /// RMS of error over standard deviation, excluding errors above 1 px.
   int stated = 0;
   double coverage_95 = 0, z_rms = 0;
 };
 
-/// Whether an edge is one of those that are asked about: its truth is known, it is not too near to
-/// the row nor to the border.
+/// Whether an edge is scored: its ground truth is known, and it is neither too close to horizontal
+/// nor to the border.
 bool is_scored(const EdgePoint& edge,
                const TruthAtEdge& truth,
                int width_px,
                const EvaluationOptions& options);
 
-/// Whether the right image does not show an edge, by the rule.
+/// Whether an edge is not visible in the right image, by the rule.
 bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule);
 
-/// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
-/// that counts. 0 between the point's and its crossing's (TruthAtEdge::crossing_px).
+/// Found minus true disparity; at a discontinuity under rule `either`, the absolute difference to
+/// the nearest valid disparity. 0 between the point's disparity and that of its crossing
+/// (TruthAtEdge::crossing_px).
 double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule);
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
@@ -66,14 +69,14 @@ MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       int width_px,
                       const EvaluationOptions& options = {});
 
-/// A point of the curve of error against density.
+/// A point of an error–density curve.
 struct CurvePoint {
   double min_confidence = -std::numeric_limits<double>::infinity();
   double density = 0, bad_1 = 0, mismatch = 0;
 };
 
-/// The curve as the least confident matches are left out one by one, at `points` densities evenly
-/// from all to none, the densest first. Of equal confidences all or none are left out.
+/// Curve obtained by dropping the least confident matches, at `points` densities spaced evenly from
+/// all to none, densest first. Matches of equal confidence are dropped together.
 std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       const std::vector<EdgeDisparity>& found,
                                       const std::vector<TruthAtEdge>& truth,
@@ -81,7 +84,7 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       int points,
                                       const EvaluationOptions& options = {});
 
-/// bad_1 of a curve at a density, linearly between its points; that of the nearer end beyond them.
+/// bad_1 of a curve at a density, interpolated linearly; clamped beyond its ends.
 double bad_1_at(const std::vector<CurvePoint>& curve, double density);
 
 }  // namespace vernier::stereo

@@ -12,19 +12,19 @@
 namespace vernier::stereo {
 
 struct RectifiedGeometryOptions {
-  Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: the left camera's
-  double f_px = 0;                ///< of both; 0: chosen as below
-  double max_blank = 0.01;        ///< share of either image's pixels that may have no source …
-  double min_zoom = 0.7;          ///< … by a focal length within these two,
-  double max_zoom = 1.3;          ///< in units of the cameras' mean
+  Eigen::Vector2i size_px{0, 0};  ///< of the rectified images; 0 0: that of the left camera
+  double f_px = 0;                ///< of both; 0: automatic, see below
+  double max_blank = 0.01;  ///< maximum fraction of either image's pixels without a source …
+  double min_zoom = 0.7;    ///< … for a focal length between min_zoom
+  double max_zoom = 1.3;    ///< and max_zoom times the cameras' mean
 };
 
-/// Two pinhole cameras side by side that a pair is rectified to: the same focal length f, the same
-/// centre c, no distortion. With B the baseline,
+/// Two parallel pinhole cameras that a pair is rectified to: the same focal length f and principal
+/// point c, no distortion. With B the baseline,
 ///
 ///     u = f x / z + c_x,   v = f y / z + c_y,   d = u_left − u_right,   z = f B / d
 ///
-/// for a point (x, y, z) of the rectified left camera's frame, R_rectified_left x_left
+/// for a point (x, y, z) of the rectified left camera frame, R_rectified_left x_left
 /// (stereo/rectification.h).
 struct RectifiedGeometry {
   Rectification turn;
@@ -39,43 +39,44 @@ struct RectifiedGeometry {
 
 /// The geometry that a rig's images are rectified to.
 ///
-/// The focal length is the least, so the widest view, at which no more than `max_blank` of either
-/// image has no source; where none within the zooms does, the most zoom. Where the cameras' mean is
-/// within 3 % of it, it is the mean, so that cameras side by side stay as they are. The centre is
-/// such that the middles of both raw images stay in the middle on average: where the axes converge
-/// or part, either image loses what the other cannot see. Throws Error unless the rig is a pair
-/// with a baseline, and on options out of bounds.
+/// The focal length is the smallest, hence the widest view, for which at most `max_blank` of either
+/// image has no source; the largest zoom if none within the limits does. If the cameras' mean is
+/// within 3 % of it, the mean is used, so that parallel cameras keep their focal length. The
+/// principal point is chosen such that the centres of both raw images stay in the middle on
+/// average: if the axes converge or diverge, each image loses what the other cannot see. Throws
+/// Error unless the rig has two cameras and a baseline, and for options out of range.
 RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOptions& options = {});
 
-/// The geometry of images that are rectified already, by the rig of two pinhole cameras side by
-/// side that takes them: its own f and B, the left camera's centre. Where the right camera's centre
-/// lies further right by o, the images' disparities are those of the geometry less o. Nothing where
-/// the rig is none of that kind.
+/// The geometry of images that are already rectified, from the rig of the two parallel pinhole
+/// cameras that take them: its own f and B, the left camera's principal point. If the right
+/// camera's principal point lies further right by o, the images' disparities are those of the
+/// geometry minus o. Returns nullopt for any other rig.
 std::optional<RectifiedGeometry> geometry_of_rectified_rig(const Rig& rig);
 
-/// The two pinhole cameras as a rig of the same names.
+/// The two pinhole cameras as a rig with the same camera names.
 Rig rectified_rig(const Rig& rig, const RectifiedGeometry& geometry);
 
-/// Where camera 0 or 1 has in its raw image what is at a rectified pixel, inside of it or not. It
-/// takes no inverse of the lens. Nothing behind the camera or beyond the fold of its distortion.
+/// Position in the raw image of camera 0 or 1 of a rectified pixel, inside the image or not. Does
+/// not invert the lens distortion. Returns nullopt behind the camera or beyond the fold of its
+/// distortion.
 std::optional<Eigen::Vector2d> raw_pixel(const Rig& rig,
                                          const RectifiedGeometry& geometry,
                                          int camera,
                                          const Eigen::Vector2d& rectified_px);
 
-/// The other way. Nothing where the raw pixel has no ray or it is not in front of the rectified
-/// camera.
+/// The inverse. Returns nullopt if the raw pixel cannot be unprojected or is not in front of the
+/// rectified camera.
 std::optional<Eigen::Vector2d> rectified_pixel(const Rig& rig,
                                                const RectifiedGeometry& geometry,
                                                int camera,
                                                const Eigen::Vector2d& raw_px);
 
-/// Raw pixels of many rectified ones: raw_pixel() prepared for one camera.
+/// Raw positions of many rectified pixels: raw_pixel() prepared for one camera.
 class RawPixels {
  public:
   RawPixels(const Rig& rig, const RectifiedGeometry& geometry, int camera);
   std::optional<Eigen::Vector2d> at(const Eigen::Vector2d& rectified_px) const;
-  /// The same, or nothing where the raw image does not reach.
+  /// The same, or nullopt outside the raw image.
   std::optional<Eigen::Vector2d> in_image_at(const Eigen::Vector2d& rectified_px) const;
 
  private:
@@ -83,7 +84,7 @@ class RawPixels {
   Eigen::Matrix3d R_camera_rectified_;
   double f_px_;
   Eigen::Vector2d centre_px_;
-  double sure_radius_ = 0;  ///< of (x / z, y / z): within, no ray is beyond a fold
+  double sure_radius_ = 0;  ///< of (x / z, y / z): within it no ray is beyond a fold
 };
 
 }  // namespace vernier::stereo

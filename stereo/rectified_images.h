@@ -13,16 +13,16 @@
 
 namespace vernier::stereo {
 
-/// Which pixels of a rectified image have a source: the raw image reaches there.
+/// Mask of the pixels of a rectified image that have a source in the raw image.
 struct ValidPixels {
   int width_px = 0, height_px = 0;
-  std::vector<std::uint8_t> values;  ///< 1 or 0, row by row
+  std::vector<std::uint8_t> values;  ///< 1 or 0, row-major
 
   bool operator()(int x, int y) const {
     return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) +
                   static_cast<std::size_t>(x)] != 0;
   }
-  double blank_share() const;  ///< of pixels that have none
+  double blank_share() const;  ///< fraction of pixels without a source
 };
 
 struct RectifiedImages {
@@ -30,12 +30,12 @@ struct RectifiedImages {
   ValidPixels left_valid, right_valid;
 };
 
-/// The images of a rig as its rectified cameras would see them. A rectified pixel's ray is turned
-/// into its camera and projected there (no lens is inverted), and the raw image read by cubic
-/// convolution (Keys 1981, a = −1/2) in full precision: OpenCV's remap rounds places to 1/32 px.
-/// Pixels without a source repeat the raw image's border, so that no edge appears there; where not
-/// even a place beyond the border is known they are 0. Bits do not depend on the number of threads
-/// (0: as many as the machine has). Throws Error where an image is not of its camera's size.
+/// Rectifies the images of a rig. A rectified pixel's ray is rotated to its camera and projected
+/// there (the lens distortion is not inverted), and the raw image is interpolated by cubic
+/// convolution (Keys 1981, a = −1/2) at full precision; OpenCV's remap rounds positions to 1/32 px.
+/// Pixels without a source replicate the raw image's border, so that no edge appears there, and are
+/// 0 where not even a position beyond the border is defined. Results do not depend on the number of
+/// threads (0: all cores). Throws Error if an image does not have the size of its camera.
 RectifiedImages rectified_images(const Rig& rig,
                                  const RectifiedGeometry& geometry,
                                  const GreyLevels& left,

@@ -6,12 +6,12 @@
 
 namespace vernier::stereo {
 
-/// Two images of which every row shows the same epipolar plane.
+/// Two images in which corresponding rows show the same epipolar plane.
 struct RectifiedPair {
   GreyLevels left, right;
 };
 
-/// Disparities u_left − u_right that are searched, both ends included.
+/// Search range of disparities u_left − u_right, both ends included.
 struct DisparityRange {
   int min_px = 0, max_px = 64;
 };

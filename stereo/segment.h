@@ -14,17 +14,17 @@ struct ImageSegment {
   double length_px() const { return (b_px - a_px).norm(); }
 };
 
-/// The same edge in both images of a pair: the two lines correspond, their end points need not.
+/// The same edge in both images of a pair: the lines correspond, the end points need not.
 struct StereoSegment {
   ImageSegment left, right;
-  std::uint32_t feature = 0;  ///< identity for scoring; no estimator reads it
+  std::uint32_t feature = 0;  ///< identity for scoring only; not used by any estimator
 };
 
-/// An edge in space, in the rig's frame (metres), with how well it is known.
+/// An edge in space, in the rig's frame (metres), with its uncertainty.
 struct SpaceSegment {
   Eigen::Vector3d a_m, b_m;
-  double depth_sigma_m = 0;  ///< of the farther end, from the line fit's end-point error
-  bool reliable = true;      ///< false where an end lies beyond the range asked for, or has no ray
+  double depth_sigma_m = 0;  ///< of the farther end, from the end-point error of the line fit
+  bool reliable = true;      ///< false if an end is beyond max_depth_m or cannot be unprojected
 };
 
 }  // namespace vernier::stereo

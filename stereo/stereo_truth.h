@@ -14,44 +14,45 @@ namespace vernier::stereo {
 /// Ground truth at the pixels of the left image of a rectified pair.
 struct StereoTruth {
   DisparityMap disparity;
-  std::vector<std::uint8_t> occluded;  ///< one a pixel: 1 where the right image does not show it
+  std::vector<std::uint8_t> occluded;  ///< one per pixel: 1 if not visible in the right image
 };
 
-/// Finds the left pixels that the right image does not show. The left pixel x is at x − d of the
-/// right image. It is occluded where
+/// Computes the left pixels that are not visible in the right image. Left pixel x maps to x − d in
+/// the right image. It is occluded if
 ///
-///  - that is outside of the image;
-///  - another left pixel of the row, more than 1 px nearer, falls on the same right pixel, and
-///    between the two the row is folded: x − d falls from one known pixel to the next. A slanted
-///    surface seen as a whole has a disparity gradient below 1 and no fold;
-///  - or the right image's truth, if there is one, has no disparity within 1 px of d there, nor on
-///    both sides of it.
+///  - that is outside the image;
+///  - another left pixel of the row, more than 1 px nearer, maps to the same right pixel, and the
+///    row folds between the two: x − d decreases from one known pixel to the next. A slanted
+///    surface that is fully visible has a disparity gradient below 1 and no fold;
+///  - or the right image's truth, if given, has no disparity within 1 px of d there, nor on both
+///    sides of it.
 ///
-/// Throws Error where the two maps have different sizes or nothing is known.
+/// Throws Error if the two maps have different sizes or nothing is known.
 StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right = nullptr);
 
 /// Ground truth at an edge point of the left image.
 struct TruthAtEdge {
-  /// Where the 3 x 3 pixels about the edge point hold a step, the foreground's, which is the
-  /// largest of them; else, interpolated along the row, that of the sub-pixel edge.
+  /// If the 3 x 3 pixels around the edge point contain a discontinuity, the foreground's disparity,
+  /// which is the largest of them; else that of the sub-pixel edge, interpolated along the row.
   float disparity_px = std::numeric_limits<float>::quiet_NaN();
   bool known = false;     ///< at the edge's nearest pixel
-  bool occluded = false;  ///< of the pixel that the disparity is of
-  float own_px = std::numeric_limits<float>::quiet_NaN();  ///< along the row, whatever is about it
-  bool own_occluded = false;                               ///< of the edge's own pixel
-  bool discontinuity = false;  ///< a step in the 5 x 5 pixels, or something unknown in the 3 x 3
+  bool occluded = false;  ///< of the pixel that the disparity belongs to
+  /// Along the row, regardless of discontinuities.
+  float own_px = std::numeric_limits<float>::quiet_NaN();
+  bool own_occluded = false;  ///< of the edge's own pixel
+  /// A discontinuity in the 5 x 5 pixels, or an unknown value in the 3 x 3.
+  bool discontinuity = false;
   float min_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
   float max_px = std::numeric_limits<float>::quiet_NaN();  ///< of the 3 x 3 pixels
-  /// Where the right image's rows are wrong (stereo/evaluation/warped_pair.h): how much more
-  /// disparity the edge has where it crosses the row there. All between the point's and the
-  /// crossing's is right.
+  /// For pairs with row errors (stereo/evaluation/warped_pair.h): additional disparity of the edge
+  /// where it crosses the row. Every disparity between the point's and the crossing's is correct.
   float crossing_px = 0;
 };
 
-/// The truth where each edge crosses its row (EdgePoint::row_x_px). A step is between two known
-/// pixels next to each other along a row or column, or with only unknown ones between, whose
-/// disparities differ by more than their distance: no surface seen by both eyes does that. Throws
-/// Error for edges outside the map.
+/// Ground truth where each edge crosses its row (EdgePoint::row_x_px). A discontinuity is between
+/// two known pixels adjacent along a row or column, or separated only by unknown ones, whose
+/// disparities differ by more than their distance: no surface visible to both cameras does that.
+/// Throws Error for edges outside the map.
 std::vector<TruthAtEdge> truth_at(const StereoTruth& truth, const std::vector<EdgePoint>& edges);
 
 }  // namespace vernier::stereo

@@ -14,7 +14,7 @@
 
 namespace vernier::sim::internal {
 
-/// Which cluster a place of a pair's left image is in.
+/// Cluster of a position in a pair's left image.
 struct ClusterOf {
   bool by_pair = false;
 
@@ -31,7 +31,7 @@ struct ClusterOf {
   }
 };
 
-/// Samples by cluster; clusters without any are none.
+/// Samples by cluster; clusters without samples are dropped.
 template <class Sample>
 class ClusteredSamples {
  public:
@@ -65,12 +65,12 @@ class ClusteredSamples {
   int count_ = 0;
 };
 
-/// Of what cannot be negative.
+/// Clamps at 0.
 inline void not_below_zero(MeasuredValue& measured) {
   if (measured.interval.low < 0) measured.interval.low = 0;
 }
 
-/// A figure of all samples with its interval; nothing where there are too few.
+/// A statistic of all samples with its interval; unset if there are too few.
 template <class Sample, class Figure>
 MeasuredValue measured(const ClusteredSamples<Sample>& samples,
                        const MeasuringOptions& options,
@@ -87,12 +87,12 @@ MeasuredValue measured(const ClusteredSamples<Sample>& samples,
   return result;
 }
 
-/// Sums of which some figure is made, such as a ratio: one a cluster instead of many samples.
+/// Sums for a statistic such as a ratio: one entry per cluster instead of many samples.
 struct Sums {
   double part = 0, whole = 0, chance = 0;
 };
 
-/// The same of sums, `count` samples in all.
+/// The same from sums, `count` samples in total.
 template <class Figure>
 MeasuredValue measured_ratio(const std::map<int, Sums>& clusters,
                              int count,

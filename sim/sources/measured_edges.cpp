@@ -27,10 +27,10 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double cut_deviations = 3;  // of end points; beyond are outliers
-constexpr double broken_px = 3;       // along: that end is not the same place of the edge
+constexpr double cut_deviations = 3;  // of end points; outliers beyond
+constexpr double broken_px = 3;  // along the edge: beyond, the end is a different point of the edge
 
-/// Lost share of a length, were nothing covered by chance.
+/// Lost fraction of a length, corrected for chance coverage.
 double without_chance(const Sums& sums) {
   const double lost = 1 - sums.part / sums.whole, chance = sums.chance / sums.whole;
   return std::min(1.0, lost / std::max(1e-3, 1 - chance));
@@ -58,16 +58,16 @@ MeasuredValue loss_of(const PairList& pairs,
   return measured_ratio(sums, count, options, without_chance);
 }
 
-/// A segment's shift with its pair's own displacement taken away.
+/// A segment's shift without its pair's global displacement.
 struct Shift {
   double towards_px, halves_product, by_row, noise;
 };
 
-/// The mean displacement (b_x, b_y) of a pair and the mean shift towards the brighter side, by
-/// Huber's weights: shift ~ nᵀ b + c.
+/// Global displacement (b_x, b_y) of a pair and mean shift towards the brighter side, fitted with
+/// Huber weights: shift ~ nᵀ b + c.
 Eigen::Vector3d displacement_of(const std::vector<SegmentShift>& shifts) {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  if (shifts.size() < 20) return b;  // too few to tell it from their own shifts
+  if (shifts.size() < 20) return b;  // too few to separate it from the segments' own shifts
   for (int round = 0; round < 20; ++round) {
     std::vector<double> sizes;
     const auto row = [](const SegmentShift& s) {
@@ -102,7 +102,7 @@ ClusteredSamples<Shift> shifts_of(const PairList& pairs, const ClusterOf& cluste
   return shifts;
 }
 
-/// Shifts farther than this are not of the same edge, or are another matter than the rest.
+/// Larger shifts belong to another edge or have another cause.
 double beyond_px(const std::vector<Shift>& shifts) {
   std::vector<double> sizes;
   for (const Shift& s : shifts) sizes.push_back(std::abs(s.towards_px));
@@ -119,7 +119,7 @@ VarianceLine shift_variance(const std::vector<Shift>& shifts) {
   return variance_line(squares, 0);
 }
 
-/// A difference between both ends of a segment.
+/// Difference between the two ends of a segment.
 struct Ends {
   double across_px, along_px, by_row;
 };

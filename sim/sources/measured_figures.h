@@ -8,7 +8,7 @@
 #include "sim/sources/measured_sources.h"
 #include "stereo/evaluation/pair_samples.h"
 
-/// One figure each of measure_sources. Not installed.
+/// Parts of measure_sources, one statistic each. Not installed.
 namespace vernier::sim::internal {
 
 using PairList = std::vector<stereo::internal::PairSamples>;

@@ -29,8 +29,8 @@ namespace {
 constexpr double wrong_corner_px = 1.5, wrong_line_px = 3;
 constexpr int disparity_bins = 4;
 
-/// A share's interval is no narrower than that of independent trials: without it, samples that are
-/// all alike would have none.
+/// The interval of a fraction is at least that of independent trials: otherwise identical samples
+/// would have none.
 void widen_to_wilson(MeasuredValue& share) {
   if (!share.known()) return;
   const Interval wilson = wilson_interval(share.value * share.samples, share.samples);
@@ -38,13 +38,13 @@ void widen_to_wilson(MeasuredValue& share) {
   share.interval.high = std::min(1.0, std::fmax(share.interval.high, wilson.high));
 }
 
-/// Mismatches are spread evenly over a disc, or (`line`) over ± a range, and seen where they are
-/// more than some pixels off.
+/// Mismatches are uniform over a disc or (`line`) over ± a range, and detected if they are more
+/// than some pixels off.
 struct MismatchModel {
-  double seen_from_px = 0, otherwise_px = 0;  ///< reach where too few are seen to tell it
+  double seen_from_px = 0, otherwise_px = 0;  ///< reach if too few are detected to estimate it
   bool line = false;
 
-  /// Reach of which those seen have their median error; not a number for fewer than `least`.
+  /// Reach with the same median error as the detected ones; NaN for fewer than `least`.
   double reach_px(const std::vector<double>& wrong_px, int least) const {
     if (static_cast<int>(wrong_px.size()) < least) return std::numeric_limits<double>::quiet_NaN();
     const double middle = median_or_zero(wrong_px);
@@ -52,7 +52,7 @@ struct MismatchModel {
                 : std::sqrt(2 * middle * middle - seen_from_px * seen_from_px);
   }
 
-  /// Share of mismatches that are seen; at least a half of them.
+  /// Fraction of mismatches that are detected; at least one half.
   double seen(double reach) const {
     const double hidden = std::min(0.5, seen_from_px / (reach == reach ? reach : otherwise_px));
     return 1 - (line ? hidden : hidden * hidden);
@@ -67,7 +67,8 @@ struct MismatchModel {
   }
 };
 
-/// Share of all matches, the unseen mismatches added; the reach is measured anew in each resample.
+/// Fraction of all matches, including undetected mismatches; the reach is estimated anew in each
+/// resample.
 MeasuredValue mismatch_share(const ClusteredSamples<double>& errors_px,
                              const MismatchModel& model,
                              const MeasuringOptions& options) {
@@ -118,7 +119,7 @@ MeasuredValue corner_loss(const PairList& pairs,
   return loss;
 }
 
-/// Matched lines and wrong ones in four quarters of the disparities that occur.
+/// Matched and wrong lines in four quarters of the observed disparities.
 std::vector<MismatchByDisparity> by_disparity(const PairList& pairs,
                                               const ClusterOf& cluster,
                                               const MeasuringOptions& options) {

@@ -14,7 +14,7 @@ using namespace stereo::internal;
 MeasuredSources measure_sources(const std::vector<PairSamples>& pairs,
                                 const MeasuringOptions& options) {
   if (pairs.empty()) {
-    throw Error("measured sources", "there are no pairs", "give one or more");
+    throw Error("measured sources", "no pairs", "give at least one pair");
   }
   constexpr int parts = 16;
   MeasuredSources sources;

@@ -22,13 +22,13 @@ const SourceParameter& parameter_of(std::string_view key) {
                        [&](const SourceParameter& parameter) { return parameter.name == key; });
 }
 
-/// Four digits: more than any interval here is worth.
+/// Four digits, more than any interval here justifies.
 double rounded(double value) {
   return vernier::internal::to_real(fmt::format("{:.4g}", value)).value_or(value);
 }
 
 std::string text_of(const MeasuredValue& measured) {
-  return measured.known() ? fmt::format("{:.4g}", measured.value) : "not known";
+  return measured.known() ? fmt::format("{:.4g}", measured.value) : "unknown";
 }
 
 SourceEntry entry_of(const char* key, const MeasuredValue& measured, std::string note) {
@@ -41,8 +41,8 @@ SourceEntry entry_of(const char* key, const MeasuredValue& measured, std::string
   }
   entry.measured.value = rounded(std::clamp(measured.value, parameter.low, parameter.high));
   if (measured.value < parameter.low || measured.value > parameter.high) {
-    entry.note += fmt::format("; measured {:.4g}, a study takes {:g} to {:g}", measured.value,
-                              parameter.low, parameter.high);
+    entry.note += fmt::format("; measured {:.4g}, limited to the accepted range {:g} to {:g}",
+                              measured.value, parameter.low, parameter.high);
   }
   return entry;
 }
@@ -59,17 +59,18 @@ SourceEntry reach_entry(const char* key,
 SourceEntry lateral_shift_entry(const MeasuredLateralShift& shift, ShiftMode mode) {
   SourceEntry entry =
       entry_of("lateral_shift_px", shift.independent_px,
-               fmt::format("independent in each eye; the views differ by {:.3f} px (rms)",
+               fmt::format("independent in each camera; the views differ by {:.3f} px (RMS)",
                            shift.relative_px.value));
   if (!entry.written || mode == ShiftMode::independent) return entry;
   entry.written = false;
   entry.note = fmt::format(
-      "a shift common to both eyes is not to be seen in a pair; by itself each eye has {:.3f} px",
+      "a shift common to both cameras is not observable in a pair; the independent part is "
+      "{:.3f} px per camera",
       shift.independent_px.value);
   return entry;
 }
 
-/// Fit for a comment.
+/// Replaces control characters by blanks, for use in a comment.
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(),
@@ -84,11 +85,11 @@ std::string interval_text(const MeasuredValue& measured) {
 
 std::string lines_of(const SourceEntry& entry, const MeasuredSources& sources, ShiftMode mode) {
   if (!entry.written) {
-    std::string text = fmt::format("# {} = {:.4g}: the default stays; {}\n", entry.key,
-                                   entry.otherwise, entry.note);
+    std::string text =
+        fmt::format("# {} = {:.4g}: default kept; {}\n", entry.key, entry.otherwise, entry.note);
     if (entry.key == "lateral_shift_px" && sources.lateral_shift.independent_px.known()) {
       text += fmt::format(
-          "#   what the eyes differ by would be ({}{} segments):\n"
+          "#   to use the difference between the cameras ({}{} segments):\n"
           "#   lateral_shift_mode = \"independent\"\n#   lateral_shift_px = {:.4g}\n",
           interval_text(entry.measured), entry.measured.samples,
           sources.lateral_shift.independent_px.value);
@@ -116,25 +117,25 @@ std::vector<SourceEntry> source_entries(const MeasuredSources& sources, ShiftMod
   entries.push_back(lateral_shift_entry(sources.lateral_shift, mode));
   entries.push_back(
       entry_of("edge_loss", loss.share,
-               fmt::format("share of left segments' length on no right segment; right "
-                           "to left {}, on no edge at all {}",
+               fmt::format("fraction of left segments' length on no right segment; right "
+                           "to left {}, on no edge point {}",
                            text_of(loss.to_left), text_of(loss.on_edges))));
   entries.push_back(entry_of(
       "endpoint_sigma_px", ends.across_px,
-      fmt::format("across the line; along it {:.3f} px, {:.0f} % of segments cut short left out",
+      fmt::format("across the line; along it {:.3f} px; {:.0f} % of segments, cut short, excluded",
                   ends.along_px.value, 100 * ends.broken)));
   entries.push_back(entry_of(
       "stereo_mismatch", stereo.share,
-      fmt::format("share of matched lines; {} of them wrong by more than 3 px", stereo.wrong)));
+      fmt::format("fraction of matched lines; {} of them wrong by more than 3 px", stereo.wrong)));
   entries.push_back(reach_entry("stereo_mismatch_px", stereo.reach_px, stereo.wrong,
-                                "± range with the mismatches' median error"));
+                                "± range with the median error of the mismatches"));
   entries.push_back(entry_of("corner_loss", corners.loss,
-                             "share of left corners that are no corners in the right image"));
+                             "fraction of left corners not detected in the right image"));
   entries.push_back(entry_of(
       "corner_mismatch", corners.mismatch,
-      fmt::format("share of matches; {} of them wrong by more than 1.5 px", corners.wrong)));
+      fmt::format("fraction of matches; {} of them wrong by more than 1.5 px", corners.wrong)));
   entries.push_back(reach_entry("corner_mismatch_px", corners.reach_px, corners.wrong,
-                                "disc with the mismatches' median distance"));
+                                "radius of the disc with the median distance of the mismatches"));
   return entries;
 }
 
@@ -142,17 +143,17 @@ std::string sources_toml(const MeasuredSources& sources, ShiftMode mode, const s
   std::string names;
   for (const std::string& name : sources.pairs) names += (names.empty() ? "" : ", ") + name;
   std::string text = fmt::format(
-      "# Sources of error, measured by vernier characterise in {} pair{} with ground truth: {}\n"
-      "# Beside each value its 95 % interval, {}.\n"
-      "# docs/characterise.md says what each one is, and what it leaves out.\n{}[sources]\n",
+      "# Error sources measured by vernier characterise on {} pair{} with ground truth: {}\n"
+      "# Comments give the 95 % interval of each value, {}.\n"
+      "# Definitions and limits: docs/characterise.md\n{}[sources]\n",
       sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s", one_line(names),
       sources.by_pair ? "over pairs"
-                      : "over parts of these images: other scenes may differ by more",
+                      : "over parts of these images; the variation between scenes may be larger",
       how.empty() ? "" : "# " + one_line(how) + "\n");
   for (const SourceEntry& entry : source_entries(sources, mode)) {
     text += lines_of(entry, sources, mode);
   }
-  text += "# calibration and epipolar_reject_deg are not the images' to tell: the defaults stay\n";
+  text += "# calibration and epipolar_reject_deg cannot be measured from images: defaults kept\n";
   return text;
 }
 

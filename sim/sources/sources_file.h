@@ -10,25 +10,25 @@
 
 namespace vernier::sim::internal {
 
-/// A key of [sources] and what was measured of it.
+/// A key of [sources] and its measured value.
 struct SourceEntry {
   std::string key;
-  MeasuredValue measured;  ///< not known: too few samples
+  MeasuredValue measured;  ///< unknown: too few samples
   double otherwise = 0;    ///< the simulator's default
-  bool written = false;    ///< else the default stays
-  std::string note;        ///< what was measured, or why the default stays
+  bool written = false;    ///< false: the default is kept
+  std::string note;        ///< what was measured, or why the default is kept
 };
 
-/// The simulator's keys in the order in which they act. What cannot be measured keeps its default:
-/// `calibration` and `epipolar_reject_deg` are not the images' to tell, and of `lateral_shift_px`
-/// two simultaneous views tell only what is not common to both. `mode` says what is to be written:
-/// common leaves the default, independent writes what the views differ by.
+/// The simulator's keys in the order in which they act. Keys that cannot be measured keep their
+/// default: `calibration` and `epipolar_reject_deg` cannot be measured from images, and
+/// `lateral_shift_px` only as far as it differs between two simultaneous views. `mode` selects what
+/// is written: common keeps the default, independent writes the difference between the views.
 std::vector<SourceEntry> source_entries(const MeasuredSources& sources,
                                         ShiftMode mode = ShiftMode::common);
 
-/// The same as a file: a table [sources] with a comment beside each key. A study reads it
-/// by `file` in its own [sources], or copied into it (docs/file-formats.md). `how` is one more line
-/// of its head: by what matcher and options they were measured.
+/// The same as a file: a table [sources] with a comment for each key. A study refers to it by
+/// `file` in its own [sources], or its text is copied there (docs/file-formats.md). `how` is an
+/// additional line of the header: the matcher and options used.
 std::string sources_toml(const MeasuredSources& sources,
                          ShiftMode mode = ShiftMode::common,
                          const std::string& how = "");

@@ -46,8 +46,8 @@ RandomStream draws_of(const SensingContext& context,
                        .frame = context.frame});
 }
 
-/// psi_l. Illumination moves the boundary of a surface in or out: one sign a surface (object), one
-/// size an edge, the same whenever it is looked at in this trial.
+/// psi_l. Illumination moves the boundary of a surface inwards or outwards: one sign per surface
+/// (object), one magnitude per edge, the same for all views of a trial.
 class LateralShift : public UncertaintySource {
  public:
   explicit LateralShift(const SourceSettings& s)
@@ -66,7 +66,7 @@ class LateralShift : public UncertaintySource {
   }
 
  private:
-  /// Along the left normal of the image line, pixels; `side` is +1 where that points outward.
+  /// Along the left normal of the image line, pixels; `side` is +1 if that points outward.
   double draw_shift(const SensingContext& any_frame,
                     const SensedEdge& edge,
                     int eye,
@@ -77,18 +77,18 @@ class LateralShift : public UncertaintySource {
                                     static_cast<std::uint32_t>(edge.truth.segment), stream);
     const double size = size_ * of_edge.uniform(0.5, 1.5);
     if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
-    // eye 3 of the stream belongs to surfaces
+    // Index 3 in the eye's position of the key marks draws of surfaces.
     RandomStream of_surface = draws_of(any_frame, DrawSource::lateral_shift,
                                        static_cast<std::uint32_t>(edge.truth.object), 3);
     return (of_surface.uniform() < 0.5 ? -size : size) * side;
   }
 
-  /// +1 where the left normal of the image line points away from the object's centre: judged on the
-  /// edge's plane through the eye, so the same from every place on one side of it.
+  /// +1 if the left normal of the image line points away from the object's centre: determined in
+  /// the edge's plane through the eye, so equal for all viewpoints on one side of it.
   static double outward(const VisibleEdge& edge) {
     const Eigen::Vector3d n = edge.a_m.cross(edge.b_m);
     const double side = n.dot(edge.object_centre_m);
-    // an edge through the centre has no outside: rounding must not choose one
+    // An edge through the centre has no outside; rounding must not select one.
     return side > 1e-9 * n.norm() * edge.object_centre_m.norm() ? -1 : 1;
   }
 
@@ -103,7 +103,7 @@ class LateralShift : public UncertaintySource {
   ShiftMode mode_;
 };
 
-/// psi_e. One gap of a fixed share of the length at a uniform place; it may trim an end.
+/// psi_e. One gap of a fixed fraction of the length at a uniform position; it may trim an end.
 class EdgeLoss : public UncertaintySource {
  public:
   EdgeLoss(const SourceSettings& s, double min_length_px)
@@ -168,7 +168,7 @@ class EndpointError : public UncertaintySource {
   double sigma_px_;
 };
 
-/// The rule of ±5°: stereo cannot place edges along their epipolar line.
+/// The ±5° rule: stereo cannot localise edges along their epipolar line.
 class EpipolarRejection : public UncertaintySource {
  public:
   explicit EpipolarRejection(const SourceSettings& s)
@@ -186,7 +186,7 @@ class EpipolarRejection : public UncertaintySource {
   double min_rad_;
 };
 
-/// psi_s. The right line slips along the epipolar line.
+/// psi_s. The right line is displaced along the epipolar line.
 class StereoMismatch : public UncertaintySource {
  public:
   explicit StereoMismatch(const SourceSettings& s)
@@ -206,7 +206,7 @@ class StereoMismatch : public UncertaintySource {
   }
 
  private:
-  /// By how much a right pixel moves when its rectified column changes by `slip` pixels.
+  /// Displacement of a right pixel when its rectified column changes by `slip` pixels.
   static Eigen::Vector2d along_epipolar(const SensingContext& context,
                                         const Eigen::Vector2d& pixel,
                                         double slip) {
@@ -221,7 +221,7 @@ class StereoMismatch : public UncertaintySource {
   double share_, reach_px_;
 };
 
-/// psi_cd. The pair is lost, not one of its corners.
+/// psi_cd. The pair is lost, not a single corner of it.
 class CornerLoss : public UncertaintySource {
  public:
   explicit CornerLoss(const SourceSettings& s) : share_(s.corner_loss) {}
@@ -237,7 +237,7 @@ class CornerLoss : public UncertaintySource {
   double share_;
 };
 
-/// psi_cm. The right corner is another one, anywhere in a disc.
+/// psi_cm. The right corner is replaced by a point in a disc.
 class CornerMismatch : public UncertaintySource {
  public:
   explicit CornerMismatch(const SourceSettings& s)

@@ -16,14 +16,14 @@ using namespace vernier::internal;
 
 namespace {
 
-/// Of |squares|, which a few large ones hardly touch.
+/// Of |squares|; robust against a few large ones.
 double median_square(const std::vector<SquareSample>& samples) {
   std::vector<double> squares;
   for (const SquareSample& sample : samples) squares.push_back(std::abs(sample.square));
   return median_or_zero(std::move(squares));
 }
 
-/// Share of the variance of a standard normal that lies within ± cut of it, per sample kept.
+/// Variance of a standard normal truncated at ± cut, per sample kept, relative to 1.
 double kept_variance(double cut) {
   if (!(cut > 0)) return 1;
   const double density = std::exp(-0.5 * cut * cut) / std::sqrt(2 * M_PI);
@@ -63,7 +63,7 @@ VarianceLine variance_line(const std::vector<SquareSample>& samples, double cut)
   if (samples.size() < 2) return {};
   constexpr int rounds = 12;
   const double middle = median_square(samples);
-  VarianceLine line{middle / 0.455, 0};  // the median of χ² of one degree of freedom
+  VarianceLine line{middle / 0.455, 0};  // the median of χ² with one degree of freedom
   for (int i = 0; i < rounds; ++i) line = weighted_fit(samples, line, 0.1 * middle, cut);
   return line;
 }

@@ -6,10 +6,10 @@
 
 namespace vernier::sim::internal {
 
-/// A square (or a product of two equal things), and how much of a second variance is in it.
+/// A squared sample (or a product of two samples with equal expectation) and its second variance.
 struct SquareSample {
   double square = 0, share = 0;
-  double noise = 0;  ///< variance that its expectation does not hold and its scatter does
+  double noise = 0;  ///< additional variance that enters its scatter but not its expectation
 };
 
 /// E[square] = own + share · other, both at least 0.
@@ -18,9 +18,9 @@ struct VarianceLine {
 };
 
 /// Least squares weighted by the inverse variance of a square, 2 (own + share · other + noise)²,
-/// repeated until the weights are those of the result. With `cut` above 0, squares above cut² times
-/// their expectation are left out, and what that takes from a normal distribution's variance is
-/// given back. Zeros for fewer than two samples.
+/// iterated until the weights are consistent with the result. With `cut` above 0, squares above
+/// cut² times their expectation are dropped, and the resulting loss of variance of a normal
+/// distribution is corrected for. Returns zeros for fewer than two samples.
 VarianceLine variance_line(const std::vector<SquareSample>& samples, double cut);
 
 }  // namespace vernier::sim::internal

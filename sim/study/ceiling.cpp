@@ -34,7 +34,7 @@ Eigen::Vector3d to_world(const Pose2D& pose, const Eigen::Vector3d& x) {
   return {pose.x_m + c * x.x() - s * x.y(), pose.y_m + s * x.x() + c * x.y(), x.z()};
 }
 
-/// Whether a point lies on a segment, to the tolerance.
+/// Whether a point lies on a segment, within the tolerance.
 bool lies_on(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d d = b - a;
   const double t = std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
@@ -143,7 +143,7 @@ std::vector<Pose2D> AliasFinder::hypotheses(const std::vector<ViewEdge>& view) c
 
 bool AliasFinder::on_wire_frame(const std::vector<ViewEdge>& view, const Pose2D& pose) const {
   const auto upright_fits = [&](const ViewEdge& edge) {
-    if (!((edge.a_m - edge.b_m).head<2>().norm() < 1e-6)) return true;  // judged below
+    if (!((edge.a_m - edge.b_m).head<2>().norm() < 1e-6)) return true;  // checked below
     const auto [low, high] = std::minmax(edge.a_m.z(), edge.b_m.z());
     return has_upright(to_world(pose, edge.a_m).head<2>(), low, high);
   };

@@ -11,35 +11,35 @@
 
 namespace vernier::sim::internal {
 
-/// How many places look the same as one.
+/// Poses that cannot be distinguished from a given one.
 struct Aliases {
-  int elsewhere = 0;  ///< poses more than 1 m away with the same noise-free view
-  std::vector<localise::Pose2D> examples;  ///< a few of them
-  /// What the best guess among indistinguishable places succeeds with.
+  int elsewhere = 0;  ///< number of poses more than 1 m away with the same noise-free view
+  std::vector<localise::Pose2D> examples;  ///< some of them
+  /// Success rate of the best guess among indistinguishable poses.
   double ceiling() const { return 1.0 / (1 + elsewhere); }
 };
 
-/// Finds every pose from which the world looks as it does from another: the upper limit of what any
-/// localiser can do there, written without use of one.
+/// Finds all poses from which the world looks the same as from a given one: the upper limit of any
+/// localiser's success rate, computed without a localiser.
 ///
-/// Noise-free and exhaustive: two upright edges of the view, far apart, are laid on every pair of
-/// upright edges of the world at their distance (to 1 cm); a pose so found must put every other
-/// edge of the view onto the world's wire frame (to 2 cm, 95 % of the image length), and the view
-/// rendered from there must consist of the same edges (95 % again).
+/// Noise-free and exhaustive: two distant vertical edges of the view are fitted to every pair of
+/// vertical edges of the world at the same distance (to 1 cm). A resulting pose must map every
+/// other edge of the view onto the world's wire frame (to 2 cm, 95 % of the image length), and the
+/// view rendered from there must consist of the same edges (95 % again).
 class AliasFinder {
  public:
-  /// Keeps references to `visibility`; the rig is the true one.
+  /// Keeps a reference to `visibility`; `rig` is the true rig.
   AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options);
 
   Aliases aliases(const localise::Pose2D& pose) const;
 
  private:
-  /// An upright edge: where it stands and from which height to which.
+  /// A vertical edge: its position on the floor and its range of heights.
   struct Upright {
     Eigen::Vector2d at_m;
     double low_m, high_m;
   };
-  /// An edge of a view in the robot's frame, with its length in the image.
+  /// An edge of a view in the robot frame, with its length in the image.
   struct ViewEdge {
     Eigen::Vector3d a_m, b_m;
     double length_px;

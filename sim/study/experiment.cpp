@@ -33,7 +33,7 @@ using namespace stereo::internal;
 
 namespace {
 
-/// Trials of a map lie far from those of queries: the same sources draw from other streams.
+/// Offset of the trial numbers of maps, so that maps and queries use different streams.
 constexpr std::uint32_t map_trial = 0x80000000u;
 
 double clock_ms(clockid_t clock) {

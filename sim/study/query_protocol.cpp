@@ -53,9 +53,8 @@ bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& p
   return inside;
 }
 
-/// Whether a way of short straight steps, free of surfaces at the height of the eye, leads from a
-/// point to one of the route: first one look at all of the route, then a search over a grid through
-/// the point.
+/// Whether a path of short straight steps, free of surfaces at eye height, connects a point to the
+/// route: first a direct line of sight to the route, then a search over a grid through the point.
 class WayToRoute {
  public:
   WayToRoute(const Visibility& visibility, double height_m)
@@ -102,7 +101,7 @@ class WayToRoute {
   bool sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
     return visibility_.sees({from.x(), from.y(), height_m_}, {to.x(), to.y(), height_m_});
   }
-  /// Sees a little beyond, because a point on a surface is seen from both of its sides.
+  /// Extends the line of sight a little, because a point on a surface is visible from both sides.
   bool steps(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
     constexpr double beyond = 0.04;
     return sees(from, to + beyond * (to - from));
@@ -138,7 +137,7 @@ QueryProtocol query_protocol(std::string_view name_of) {
        {QueryProtocol::near_path, QueryProtocol::path, QueryProtocol::anywhere}) {
     if (name(protocol) == name_of) return protocol;
   }
-  throw Error("protocol \"" + std::string(name_of) + "\"", "there is no such protocol",
+  throw Error("protocol \"" + std::string(name_of) + "\"", "unknown protocol",
               "use near_path, path or anywhere");
 }
 
@@ -156,7 +155,7 @@ ProtocolSpan span(QueryProtocol protocol) {
 }
 
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
-  constexpr double floor_m = 0.02;  // what lies lower is the floor itself
+  constexpr double floor_m = 0.02;  // surfaces below are the floor itself
   for (const WorldSurface& surface : world.surfaces) {
     double low = surface.polygon_m[0].z(), high = low;
     for (const auto& point : surface.polygon_m) {
@@ -178,11 +177,11 @@ std::string standing_fault(const Visibility& visibility, const Pose2D& pose, dou
   const WorldExtent box = extent(world);
   if (!(pose.x_m >= box.low_m.x() && pose.x_m <= box.high_m.x() && pose.y_m >= box.low_m.y() &&
         pose.y_m <= box.high_m.y())) {
-    return fmt::format("lies outside the world, which reaches from ({:g}, {:g}) to ({:g}, {:g}) m",
+    return fmt::format("is outside the world, which extends from ({:g}, {:g}) to ({:g}, {:g}) m",
                        box.low_m.x(), box.low_m.y(), box.high_m.x(), box.high_m.y());
   }
   if (!(eye_height_m >= box.low_m.z() && eye_height_m <= box.high_m.z())) {
-    return fmt::format("lies {:g} m high in a world from {:g} to {:g} m", eye_height_m,
+    return fmt::format("is at a height of {:g} m, outside the world's {:g} to {:g} m", eye_height_m,
                        box.low_m.z(), box.high_m.z());
   }
   const Eigen::Vector2d at(pose.x_m, pose.y_m);
@@ -191,7 +190,7 @@ std::string standing_fault(const Visibility& visibility, const Pose2D& pose, dou
                        robot_radius_m, robot_top_m);
   }
   if (!WayToRoute(visibility, eye_height_m).leads_from(at)) {
-    return "is closed off from the route, as inside a wall or a cupboard";
+    return "is not reachable from the route, as inside a wall or a cupboard";
   }
   return "";
 }
@@ -204,7 +203,7 @@ Pose2D draw_query(const Visibility& visibility,
   const World& world = visibility.world();
   const double length = route_length_m(world.route);
   if (!(length > 0)) {
-    throw Error("queries", "the world has no route to ask along", "add [[route]] to the world");
+    throw Error("queries", "the world has no route", "add [[route]] to the world");
   }
   const ProtocolSpan reach = span(protocol);
   RandomStream draws(
@@ -222,8 +221,8 @@ Pose2D draw_query(const Visibility& visibility,
     }
     return query;
   }
-  throw Error("queries", "no free place near the route in 1000 draws",
-              "lead the route through free space");
+  throw Error("queries", "no free position near the route in 1000 draws",
+              "move the route through free space");
 }
 
 }  // namespace vernier::sim

@@ -43,14 +43,14 @@ using namespace localise;
 
 namespace {
 
-/// Changes when the meaning of stored results does.
+/// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
-/// Size of a block that is no part of a cell's key: all stores had it before sizes differed.
+/// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
 
-/// All that a cell's results depend on, as text: the key under which they are stored. Blocks of
-/// another size record their maps for other trials, and so are kept under another key.
+/// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
+/// of another size use other maps per trial and are therefore stored under another key.
 std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
@@ -58,8 +58,7 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   for (const auto& [name, value] : cell.settings) {
     if (name != "localiser.knows_endpoint_sigma") key[name] = value;
   }
-  // Before there was a choice the estimator was told this; results that it still holds for are
-  // kept.
+  // Older stores had no such setting and this value; their results remain valid.
   const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
   if (const double told = told_endpoint_sigma_px(cell.experiment); told != once_told) {
     key["localiser.told_endpoint_sigma_px"] = told;
@@ -70,13 +69,13 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   return key.dump();
 }
 
-/// What noise-free looks of the map depend on.
+/// Everything that the noise-free views of the map depend on.
 std::string looks_key(const ExperimentSettings& s) {
   return fmt::format("{} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
                      s.map_headings);
 }
 
-/// The ceiling is a mean over so many of a cell's queries.
+/// The ceiling is the mean over this many of a cell's queries.
 int ceiling_queries(const Study& study) { return std::min(study.file.trials, 200); }
 
 std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
@@ -103,7 +102,7 @@ std::vector<Job> all_jobs(const Study& study) {
   return jobs;
 }
 
-/// Jobs of the shard that no store of the folder holds yet.
+/// Jobs of the shard that are in no store of the folder yet.
 std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
   std::map<std::pair<std::string, int>, std::size_t> sizes;
   for (const auto& file : store_files(run.folder)) {
@@ -137,8 +136,8 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
   });
 }
 
-/// The world's ceiling on the first queries of a cell; calls `one_done` after each of them. The
-/// sum is in the order of the queries, whichever was done first.
+/// The world's ceiling on the first queries of a cell; calls `one_done` after each of them. The sum
+/// is in the order of the queries, independent of the order of completion.
 double compute_ceiling(const Study& study,
                        const Visibility& visibility,
                        const ExperimentSettings& settings,
@@ -160,7 +159,7 @@ double compute_ceiling(const Study& study,
   return sum / static_cast<double>(of_query.size());
 }
 
-/// Writes the ceilings that the store lacks into it, each as soon as it is known.
+/// Computes the ceilings missing from the store, and stores each when it is done.
 void add_ceilings(const Study& study,
                   const Visibility& visibility,
                   const StudyRun& run,
@@ -192,7 +191,7 @@ std::string store_name(const Shard& shard) {
                           : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count);
 }
 
-/// Not a number of none.
+/// NaN if there are none.
 double quantile_or_nan(std::vector<double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   return quantile(std::move(values), p, QuantileKind::linear);
@@ -218,7 +217,7 @@ std::string command_key(const std::string& command) { return "command " + comman
 void run_study(const Study& study, const StudyRun& run) {
   if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
     throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
-                "is not index/count with 0 <= index < count", "");
+                "not a valid index/count", "use 0 <= index < count");
   }
   std::filesystem::create_directories(run.folder);
   const Visibility visibility(study.world);
@@ -365,8 +364,8 @@ bool share_queries(const CellResult& a, const CellResult& b) {
 PairedComparison compare(const CellResult& a, const CellResult& b) {
   if (!share_queries(a, b)) {
     throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",
-                "the cells have no queries in common, or asked in different places",
-                "compare cells of one protocol and seed");
+                "the cells have no common queries",
+                "compare cells with the same protocol and seed");
   }
   const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
   PairedComparison c;

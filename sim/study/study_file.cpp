@@ -56,7 +56,7 @@ class StudyReader : private TomlReader {
   StudyFile read(const toml::table& root, const std::filesystem::path& sources);
 
  private:
-  /// A table of the root, or nothing where it is left out.
+  /// A table of the root, or null if absent.
   const toml::table* section(const toml::table& root, const char* name) const {
     const toml::node* node = root.get(name);
     return node ? &table(*node, fmt::format("[{}]", name)) : nullptr;
@@ -81,7 +81,7 @@ class StudyReader : private TomlReader {
   void read_sweep(const toml::table& root, StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
 
-  SourceSettings sources_;  // what [sources] of the study begins with
+  SourceSettings sources_;  // initial values of the study's [sources]
 };
 
 double StudyReader::number_in(const toml::node& node,
@@ -91,7 +91,7 @@ double StudyReader::number_in(const toml::node& node,
   const double value = number(node, what);
   if (!(value >= low && value <= high)) {
     fail(node, fmt::format("{} = {} is out of range", what, value),
-         fmt::format("give {} to {}", low, high));
+         fmt::format("use {} to {}", low, high));
   }
   return value;
 }
@@ -103,7 +103,7 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
     const std::int64_t wanted = integer(*trials, "study.trials");
     study.trials = static_cast<int>(wanted);
     if (wanted < 1 || wanted > 10'000'000) {
-      fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "give 1 to 10000000");
+      fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "use 1 to 10000000");
     }
   }
   study.trials_per_block = block_size(study.trials);
@@ -120,7 +120,7 @@ void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
   }
 }
 
-/// The file that [sources] names, and its values.
+/// The file that [sources] refers to, and its values.
 std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
                                                      const std::filesystem::path& instead) {
   const toml::table* own = section(root, "sources");
@@ -131,8 +131,8 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
                       : instead;
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) {
-    fail(*node, "sources.file: there is no file " + file.string(),
-         "name files from the folder of the study");
+    fail(*node, "sources.file: no such file: " + file.string(),
+         "give the path relative to the study file");
   }
   const toml::table theirs = parse_toml(read_whole(file), file.string());
   const StudyReader reader(file.string());
@@ -140,7 +140,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   const toml::node& sources = reader.required(theirs, "sources", "the file");
   const toml::table& values = reader.table(sources, "[sources]");
   if (const auto* further = values.get("file")) {
-    reader.fail(*further, "a file of sources names another", "write its values here");
+    reader.fail(*further, "sources.file in a sources file is not allowed", "copy the values here");
   }
   reader.read_sources(values, sources_);
   return file;
@@ -170,7 +170,7 @@ void StudyReader::read_map(const toml::table& table, ExperimentSettings& setting
   if (const auto* node = table.get("path")) {
     if (text(*node, "map.path") != "default") {
       fail(*node, "map.path is not \"default\"",
-           "give the world another [[route]], or leave this out");
+           "change the world's [[route]], or remove this key");
     }
   }
   if (const auto* node = table.get("spacing_m")) {
@@ -179,12 +179,12 @@ void StudyReader::read_map(const toml::table& table, ExperimentSettings& setting
   if (const auto* node = table.get("headings")) {
     if (node->is_string()) {
       if (text(*node, "map.headings") != "path") {
-        fail(*node, "map.headings is neither \"path\" nor a number", "");
+        fail(*node, "map.headings is neither \"path\" nor a number", "use \"path\" or 1 to 360");
       }
       settings.map_headings = 0;
     } else {
       const auto count = integer(*node, "map.headings");
-      if (count < 1 || count > 360) fail(*node, "map.headings is not 1 to 360", "");
+      if (count < 1 || count > 360) fail(*node, "map.headings is out of range", "use 1 to 360");
       settings.map_headings = static_cast<int>(count);
     }
   }
@@ -204,7 +204,7 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
   check_keys(study, {"trials", "seed", "protocol"}, "[study]");
   if (const auto* seed = study.get("seed")) {
     const auto value = integer(*seed, "study.seed");
-    if (value < 0) fail(*seed, "study.seed is negative", "give 0 or more");
+    if (value < 0) fail(*seed, "study.seed is negative", "use 0 or more");
     settings.seed = static_cast<std::uint64_t>(value);
   }
   if (const auto* protocol = study.get("protocol")) {
@@ -228,19 +228,19 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
       settings.method = text(*method, "localiser.method");
       const std::vector<std::string> known = localiser_names();
       if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
-        fail(*method, fmt::format("there is no localiser \"{}\"", settings.method),
+        fail(*method, fmt::format("unknown localiser \"{}\"", settings.method),
              "use pgh or pgh_baseline");
       }
     }
     if (const auto* knows = localiser->get("knows_endpoint_sigma")) {
       if (!knows->is_boolean()) {
-        fail(*knows, "localiser.knows_endpoint_sigma is neither true nor false", "");
+        fail(*knows, "localiser.knows_endpoint_sigma is not a boolean", "use true or false");
       }
       settings.knows_endpoint_sigma = knows->as_boolean()->get();
     }
     if (const auto* looks = localiser->get("looks")) {
       if (integer(*looks, "localiser.looks") != 1) {
-        fail(*looks, "localiser.looks is not 1", "this version takes one look a query");
+        fail(*looks, "localiser.looks is not 1", "only one view per query is supported");
       }
     }
   }
@@ -250,7 +250,7 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
 void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   const auto* sweep = section(root, "sweep");
   if (!sweep) return;
-  // toml++ keeps tables sorted by key; the file's order decides which sweep is slowest.
+  // toml++ sorts tables by key; the order in the file decides which sweep is slowest.
   std::vector<std::pair<toml::source_position, std::string>> keys;
   for (const auto& [key, value] : *sweep) {
     keys.emplace_back(key.source().begin, std::string(key.str()));
@@ -276,19 +276,19 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     std::vector<std::string> values;
     for (const toml::node& value : list(node, "sweep." + key)) {
       values.push_back(text_of(value));
-      toml::table changed = root;  // each value by itself first, so that a complaint finds its line
+      toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
       StudyReader reader(place(), value.source().begin.line);
       reader.sources_ = sources_;
       reader.read_experiment(changed);
     }
-    if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list some values");
+    if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list at least one value");
     study.sweep_keys.push_back(key);
     study.sweep_values.push_back(std::move(values));
   }
 }
 
-/// Every setting in effect, by its dotted key: what tells one cell from another.
+/// Every setting in effect, by its dotted key: identifies a cell.
 std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   std::map<std::string, std::string> all;
   for (const SourceParameter& p : source_parameters()) {

@@ -18,26 +18,26 @@ struct StudyCell {
   ExperimentSettings experiment;
 };
 
-/// Trials of a block, which share one recorded map: 50, or so few that `trials` make six maps or
-/// more, the fewest that an interval is stated for.
+/// Number of trials per block, which share one recorded map: 50, or fewer so that `trials` make at
+/// least six maps, the minimum for an interval.
 int block_size(int trials);
 
-/// What a study file says (docs/file-formats.md).
+/// Content of a study file (docs/file-formats.md).
 struct StudyFile {
-  int trials = 900;           ///< a cell
+  int trials = 900;           ///< per cell
   int trials_per_block = 50;  ///< block_size(trials)
   std::string world = "workshop";
   std::string rig = "nominal";
-  std::filesystem::path sources;        ///< file that [sources] begins with; empty: none
-  std::vector<std::string> sweep_keys;  ///< first is slowest
-  std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list a key
+  std::filesystem::path sources;        ///< file that [sources] is based on; empty: none
+  std::vector<std::string> sweep_keys;  ///< the first varies slowest
+  std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list per key
   std::vector<StudyCell> cells;                        ///< all combinations
 };
 
 /// Reads a study. Everything but [study] has a default. Throws Error with file, line and key for
-/// TOML that is malformed, an unknown key (naming the nearest known one), a value of the wrong
-/// type or out of its range, or a sweep over a key that does not exist. The `file` of [sources] is
-/// looked for beside the study, unless `sources` says where a copy of it is.
+/// malformed TOML, an unknown key (suggesting the nearest one), a value of the wrong type or out of
+/// range, and a sweep over a key that does not exist. The `file` of [sources] is relative to the
+/// study, unless `sources` gives the path of a copy.
 StudyFile read_study(const std::filesystem::path& file, const std::filesystem::path& sources = {});
 StudyFile parse_study(const std::string& text,
                       const std::string& place,

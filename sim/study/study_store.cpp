@@ -84,13 +84,13 @@ struct StudyStore::Connection {
 
   [[noreturn]] void fail() const {
     throw Error(place, std::string("study store: ") + sqlite3_errmsg(db),
-                "check that the file is a store, and the disk");
+                "check that the file is a study store, and the disk");
   }
   void run(const char* sql) const {
     if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
   }
 
-  /// A prepared statement that finishes itself.
+  /// A prepared statement that is finalised on destruction.
   class Statement {
    public:
     Statement(const Connection& connection, const char* sql) : connection_(connection) {
@@ -142,7 +142,7 @@ StudyStore::StudyStore(const std::filesystem::path& file)
   if (version.empty()) {
     set_metadata("schema", schema_version);
   } else if (version != schema_version) {
-    throw Error(file.string(), "a store of schema " + version + ", this program writes 1",
+    throw Error(file.string(), "study store version " + version + " is not supported; supported: 1",
                 "use another folder");
   }
   const std::string here(instruction_set()), there = note("instruction_set");
@@ -151,8 +151,8 @@ StudyStore::StudyStore(const std::filesystem::path& file)
   } else if (there != here) {
     throw Error(file.string(),
                 "written with instruction set " + there + ", this processor has " + here +
-                    ": the results would differ in their last bits",
-                "go on in another folder");
+                    ": results would not be identical",
+                "continue in another folder");
   }
 }
 
@@ -183,8 +183,8 @@ std::vector<StoredBlock> StudyStore::blocks() const {
     try {
       blocks.push_back({rows.text(0), rows.integer(1), parse_trials(rows.text(2))});
     } catch (const Json::exception&) {
-      throw Error(connection_->place, "block " + rows.text(1) + " in it is damaged",
-                  "take the store away and run its part again");
+      throw Error(connection_->place, "block " + rows.text(1) + " is damaged",
+                  "delete the store and run its shard again");
     }
   }
   return blocks;
@@ -219,7 +219,7 @@ StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place)
     if (untimed(a.trials[i]) != untimed(b.trials[i])) {
       throw Error(place,
                   "disagrees with another store on trial " + std::to_string(a.trials[i].trial),
-                  "they are of different builds or processors: run one of them again");
+                  "the stores come from different builds or processors; run one again");
     }
   }
   return a.trials.size() >= b.trials.size() ? std::move(a) : std::move(b);

@@ -12,30 +12,30 @@
 
 namespace vernier::sim::internal {
 
-/// A finished block of trials of one cell.
+/// A completed block of trials of one cell.
 struct StoredBlock {
   std::string cell;  ///< key: everything that its results depend on
   int block = 0;
   std::vector<TrialResult> trials;
 };
 
-/// Finished blocks in one SQLite file, one committed row a block. A process that is killed loses
-/// the block it was at and nothing else. One writer a file.
+/// Completed blocks in an SQLite file, one committed row per block. A killed process loses only the
+/// block in progress. One writer per file.
 class StudyStore {
  public:
-  /// Opens or makes the file. Throws Error where it is no store of this version, or was written on
-  /// a processor with another instruction set (results would not be of one kind).
+  /// Opens or creates the file. Throws Error if it is not a store of this version, or was written
+  /// on a processor with another instruction set (results would not be comparable to the bit).
   explicit StudyStore(const std::filesystem::path& file);
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
 
-  /// Adds or replaces; committed when this returns.
+  /// Adds or replaces a block; committed on return.
   void put(const StoredBlock& block);
   std::vector<StoredBlock> blocks() const;
 
-  /// Free text by key (the study's settings, the ceiling).
+  /// Text by key (the study's settings, the ceiling).
   void set_metadata(const std::string& key, const std::string& value);
-  std::string note(const std::string& key) const;  ///< empty where there is none
+  std::string note(const std::string& key) const;  ///< empty if there is none
   std::vector<std::pair<std::string, std::string>> notes() const;
 
  private:
@@ -43,11 +43,11 @@ class StudyStore {
   std::unique_ptr<Connection> connection_;
 };
 
-/// The longer of two versions of one block. Throws Error(`place`) where their common trials differ
-/// in more than their timings.
+/// The longer of two versions of a block. Throws Error(`place`) if their common trials differ in
+/// more than the timings.
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place);
 
-/// Store files of a study's folder, in the order of their names.
+/// Store files of a study's folder, sorted by name.
 std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder);
 
 }  // namespace vernier::sim::internal

@@ -18,14 +18,14 @@ using Points = std::vector<Eigen::Vector2d>;
 using Loop = std::vector<int>;
 using Cuts = std::vector<std::pair<int, int>>;
 
-constexpr double straight_m = 1e-9;  ///< a vertex this close to the line of its neighbours
+constexpr double straight_m = 1e-9;  ///< tolerance of a vertex to the line of its neighbours
 constexpr double min_width_m = 1e-10;
 
 double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
 }
 
-/// How far `v` sticks out of the line from `u` to `w`: positive for a convex vertex of a
+/// Signed distance of `v` from the line from `u` to `w`: positive for a convex vertex of a
 /// counter-clockwise loop.
 double bulge(const Eigen::Vector2d& u, const Eigen::Vector2d& v, const Eigen::Vector2d& w) {
   const double length = std::max({(w - u).norm(), (v - u).norm(), (w - v).norm()});
@@ -38,14 +38,14 @@ double bulge_at(const Points& points, const Loop& loop, std::size_t i) {
 }
 
 bool is_convex(const Points& points, const Loop& loop) {
-  // Left turns alone would also admit a loop that winds twice, which is not simple.
+  // Left turns alone would also accept a loop that winds twice, which is not simple.
   for (std::size_t i = 0; i < loop.size(); ++i) {
     if (bulge_at(points, loop, i) < -straight_m) return false;
   }
   return true;
 }
 
-/// Coordinates in the plane, so that `normal` looks out of a right-handed sheet.
+/// Right-handed coordinates in the plane with `normal` as third axis.
 Points flatten(const std::vector<Eigen::Vector3d>& polygon, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
   Points points;
@@ -77,8 +77,8 @@ bool is_ear(const Points& points, const Loop& loop, std::size_t i) {
   return true;
 }
 
-/// The vertex to clip: one that carries no area, else an ear, else the one that bulges most (which
-/// only a loop that breaks the rules comes to).
+/// The vertex to clip: one without area, else an ear, else the most convex one (only for invalid
+/// loops).
 std::size_t vertex_to_clip(const Points& points, const Loop& loop) {
   std::size_t most = 0;
   double max_bulge = -1e300;
@@ -145,7 +145,7 @@ PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m) {
     width = std::max(width, r.norm());
     if (i + 1 < polygon_m.size()) sum += r.cross(polygon_m[i + 1] - polygon_m[0]);
   }
-  // Twice the area over the extent bounds the height; the negation also refuses what is no number.
+  // Twice the area over the extent bounds the height; the negated test also rejects NaN.
   if (!(sum.norm() > min_width_m * width) || !sum.allFinite()) return plane;
   plane.normal = sum.normalized();
   for (const Eigen::Vector3d& p : polygon_m) plane.distance_m += plane.normal.dot(p);

@@ -13,22 +13,22 @@ namespace vernier::sim::internal {
 ///
 ///     n ~ Σ (p_i - p_0) × (p_i+1 - p_0),   d = mean of n·p_i,
 ///
-/// counter-clockwise about n. n is zero for a polygon of no area (thinner than 1e-10 m).
+/// counter-clockwise about n. n is zero for a polygon without area (thinner than 1e-10 m).
 struct PolygonPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double distance_m = 0;
 };
 PolygonPlane polygon_plane(const std::vector<Eigen::Vector3d>& polygon_m);
 
-/// Cuts a simple planar polygon into convex pieces, each a loop of indices into `polygon_m`,
-/// counter-clockwise about the normal: ears are clipped, then every cut is taken back that both its
-/// ends can do without (Hertel and Mehlhorn, "Fast triangulation of simple polygons", 1983; at most
-/// four times the least number of pieces). A hole may be joined to the border by a cut walked both
-/// ways. A polygon that is convex to 1e-9 m is one piece; one of no area has none.
+/// Splits a simple planar polygon into convex pieces, each a loop of indices into `polygon_m`,
+/// counter-clockwise about the normal: ear clipping, then removal of every unnecessary cut (Hertel
+/// and Mehlhorn, "Fast triangulation of simple polygons", 1983; at most four times the minimum
+/// number of pieces). A hole may be joined to the border by a cut traversed in both directions. A
+/// polygon that is convex to 1e-9 m gives one piece, one without area none.
 std::vector<std::vector<int>> convex_pieces(const std::vector<Eigen::Vector3d>& polygon_m);
 
-/// A convex piece of a surface of the world: plane normal·x = distance, its vertices
-/// counter-clockwise about the normal, and a ball around them.
+/// A convex piece of a world surface: plane normal·x = distance, its vertices counter-clockwise
+/// about the normal, and a bounding sphere.
 struct ConvexSurface {
   Eigen::Vector3d normal;
   double distance_m = 0;
@@ -37,7 +37,7 @@ struct ConvexSurface {
   int first_vertex = 0, vertex_count = 0;
 };
 
-/// All surfaces of a world as convex pieces, the vertices of all in one list.
+/// All surfaces of a world as convex pieces, with a common list of vertices.
 struct ConvexSurfaces {
   std::vector<ConvexSurface> pieces;
   std::vector<Eigen::Vector3d> vertices_m;

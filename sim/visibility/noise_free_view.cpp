@@ -22,7 +22,7 @@ using namespace localise;
 
 namespace {
 
-/// Stretches that two sorted lists of runs of one segment have in common.
+/// Intersection of two sorted lists of runs of one segment.
 template <class Visit>
 void for_common_stretches(const std::vector<VisibleInterval>& left,
                           const std::vector<VisibleInterval>& right,
@@ -51,10 +51,10 @@ std::uint32_t stretch_feature(int segment, int run, std::size_t segments) {
   const std::uint64_t page = static_cast<std::uint64_t>(run) / 32;
   const std::uint64_t feature =
       32 * (page * segments + static_cast<std::uint64_t>(segment)) + run % 32;
-  if (feature >> 31 != 0) {  // one bit more says which piece of the stretch
+  if (feature >> 31 != 0) {  // another bit identifies the piece of the run
     throw Error("segment " + std::to_string(segment),
-                "its visible stretch " + std::to_string(run) + " has no number of 31 bits",
-                "use a smaller world, or one with fewer things in front of one edge");
+                "the identity of visible run " + std::to_string(run) + " exceeds 31 bits",
+                "use a smaller world, or fewer occluders in front of this edge");
   }
   return static_cast<std::uint32_t>(feature);
 }
@@ -70,12 +70,12 @@ NoiseFreeView look(const Visibility& visibility,
                    const NoiseFreeViewOptions& options) {
   if (rig.cameras.size() != 2) {
     throw Error("simulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   const World& world = visibility.world();
   const Pose T_left = T_left_world(pose, options.mount);
   const Pose T_right = rig.T_camera_first[1] * T_left;
-  // Length is judged on what both eyes share, not on what one sees.
+  // The length limit applies to the part visible in both cameras.
   VisibilityOptions any_length = options.visibility;
   any_length.min_length_px = 0;
   const auto left = visibility.visible_intervals(rig.cameras[0], T_left, any_length);

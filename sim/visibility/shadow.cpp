@@ -13,8 +13,8 @@ namespace {
 
 constexpr double on_side_m = 1e-9;
 
-/// Appends what one hand sees: the complement in `whole` of the stretches hidden on that hand.
-/// `hidden` is sorted by t0.
+/// Appends what is visible on one side: the complement in `whole` of the intervals hidden on that
+/// side. `hidden` is sorted by t0.
 void append_visible(const Stretch& whole,
                     const std::vector<OccludedInterval>& hidden,
                     int hand,
@@ -30,14 +30,14 @@ void append_visible(const Stretch& whole,
     for (++i; i < hidden.size() && hidden[i].t0 <= t1 + touching; ++i) {
       if (hidden[i].hands & hand) t1 = std::max(t1, hidden[i].t1);
     }
-    if (t1 - t0 <= touching) continue;  // a touch in passing, not an occlusion
+    if (t1 - t0 <= touching) continue;  // a touch, not an occlusion
     if (t0 - from > min_stretch) visible.push_back({from, t0});
     from = std::max(from, t1);
   }
   if (whole.t1 - from > min_stretch) visible.push_back({from, whole.t1});
 }
 
-/// Union of two ascending lists: a point is seen if either hand of it is.
+/// Union of two ascending lists: a point is visible if it is so on either side.
 void unite(const std::vector<Stretch>& one,
            const std::vector<Stretch>& other,
            std::vector<Stretch>& united) {
@@ -79,7 +79,7 @@ OccludedInterval occluded_interval(const Shadow& shadow,
     if (a_in && b_in) continue;
     if (!a_in && !b_in) {
       if (f_a < -side.tolerance || f_b < -side.tolerance) return {};
-      // The segment runs along this side: the shadow lies on one hand of it only.
+      // The segment runs along this side: the shadow lies on one side of it only.
       hands &= side.inward.dot(a.cross(b)) > 0 ? OccludedInterval::left : OccludedInterval::right;
     } else if (a_in ? f_b < -side.tolerance : f_a < -side.tolerance) {
       const double t = f_a / (f_a - f_b);

@@ -20,8 +20,8 @@ namespace vernier::sim::internal {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double eye_depth_m = 1e-6;  ///< what a surface has nearer than this, hides nothing
-constexpr double box_slack = 1e-7;    ///< normalised; more than rounding and any tolerance
+constexpr double eye_depth_m = 1e-6;  ///< surfaces closer to the eye hide nothing
+constexpr double box_slack = 1e-7;    ///< normalised; larger than rounding and any tolerance
 constexpr int max_sides_in_mask = 32;
 
 void extend(ImageBox& box, const Eigen::Vector2d& x) {
@@ -29,7 +29,7 @@ void extend(ImageBox& box, const Eigen::Vector2d& x) {
          std::max(box.y1, x[1])};
 }
 
-/// The box of a polygon's picture, of its part before the eye.
+/// The bounding box of a polygon's projection, of its part in front of the eye.
 ImageBox picture_box(std::span<const Eigen::Vector3d> polygon) {
   ImageBox box{infinite, infinite, -infinite, -infinite};
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -200,7 +200,7 @@ void ShadowGrid::mark_lattice(const TileRange& range, std::span<const ShadowSide
     const double y = origin_[1] + row * tile_size_[1];
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const Eigen::Vector3d& n = sides[i].inward;
-      // On the unit plane; enough that points from 1 cm on are clear of the side's tolerance.
+      // On the unit plane; large enough that points from 1 cm on are clear of the side's tolerance.
       const double margin = 100 * sides[i].tolerance;
       const double constant = n.y() * y + n.z() + n.x() * origin_[0];
       const double step = n.x() * tile_size_[0];
@@ -223,7 +223,7 @@ bool ShadowGrid::cover_or_miss(const Candidate& candidate, int column, int row) 
   const double x = origin_[0] + (column + (n.x() < 0)) * tile_size_[0];
   const double y = origin_[1] + (row + (n.y() < 0)) * tile_size_[1];
   const double least = n.x() * x + n.y() * y + n.z();
-  // A point z times as deep as the plane on its ray lies (z - 1) d beyond the plane.
+  // A point at z times the depth of the plane on its ray lies (z - 1) d beyond the plane.
   const double inverse = least / (candidate.distance_m + gap_m_) * (1 - 1e-9);
   double& covered = inverse_covered_[row * columns + column];
   covered = std::max(covered, inverse);
@@ -238,7 +238,8 @@ void ShadowGrid::sort_into_tiles() {
   for (const auto& entry : entries_) tile_begin_[entry.first + 1] += needed(entry);
   for (int tile = 0; tile < columns * rows; ++tile) tile_begin_[tile + 1] += tile_begin_[tile];
   tile_casters_.resize(tile_begin_.back());
-  // Filled from the back, so that every tile keeps nearest first and its begin ends up right.
+  // Filled from the back, so that every tile is sorted nearest first and its begin index ends up
+  // right.
   std::vector<int>& end = tile_begin_;
   for (int tile = 0; tile < columns * rows; ++tile) end[tile] = end[tile + 1];
   for (std::size_t i = entries_.size(); i-- > 0;) {
@@ -246,14 +247,14 @@ void ShadowGrid::sort_into_tiles() {
   }
 }
 
-/// A segment on its way through the tiles, and what is known to be hidden of it.
+/// A segment traversing the tiles, with the parts of it known to be hidden.
 struct ShadowGrid::Traverse {
   const Eigen::Vector3d &a, &b;
   Stretch& open;
   std::vector<OccludedInterval>& hidden;
   ImageBox box;
 
-  /// Takes note of a hidden stretch; false once nothing is open.
+  /// Records a hidden interval; false if nothing is left open.
   bool close(const OccludedInterval& h) {
     if (h.hands == OccludedInterval::both && h.t1 - h.t0 > touching) {
       if (h.t0 <= open.t0 + touching) {
@@ -284,7 +285,7 @@ bool ShadowGrid::hide_in_slab(Traverse& traverse, const TileWalk& walk) {
       const int index = tile_casters_[k];
       const Occluder& caster = casters_[index];
       if (caster.inverse_nearest <= walk.inverse_farthest())
-        break;  // this and all that follow are behind
+        break;  // this and all following are behind
       if (tried_[index] == segment_) continue;
       tried_[index] = segment_;
       if (!overlap(caster.box, traverse.box)) continue;

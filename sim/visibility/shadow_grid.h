@@ -16,12 +16,12 @@
 
 namespace vernier::sim::internal {
 
-/// The shadows that one view's surfaces cast, sorted into tiles of the image.
+/// The shadows of one view's surfaces, sorted into image tiles.
 ///
-/// A tile lists, nearest first, the shadows that reach into it. Where one piece covers a whole
-/// tile, everything in the tile beyond the farthest point of that piece there, and the gap, is
-/// hidden: its depth is kept, and pieces behind it are left out, since they hide nothing that it
-/// does not. May be built anew for every view, to reuse its memory.
+/// A tile lists the shadows that overlap it, nearest first. If one piece covers a whole tile,
+/// everything in the tile beyond that piece's farthest point there, plus the gap, is hidden: this
+/// depth is stored, and pieces behind it are dropped, since they hide nothing more. May be rebuilt
+/// for every view to reuse its memory.
 class ShadowGrid {
  public:
   void build(const ConvexSurfaces& surfaces,
@@ -29,9 +29,9 @@ class ShadowGrid {
              const ViewFrustum& frustum,
              double gap_m);
 
-  /// What is hidden of the stretch `open` of the segment a b (camera frame, `open` from
-  /// ViewFrustum::clip). What is hidden at its ends is cut off `open`, the rest goes to `hidden`.
-  /// False if nothing is left open; `open` and `hidden` are then meaningless.
+  /// Hidden parts of the interval `open` of the segment a b (camera frame, `open` from
+  /// ViewFrustum::clip). Hidden parts at its ends are cut off `open`, the others are added to
+  /// `hidden`. Returns false if nothing is left; `open` and `hidden` are then invalid.
   bool hide(const Eigen::Vector3d& a,
             const Eigen::Vector3d& b,
             Stretch& open,
@@ -45,8 +45,9 @@ class ShadowGrid {
   struct Traverse;
 
   struct Candidate {
-    double inverse_nearest;  ///< 1 / depth of its nearest vertex, infinite from the eye's depth on
-    int index;               ///< among all convex surfaces
+    double inverse_nearest;  ///< 1 / depth of its nearest vertex; infinite at or behind the eye's
+                             ///< depth
+    int index;               ///< index into the convex surfaces
     int first_vertex, vertex_count;
     Eigen::Vector3d normal;
     double distance_m;
@@ -85,11 +86,12 @@ class ShadowGrid {
   std::vector<Candidate> candidates_;
   std::vector<Occluder> casters_;
   std::vector<ShadowSide> sides_;
-  std::vector<std::uint32_t> outside_, not_inside_;  ///< one bit a side, for every tile corner
+  std::vector<std::uint32_t> outside_, not_inside_;  ///< one bit per side, for every tile corner
   std::vector<std::pair<int, int>> entries_;         ///< (tile, caster)
-  std::vector<double> inverse_covered_;  ///< one a tile: 1 / depth that hides all beyond
+  /// One per tile: 1 / depth beyond which everything is hidden.
+  std::vector<double> inverse_covered_;
   std::vector<int> tile_begin_, tile_casters_;
-  std::vector<std::uint32_t> tried_;  ///< one a caster: the last segment it was tried on
+  std::vector<std::uint32_t> tried_;  ///< one per caster: the last segment it was tested on
   std::uint32_t segment_ = 0;
 };
 

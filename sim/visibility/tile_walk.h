@@ -10,13 +10,14 @@
 
 namespace vernier::sim::internal {
 
-/// The tile that coordinate g, in tiles, falls into, of `count`.
+/// Index of the tile of `count` that contains coordinate g, in tiles.
 inline int clamp_tile(double g, int count) {
   return static_cast<int>(std::clamp(g, 0.0, count - 1.0));
 }
 
-/// The tiles under a segment's picture, in slabs across the axis on which the picture crosses more
-/// of them. With s the share of the picture, 1 / depth is linear in s as position is.
+/// Traverses the tiles under a segment's projection, in slabs across the axis along which it
+/// crosses more tiles. With s the fraction of the projection, 1 / depth is linear in s, as is
+/// position.
 class TileWalk {
  public:
   TileWalk(const ProjectedSegment& picture,
@@ -39,7 +40,7 @@ class TileWalk {
 
   bool at_last() const { return slab_ == last_; }
 
-  /// Goes on to the next slab; false after the last.
+  /// Advances to the next slab; false after the last.
   bool next() {
     if (at_last()) return false;
     slab_ += direction_;
@@ -48,8 +49,8 @@ class TileWalk {
     return true;
   }
 
-  /// The part of the picture in this slab, and the tiles under it: first_minor to last_minor. Tiles
-  /// that it only touches are among them.
+  /// The part of the projection in this slab, and the tiles under it: first_minor to last_minor,
+  /// including tiles that it only touches.
   double s0() const { return s0_; }
   double s1() const { return s1_; }
   int first_minor() const { return minor0_; }
@@ -67,7 +68,7 @@ class TileWalk {
  private:
   static constexpr double slack_tiles = 1e-7;
 
-  /// A segment that the eye sees end-on has no way through the slabs.
+  /// A segment seen end-on does not cross any slab.
   bool is_point() const { return std::abs(dg_[major_]) < 1e-12; }
 
   void enter_slab() {
@@ -79,7 +80,7 @@ class TileWalk {
     minor1_ = clamp_tile(std::max(m0, m1) + slack_tiles, minor_count_);
   }
 
-  Eigen::Vector2d g0_, dg_;  ///< the picture in tiles: g0 + s dg
+  Eigen::Vector2d g0_, dg_;  ///< the projection in tiles: g0 + s dg
   double inverse_z0_, inverse_dz_;
   int major_, columns_, minor_count_, direction_;
   int slab_ = 0, last_ = 0;

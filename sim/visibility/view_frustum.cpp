@@ -19,10 +19,11 @@ namespace vernier::sim::internal {
 namespace {
 
 constexpr int samples_a_side = 8;
-constexpr double slack = 0.01;  ///< of the image's size; more than a border bends between samples
-constexpr int intervals = 8;    ///< of a segment, each bending one way only
+constexpr double slack =
+    0.01;  ///< of the image size; larger than the bend of a border between samples
+constexpr int intervals = 8;  ///< of a segment, each bending in one direction only
 
-/// Keeps the part of [t0, t1] where a linear function with these end values is not negative.
+/// Restricts [t0, t1] to where a linear function with these end values is not negative.
 bool keep(double f_a, double f_b, Stretch& s) {
   if (f_a < 0) {
     if (f_b < 0) return false;
@@ -38,7 +39,7 @@ struct Sample {
   Eigen::Vector2d pixel, slope;
 };
 
-/// The picture of a segment, x(s) = x_a + s (x_b - x_a) in normalised coordinates, distorted.
+/// Projection of a segment, x(s) = x_a + s (x_b - x_a) in normalised coordinates, distorted.
 struct Curve {
   const Camera& camera;
   Eigen::Vector2d x_a, direction;
@@ -65,7 +66,7 @@ struct Border {
   double slope(const Sample& sample) const { return sign * sample.slope[axis]; }
 };
 
-/// The root between s0 and s1, where the function changes sign: Newton's method kept in a bracket.
+/// The root between s0 and s1, where the function changes sign: bracketed Newton iteration.
 template <class Function>
 double root(const Function& f, double s0, double s1, bool rising) {
   double s = 0.5 * (s0 + s1);
@@ -108,8 +109,8 @@ void append_crossings(const Curve& curve,
     cuts.push_back(root(f, s0, s1, f0 < 0));
     return;
   }
-  // The curve may cross twice where it turns towards the border in between. It bends one way only,
-  // so its tangents bound it.
+  // The curve may cross twice if it turns towards the border in between. It bends in one direction
+  // only, so its tangents bound it.
   const double d0 = border.slope(at0), d1 = border.slope(at1), step = s1 - s0;
   const double towards = f0 < 0 ? -1 : 1;
   if (towards * d0 >= 0 || towards * d1 <= 0) return;
@@ -121,8 +122,8 @@ void append_crossings(const Curve& curve,
   cuts.push_back(root(f, turn, s1, f0 >= 0));
 }
 
-/// Whether distortion grows all the way from the axis to x: beyond a fold, what lies between has
-/// more than one pixel.
+/// Whether the distorted radius increases monotonically from the axis to x: beyond a fold, a pixel
+/// is not unique.
 bool grows_to(const Camera& camera, const Eigen::Vector2d& x) {
   const Curve ray{camera, Eigen::Vector2d::Zero(), x};
   const Eigen::Vector2d outwards(camera.f_px() * camera.ax() * x[0], camera.f_px() * x[1]);
@@ -132,21 +133,21 @@ bool grows_to(const Camera& camera, const Eigen::Vector2d& x) {
   return true;
 }
 
-/// The ray of a pixel, this side of any fold.
+/// The ray of a pixel, on this side of any fold.
 std::optional<Eigen::Vector2d> plain_ray(const Camera& camera, const Eigen::Vector2d& pixel) {
   const auto ray = try_unproject(camera, pixel);
   if (!ray || !grows_to(camera, ray->head<2>())) return std::nullopt;
   return Eigen::Vector2d(ray->head<2>());
 }
 
-/// The ray of the outermost pixel on the way from the image's centre to `pixel` that has one.
+/// The ray of the outermost pixel between the image centre and `pixel` that has one.
 Eigen::Vector2d outermost_ray(const Camera& camera, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d centre = 0.5 * (camera.size_px.cast<double>() - Eigen::Vector2d::Ones());
   auto ray = plain_ray(camera, centre);
   if (!ray) {
     throw Error("camera \"" + camera.name + "\"",
-                "its distortion cannot be inverted even in the middle of the image",
-                "use other coefficients, or a smaller psi_c");
+                "its distortion cannot be inverted at the image centre",
+                "change the coefficients, or reduce psi_c");
   }
   double good = 0, bad = 1;
   for (int i = 0; i < 30; ++i) {
@@ -167,9 +168,10 @@ ViewFrustum::ViewFrustum(const Camera& camera, double near_m, double far_m)
     : camera_(camera), near_m_(near_m), far_m_(far_m) {
   const std::string place = "camera \"" + camera.name + "\"";
   if (!(near_m > 0 && far_m > near_m)) {
-    throw Error(place, "its range of depths is empty", "choose 0 < near_m < far_m");
+    throw Error(place, "the depth range is empty", "use 0 < near_m < far_m");
   }
-  if (camera.size_px.minCoeff() < 1) throw Error(place, "its image has no pixels", "set size_px");
+  if (camera.size_px.minCoeff() < 1)
+    throw Error(place, "the image size is not positive", "set size_px");
   check_parameters(camera);
   bound_border();
 }
@@ -202,7 +204,7 @@ void ViewFrustum::bound_border() {
   outer_ = {outer_.x0 - dx, outer_.y0 - dy, outer_.x1 + dx, outer_.y1 + dy};
   inner_ = {inner_.x0 + dx, inner_.y0 + dy, inner_.x1 - dx, inner_.y1 - dy};
   outer_radius2_ *= (1 + slack) * (1 + slack);
-  if (fold2 < outer_radius2_) {  // what lies beyond the fold is not imaged
+  if (fold2 < outer_radius2_) {  // beyond the fold nothing is imaged
     outer_radius2_ = fold2 * (1 - slack) * (1 - slack);
     const double corner2 = std::max({inner_.x0 * inner_.x0, inner_.x1 * inner_.x1}) +
                            std::max({inner_.y0 * inner_.y0, inner_.y1 * inner_.y1});
@@ -236,7 +238,7 @@ void ViewFrustum::cut_at_border(const ProjectedSegment& picture, std::vector<dou
     }
     before = after;
   }
-  // A circle about the axis keeps the folds of the distortion out.
+  // A circle around the axis excludes the folds of the distortion.
   const double aa = curve.direction.squaredNorm(), ab = picture.x0.dot(curve.direction);
   const double root2 = ab * ab - aa * (picture.x0.squaredNorm() - outer_radius2_);
   if (aa > 0 && root2 > 0) {
@@ -260,7 +262,7 @@ void ViewFrustum::in_image(const Eigen::Vector3d& a,
   thread_local std::vector<double> cuts;
   cut_at_border(picture, cuts);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    // Between two cuts all is in the image or nothing.
+    // Between two cuts, everything is in the image or nothing is.
     const double s = 0.5 * (cuts[i] + cuts[i + 1]);
     const Eigen::Vector2d x = picture.x0 + s * (picture.x1 - picture.x0);
     if (x.squaredNorm() > outer_radius2_ ||

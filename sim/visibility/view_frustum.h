@@ -10,7 +10,7 @@
 
 namespace vernier::sim::internal {
 
-/// An upright rectangle of normalised image coordinates (x / z, y / z).
+/// An axis-aligned rectangle of normalised image coordinates (x / z, y / z).
 struct ImageBox {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -19,33 +19,31 @@ struct ImageBox {
   }
 };
 
-/// The part of space that a camera sees: between two depths, and inside its image.
+/// The viewing volume of a camera: between two depths, and inside its image.
 ///
-/// Distortion bends the sides of that part, so it is kept between two plain pyramids: `outer`
-/// holds every ray of the image, `inner` holds rays of the image only. Between them the image's
-/// border is found on the distorted curve of the segment itself. Outside `outer`, and farther from
-/// the axis than any pixel is, distortion models may fold back into the image: nothing is looked
-/// for there.
+/// Distortion bends its sides, so it is bounded by two pyramids: `outer` contains every ray of the
+/// image, `inner` contains only rays of the image. Between them the image border is found on the
+/// distorted curve of the segment. Outside `outer`, and farther from the axis than any pixel,
+/// distortion models may fold back into the image: this region is excluded.
 class ViewFrustum {
  public:
-  /// Throws Error for depths that are not 0 < near < far, a camera without an image or with the
-  /// wrong number of parameters, and where the distortion cannot be inverted in the image's middle.
-  /// Where it folds before the border, what lies beyond the fold is not imaged. Keeps a reference
-  /// to `camera`.
+  /// Throws Error for depths other than 0 < near < far, a camera without an image or with the wrong
+  /// number of parameters, and a distortion that cannot be inverted at the image centre. If it
+  /// folds before the border, points beyond the fold are not imaged. Keeps a reference to `camera`.
   ViewFrustum(const Camera& camera, double near_m, double far_m);
 
-  /// Stretch of the segment a b (camera frame, metres) between near and far and in the outer
+  /// Interval of the segment a b (camera frame, metres) between near and far and in the outer
   /// pyramid; false if there is none.
   bool clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stretch& stretch) const;
 
-  /// Stretches of `clipped` (from `clip`) whose projections lie in the image; mostly one, two where
-  /// barrel distortion bows the segment out of the image in between.
+  /// Intervals of `clipped` (from `clip`) whose projections lie in the image; usually one, two if
+  /// barrel distortion bends the segment out of the image in between.
   void in_image(const Eigen::Vector3d& a,
                 const Eigen::Vector3d& b,
                 const Stretch& clipped,
                 std::vector<Stretch>& inside) const;
 
-  /// Whether the camera has a pixel for this point, between near and far.
+  /// Whether the point projects into the image, between near and far.
   bool contains(const Eigen::Vector3d& point) const;
 
   const ImageBox& outer() const { return outer_; }
@@ -54,7 +52,8 @@ class ViewFrustum {
 
  private:
   void bound_border();
-  /// Shares s of the picture, ascending from 0 to 1, between which it is in the image or is not.
+  /// Fractions s of the projection, ascending from 0 to 1, that separate parts inside and outside
+  /// the image.
   void cut_at_border(const ProjectedSegment& picture, std::vector<double>& cuts) const;
 
   const Camera& camera_;

@@ -22,19 +22,19 @@ namespace {
 
 void check(const Pose& T_camera_world, const VisibilityOptions& options) {
   if (!(options.surface_gap_m >= 0)) {
-    throw Error("visibility", "surface_gap_m is negative or no number", "give 0 or more");
+    throw Error("visibility", "surface_gap_m is negative or NaN", "use 0 or more");
   }
   if (!T_camera_world.R.allFinite() || !T_camera_world.t.allFinite()) {
-    throw Error("visibility", "the camera's pose is not finite", "give a rotation and metres");
+    throw Error("visibility", "the camera's pose is not finite", "use finite values");
   }
 }
 
-/// The gap, and no less than keeps a surface's own edges before it in spite of rounding.
+/// The gap, at least large enough that rounding cannot hide a surface's own edges.
 double gap_m(const VisibilityOptions& options) {
   return std::max(options.surface_gap_m, edge_on_m);
 }
 
-/// The parts of both, ascending.
+/// Intersection of both, ascending.
 void intersect(const std::vector<Stretch>& one,
                const std::vector<Stretch>& other,
                std::vector<Stretch>& both) {
@@ -47,7 +47,7 @@ void intersect(const std::vector<Stretch>& one,
   }
 }
 
-/// Vectors that every segment of a view needs, kept to save their allocation.
+/// Buffers reused for all segments of a view.
 struct Scratch {
   ShadowGrid grid;
   std::vector<OccludedInterval> hidden;
@@ -56,7 +56,7 @@ struct Scratch {
 };
 thread_local Scratch scratch;
 
-/// What all surfaces together say of a point x, relative to an eye.
+/// Visibility of a point x from an eye, with respect to all surfaces.
 PointInShadow classify(const ConvexSurfaces& surfaces,
                        const Eigen::Vector3d& eye,
                        const Eigen::Vector3d& x,
@@ -72,7 +72,7 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
       beyond = -beyond;
     }
     if (distance <= edge_on_m || beyond <= gap) continue;
-    const double reach = piece.radius_m + 1e-7;  // more than any tolerance
+    const double reach = piece.radius_m + 1e-7;  // larger than any tolerance
     if ((piece.centre_m - eye).cross(x).squaredNorm() > reach * reach * x.squaredNorm()) continue;
     scratch.sides.clear();
     const Eigen::Vector3d* p = surfaces.vertices_m.data() + piece.first_vertex;

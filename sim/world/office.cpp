@@ -28,8 +28,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double skirting_m = 0.08;
-constexpr double route_end_m = 0.6;    ///< from the end walls of the corridor
-constexpr double window_room_m = 1.2;  ///< between the end of a room's leg and its outer wall
+constexpr double route_end_m = 0.6;  ///< distance from the end walls of the corridor
+constexpr double window_room_m =
+    1.2;  ///< distance between the end of a room's leg and its outer wall
 constexpr std::uint32_t corridor_number = 0;  ///< rooms count from 1
 constexpr std::uint32_t door_place_item = 100;
 
@@ -40,7 +41,7 @@ struct Room {
   RouteLeg leg;
 };
 
-/// Everything that follows from the options before anything is drawn, and the rooms' doors.
+/// Everything determined by the options before any draw, and the rooms' doors.
 struct Plan {
   Vector3d size_m;
   double south_m = 0, north_m = 0;  ///< the corridor's faces
@@ -54,15 +55,17 @@ void check_options(const OfficeOptions& options) {
   };
   if (!size.allFinite() || !std::isfinite(options.corridor_width_m) ||
       !std::isfinite(options.room_width_m)) {
-    refuse("a size is not finite", "give finite lengths in metres");
+    refuse("a size is not finite", "use finite lengths in metres");
   }
-  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "make it smaller");
-  if (size.z() < 2.3) refuse("the ceiling is below 2.3 m", "doors and frames need that height");
-  if (options.corridor_width_m < 1.2) refuse("the corridor is below 1.2 m", "widen it");
-  if (options.room_width_m < 2.8) refuse("rooms are below 2.8 m wide", "widen them");
-  if (size.x() < 2.8) refuse("no room fits in its length", "make it 2.8 m or longer");
+  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "use at most 200 m");
+  if (size.z() < 2.3)
+    refuse("the height is below 2.3 m", "use at least 2.3 m, for the door frames");
+  if (options.corridor_width_m < 1.2)
+    refuse("the corridor is narrower than 1.2 m", "use at least 1.2 m");
+  if (options.room_width_m < 2.8) refuse("the rooms are narrower than 2.8 m", "use at least 2.8 m");
+  if (size.x() < 2.8) refuse("no room fits in the length", "use at least 2.8 m");
   if ((size.y() - options.corridor_width_m) / 2 - wall_thickness_m < 2.8) {
-    refuse("no room fits beside the corridor", "rooms must be 2.8 m deep, make it wider");
+    refuse("no room fits beside the corridor", "increase the width; rooms must be 2.8 m deep");
   }
 }
 
@@ -123,7 +126,7 @@ std::vector<double> doors(const Plan& plan, int window_side) {
   return middles;
 }
 
-// A line along x that leaves out `half` to both sides of every door.
+// A line along x, interrupted by `half` on both sides of every door.
 void broken_line(Shapes& shapes,
                  double x0,
                  double x1,
@@ -179,7 +182,7 @@ void raise_corridor_wall(Shapes& shapes, const Plan& plan, int window_side) {
 
 void raise_walls(Shapes& shapes, const Plan& plan) {
   const Vector3d& size = plan.size_m;
-  // Nothing lies beyond the outer walls, so that their inner faces stand for them.
+  // Nothing lies beyond the outer walls, so they are represented by their inner faces.
   shapes.surfaces_of_box(Vector3d::Zero(), size, all_faces);
   raise_corridor_wall(shapes, plan, 0);
   raise_corridor_wall(shapes, plan, 2);

@@ -19,9 +19,9 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Several draws in one expression stand in braces, which fix the order of evaluation.
+// Braces fix the order of evaluation of several draws in one expression.
 
-// Spines side by side: neighbours share an edge, as high as the taller one.
+// Adjacent spines share an edge, as high as the taller one.
 void row_of_books(Shapes& loose, double x, double end, double board, RandomStream& draws) {
   double last_height = 0;
   while (true) {
@@ -62,7 +62,7 @@ void framed_picture(Shapes& loose, const Vector2d& low, const Vector2d& high, Ra
                           0.012);
 }
 
-// A sheet on the wall with a few ruled lines or a picture upon it.
+// A sheet on the wall with a few ruled lines or a picture.
 void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, RandomStream& draws) {
   loose.upright_rectangle(low.x(), low.y(), high.x(), high.y(), 0.005);
   const Vector2d size = high - low;

@@ -10,7 +10,7 @@
 
 namespace vernier::sim::internal {
 
-// Odds and ends: loose features that no two rooms share.
+// Clutter: loose features, different in every room.
 
 /// Books and cartons on the boards of a bookshelf at `x_m` along the wall.
 void fill_bookshelf(OfficeSite& site,
@@ -41,7 +41,7 @@ void stack_cartons(OfficeSite& site,
                    const Eigen::Vector2d& size_m,
                    vernier::internal::RandomStream& draws);
 
-/// Framed pictures, calendars and posters of drawn sizes where a wall is free.
+/// Framed pictures, calendars and posters of random sizes on free wall.
 void hang_pictures(OfficeSite& site,
                    const OfficeWall& wall,
                    int tries,

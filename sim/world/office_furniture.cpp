@@ -13,7 +13,7 @@ namespace {
 FeatureSet door_frame() {
   Shapes s;
   const double half = door_width_m / 2, top = door_height_m, out = half + casing_m;
-  const double near = 0.01, far = -wall_thickness_m - 0.01;  // the casing stands off both faces
+  const double near = 0.01, far = -wall_thickness_m - 0.01;  // the casing protrudes from both faces
   for (const double y : {near, far}) {
     for (const double x : {half, out}) {
       const double z = top + (x - half);

@@ -23,8 +23,8 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// What a draw is for. Every item has draws of its own, so that a change to one leaves the rest of
-// the room as it was.
+// Keys of draws. Every item has its own, so that changing one leaves the rest of the room
+// unchanged.
 enum Item : std::uint32_t {
   style_item = 0,
   window_item = 1,
@@ -38,7 +38,7 @@ enum Item : std::uint32_t {
   wall_item = 1000,  ///< + 1000 · wall + place along the wall
 };
 
-/// How often a room of one style takes each kind of furniture, out of the sum.
+/// Relative frequency of each kind of furniture in rooms of one style.
 struct Style {
   std::array<double, 8> weights;
 };
@@ -68,7 +68,7 @@ int draw_furniture(const Style& style, RandomStream& draws) {
   return furniture::nothing;
 }
 
-// A chair turns within its circle; it may reach below the board it stands before.
+// A chair turns within its circle; it may reach below the board in front of it.
 void place_chair(OfficeSite& site,
                  const char* name,
                  const QuarterFrame& frame,

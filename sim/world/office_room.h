@@ -7,8 +7,8 @@
 namespace vernier::sim::internal {
 
 /// Furnishes the current room of the site: windows and radiators at the wall `window_side`,
-/// furniture drawn by room along all walls, lights and vents. The door is in the wall opposite,
-/// its opening's middle at `door_x_m` along that wall; its surroundings stay free.
+/// randomly drawn furniture along all walls, lights and vents. The door is in the opposite wall,
+/// with its centre at `door_x_m` along that wall; the space around it stays free.
 void furnish_room(OfficeSite& site, int window_side, double door_x_m);
 
 }  // namespace vernier::sim::internal

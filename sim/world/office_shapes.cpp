@@ -106,7 +106,7 @@ void Shapes::surfaces_of_box(const Vector3d& low_m, const Vector3d& high_m, unsi
 
 FeatureSet Shapes::features() const {
   FeatureSet result = features_;
-  // The first direction seen at every end point, in the order of the segments.
+  // The first direction at every end point, in the order of the segments.
   std::map<GridPoint, Vector3d> direction_at;
   std::set<GridPoint> corners;
   for (const auto& [a, b] : features_.segments_m) {
@@ -114,7 +114,7 @@ FeatureSet Shapes::features() const {
     for (const Vector3d& end : {a, b}) {
       const GridPoint key = grid_point(end);
       const auto [first, is_new] = direction_at.emplace(key, direction);
-      // Two directions within half a degree do not make a corner in any image.
+      // Two directions within half a degree do not form a corner.
       if (is_new || first->second.cross(direction).norm() < 0.01) continue;
       if (corners.insert(key).second) result.corners_m.push_back(end);
     }

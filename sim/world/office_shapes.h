@@ -12,12 +12,12 @@
 
 namespace vernier::sim::internal {
 
-/// Rounds to the tenth of a millimetre that a world file keeps, so that a generated world and its
-/// text say the same to the bit.
+/// Rounds to 0.1 mm, the resolution of a world file, so that a generated world and its text are
+/// identical to the bit.
 double to_grid(double value_m);
 Eigen::Vector3d to_grid(const Eigen::Vector3d& value_m);
 
-/// A frame turned about z by whole quarter turns; exact, as no sine is needed.
+/// A frame rotated about z by multiples of 90°; exact, since no sine is needed.
 struct QuarterFrame {
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
   int quarters = 0;
@@ -37,25 +37,25 @@ enum BoxFaces : unsigned {
   top_face = 32,
   all_faces = 63,
   standing_faces = all_faces - bottom_face,    ///< on the floor
-  leaning_faces = standing_faces - back_face,  ///< on the floor with its back to a wall
+  leaning_faces = standing_faces - back_face,  ///< on the floor, back against a wall
   hanging_faces = all_faces - top_face,        ///< from the ceiling
   upright_faces = left_face + right_face + back_face + front_face,
 };
 
-/// Collects features in a frame. Lines that coincide are kept once, and corners are found where
-/// lines that are not parallel end at the same point.
+/// Collects features in a frame. Coincident lines are kept once; corners are created where
+/// non-parallel lines end at the same point.
 class Shapes {
  public:
-  QuarterFrame frame;  ///< of what is added next
+  QuarterFrame frame;  ///< of the features added next
 
   void line(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m);
-  /// A rectangle in the plane y = `y_m`, as a picture on a wall.
+  /// A rectangle in the plane y = `y_m`, such as a picture on a wall.
   void upright_rectangle(double x0_m, double z0_m, double x1_m, double z1_m, double y_m);
   /// A rectangle in the plane z = `z_m`.
   void level_rectangle(double x0_m, double y0_m, double x1_m, double y1_m, double z_m);
   /// The twelve edges of a box, and the surfaces of some of its faces.
   void box(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = all_faces);
-  /// A leg or a panel below a board: the edges but those of its top.
+  /// A leg or a panel below a board: the edges except those of its top.
   void leg(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces = no_face);
   void surfaces_of_box(const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m, unsigned faces);
 
@@ -68,7 +68,7 @@ class Shapes {
   std::set<std::array<GridPoint, 2>> seen_;
 };
 
-/// The box around all segments.
+/// The bounding box of all segments.
 Eigen::AlignedBox3d bounds(const FeatureSet& features);
 
 }  // namespace vernier::sim::internal

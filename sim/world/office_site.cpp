@@ -24,7 +24,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double route_clearance_m = 0.35;  ///< 0.3 m is promised
+constexpr double route_clearance_m = 0.35;  ///< the documented minimum is 0.3 m
 constexpr double headroom_m = 2.0;
 constexpr double site_gap_m = 0.015;  ///< between neighbours, so that edges never coincide
 
@@ -59,7 +59,7 @@ double distance_to_path(const AlignedBox3d& box, const std::vector<Vector2d>& pa
     const Vector2d& a = path_m[i];
     const Vector2d& b = path_m[i + 1];
     if (crosses(plan, a, b)) return 0;
-    // Of two convex shapes apart, the nearest pair of points holds a vertex of one of them.
+    // The closest points of two disjoint convex shapes include a vertex of one of them.
     nearest = std::min({nearest, plan.exteriorDistance(a), plan.exteriorDistance(b)});
     for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
                               Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
@@ -118,7 +118,7 @@ AlignedBox3d OfficeSite::taken(const std::string& name,
                                const QuarterFrame& frame,
                                const Vector3d& at_m) const {
   AlignedBox3d box = bounds_.at(name);
-  // Nothing goes between a piece of furniture and its wall.
+  // Nothing is placed between a piece of furniture and its wall.
   if (box.min().y() > 0) box.min().y() = 0;
   return frame * box.translate(at_m);
 }

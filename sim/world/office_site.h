@@ -16,7 +16,7 @@
 
 namespace vernier::sim::internal {
 
-/// The stream of every draw of a generated office.
+/// The stream of all draws of a generated office.
 inline constexpr auto office_draws =
     static_cast<std::uint32_t>(vernier::internal::DrawSource::office);
 
@@ -28,51 +28,51 @@ struct OfficeWall {
 
 /// A rectangle of floor with its four walls: 0 at low y, 1 at high x, 2 at high y, 3 at low x.
 struct OfficeRoom {
-  std::uint32_t number = 0;  ///< keys its draws
+  std::uint32_t number = 0;  ///< key of its draws
   Eigen::Vector3d low_m, high_m;
 
   OfficeWall wall(int side) const;
 };
 
-/// Shortest distance from a polyline on the floor to an upright box, as seen from above.
+/// Shortest horizontal distance from a polyline on the floor to an upright box.
 double distance_to_path(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector2d>& path_m);
 
-/// Where an office is put together: places templates and loose things in the current room, and
-/// keeps them apart from one another and from the route.
+/// Assembles an office: places templates and loose objects in the current room, and keeps them
+/// apart from each other and from the route.
 class OfficeSite {
  public:
   explicit OfficeSite(std::uint64_t seed);
 
-  /// Begins a room; whatever stands in it later stays clear of `path_m`.
+  /// Begins a room; objects placed in it stay clear of `path_m`.
   void enter(const OfficeRoom& room, const std::vector<Eigen::Vector2d>& path_m);
 
-  /// RandomStream that belong to one item of the current room.
+  /// Random stream of one item of the current room.
   vernier::internal::RandomStream draws(std::uint32_t item) const;
 
-  /// Whether a box of the current room is free. What hangs above a head may cross the route.
+  /// Whether a box of the current room is free. Objects above head height may overlap the route.
   bool is_free(const Eigen::AlignedBox3d& box) const;
   void occupy(const Eigen::AlignedBox3d& box) { occupied_.push_back(box); }
 
-  /// The box that a template takes at `at_m` in a frame, from the wall on.
+  /// The box occupied by a template at `at_m` in a frame, from the wall on.
   Eigen::AlignedBox3d taken(const std::string& name,
                             const QuarterFrame& frame,
                             const Eigen::Vector3d& at_m) const;
 
-  /// Places a template where it is free; `yaw_deg` turns it about its origin.
+  /// Places a template if the space is free; `yaw_deg` rotates it about its origin.
   bool try_place(const std::string& name, const QuarterFrame& frame, const Eigen::Vector3d& at_m);
   void place(const std::string& name,
              const QuarterFrame& frame,
              const Eigen::Vector3d& at_m,
              int yaw_deg = 0);
 
-  /// Adds a loose box, and a line along its lid and down its front as a carton has.
+  /// Adds a loose box, and a line along its lid and down its front, as on a carton.
   bool try_carton(const QuarterFrame& frame, const Eigen::AlignedBox3d& box);
 
   WorldDescription& world() { return world_; }
   Shapes& loose() { return loose_; }
   const OfficeRoom& room() const { return room_; }
 
-  /// The description with all loose features and without templates that were never placed.
+  /// The description with all loose features, without templates that were never placed.
   WorldDescription finish();
 
  private:

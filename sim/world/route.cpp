@@ -54,11 +54,11 @@ RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m) {
 
 std::vector<Pose2D> map_poses(const std::vector<RouteLeg>& route, double spacing_m, int headings) {
   if (route.empty()) {
-    throw Error("map", "the world has no route to record it along",
-                "add [[route]] points_m to the world, or give map.path in the study");
+    throw Error("map", "the world has no route to record the map along",
+                "add [[route]] points_m to the world");
   }
   if (!(spacing_m > 0) || headings < 0) {
-    throw Error("map", "spacing must be above 0 and headings not negative", "");
+    throw Error("map", "spacing is not above 0 or headings is negative", "use positive values");
   }
   std::vector<Pose2D> places;
   for (const RouteLeg& leg : route) {

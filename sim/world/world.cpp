@@ -18,8 +18,8 @@ using namespace internal;
 
 namespace {
 
-// cos(π/2) is 6e-17 in floating point, which would tilt every wall by rounding: quarter turns,
-// nearly all of a building, are made exact.
+// cos(π/2) is 6e-17 in floating point, which would tilt every wall by rounding: multiples of 90°,
+// nearly all rotations in a building, are exact.
 Pose pose_of(const WorldInstance& instance) {
   Pose T_world_template;
   T_world_template.t = instance.at_m;

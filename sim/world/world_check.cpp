@@ -31,7 +31,8 @@ void check_features(const FeatureSet& features, const std::string& owner) {
   }
   for (std::size_t i = 0; i < features.corners_m.size(); ++i) {
     if (!features.corners_m[i].allFinite()) {
-      throw Error(owner + " corner " + std::to_string(i), "is not finite", "give three numbers");
+      throw Error(owner + " corner " + std::to_string(i), "is not finite",
+                  "use three finite numbers");
     }
   }
 }
@@ -43,9 +44,9 @@ std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescrip
   for (std::size_t i = 0; i < description.templates.size(); ++i) {
     const WorldTemplate& entry = description.templates[i];
     const std::string place = "template " + std::to_string(i);
-    if (entry.name.empty()) throw Error(place, "has no name", "name it");
+    if (entry.name.empty()) throw Error(place, "has no name", "add a name");
     if (!by_name.emplace(entry.name, &entry).second) {
-      throw Error(place, "the name '" + entry.name + "' is taken", "rename one of the two");
+      throw Error(place, "duplicate name '" + entry.name + "'", "rename one of the two");
     }
   }
   return by_name;
@@ -53,11 +54,12 @@ std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescrip
 
 std::optional<WorldError> segment_error(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) {
   if (!a_m.allFinite() || !b_m.allFinite()) {
-    return WorldError{"is not finite", "give six finite numbers"};
+    return WorldError{"is not finite", "use six finite numbers"};
   }
   const double length_m = (b_m - a_m).norm();
-  if (length_m == 0) return WorldError{"has no length", "move one end or remove it"};
-  // Coordinates have a tenth of a millimetre, so that exactly 1 mm must survive rounding.
+  if (length_m == 0) return WorldError{"has zero length", "move one end or remove it"};
+  // Coordinates are rounded to a tenth of a millimetre, so that exactly 1 mm must be accepted
+  // despite rounding.
   if (length_m < kTolerance_m * (1 - 1e-6)) {
     return WorldError{"is shorter than 1 mm", "move one end or remove it"};
   }
@@ -66,32 +68,32 @@ std::optional<WorldError> segment_error(const Eigen::Vector3d& a_m, const Eigen:
 
 std::optional<WorldError> surface_error(const std::vector<Eigen::Vector3d>& polygon_m) {
   if (polygon_m.size() < 3) {
-    return WorldError{"has fewer than three points", "give three or more"};
+    return WorldError{"has fewer than three points", "use at least three"};
   }
   Eigen::Vector3d area = Eigen::Vector3d::Zero(), centre = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < polygon_m.size(); ++i) {
-    if (!polygon_m[i].allFinite()) return WorldError{"is not finite", "give finite numbers"};
+    if (!polygon_m[i].allFinite()) return WorldError{"is not finite", "use finite numbers"};
     const Eigen::Vector3d from = polygon_m[i] - polygon_m[0];
-    // Newell's normal: the sum over the border holds for polygons that are not convex, too.
+    // Newell's normal, valid for non-convex polygons too.
     area += 0.5 * from.cross(polygon_m[(i + 1) % polygon_m.size()] - polygon_m[0]);
     centre += polygon_m[i] / static_cast<double>(polygon_m.size());
   }
   if (area.norm() < kTolerance_m * kTolerance_m) {
-    return WorldError{"encloses no area", "check the order of its points or remove it"};
+    return WorldError{"has no area", "check the order of its points or remove it"};
   }
   const Eigen::Vector3d normal = area.normalized();
   for (const auto& point : polygon_m) {
     if (std::abs(normal.dot(point - centre)) > kTolerance_m) {
-      return WorldError{"is not planar to 1 mm", "cut it into triangles"};
+      return WorldError{"is not planar to 1 mm", "split it into triangles"};
     }
   }
   return std::nullopt;
 }
 
 std::optional<WorldError> route_error(const std::vector<Eigen::Vector2d>& points_m) {
-  if (points_m.size() < 2) return WorldError{"has fewer than two points", "give two or more"};
+  if (points_m.size() < 2) return WorldError{"has fewer than two points", "use at least two"};
   for (const auto& point : points_m) {
-    if (!point.allFinite()) return WorldError{"is not finite", "give finite numbers"};
+    if (!point.allFinite()) return WorldError{"is not finite", "use finite numbers"};
   }
   return std::nullopt;
 }
@@ -105,11 +107,11 @@ void check_world(const WorldDescription& description) {
     const WorldInstance& instance = description.instances[i];
     const std::string place = "instance " + std::to_string(i);
     if (!by_name.contains(instance.template_name)) {
-      throw Error(place, "there is no template '" + instance.template_name + "'",
-                  "define it or name another");
+      throw Error(place, "unknown template '" + instance.template_name + "'",
+                  "define it or use another");
     }
     if (!instance.at_m.allFinite() || !std::isfinite(instance.yaw_rad)) {
-      throw Error(place, "its place is not finite", "give finite numbers");
+      throw Error(place, "its position is not finite", "use finite numbers");
     }
   }
   check_features(description.loose, "loose");

@@ -12,7 +12,7 @@
 
 namespace vernier::sim::internal {
 
-/// What is wrong with a piece of a world and what to do about it; the caller knows the place.
+/// A fault of part of a world and its remedy; the caller adds the place.
 struct WorldError {
   std::string fault, remedy;
 };
@@ -26,10 +26,10 @@ std::optional<WorldError> surface_error(const std::vector<Eigen::Vector3d>& poly
 /// A leg of a route must have at least two finite points.
 std::optional<WorldError> route_error(const std::vector<Eigen::Vector2d>& points_m);
 
-/// The templates by their names. Throws Error for a template without a name or with a taken one.
+/// Templates by name. Throws Error for a template without a name or with a duplicate one.
 std::map<std::string, const WorldTemplate*> templates_by_name(const WorldDescription& description);
 
-/// Checks everything build_world relies on; throws Error with template and index as the place.
+/// Checks all preconditions of build_world; throws Error with template and index as the place.
 void check_world(const WorldDescription& description);
 
 }  // namespace vernier::sim::internal

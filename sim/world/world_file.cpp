@@ -24,7 +24,7 @@ namespace {
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 
-/// Turns parsed TOML into a description. Every complaint carries the file and the line.
+/// Converts parsed TOML to a description. Every error has the file and the line.
 class WorldReader : private TomlReader {
  public:
   using TomlReader::TomlReader;
@@ -111,7 +111,7 @@ WorldTemplate WorldReader::read_template(const toml::table& table, const std::st
   WorldTemplate result;
   const toml::node& name = required(table, "name", what);
   result.name = text(name, what + " name");
-  if (result.name.empty()) fail(name, what + " has an empty name", "name it");
+  if (result.name.empty()) fail(name, what + " has an empty name", "add a name");
   read_features(table, "template '" + result.name + "'", result.features);
   return result;
 }
@@ -151,7 +151,7 @@ void WorldReader::read_instances(const toml::table& root, WorldDescription& worl
     world.instances.push_back(read_instance(*entry, what));
     const std::string& name = world.instances.back().template_name;
     if (std::binary_search(names.begin(), names.end(), name)) continue;
-    fail(*entry->get("template"), what + " names the unknown template '" + name + "'",
+    fail(*entry->get("template"), what + " refers to the unknown template '" + name + "'",
          names.empty() ? "define it in a [[template]]"
                        : "did you mean '" + nearest_word(name, names) + "'?");
   }
@@ -171,23 +171,23 @@ RouteLeg WorldReader::read_route(const toml::table& table, const std::string& wh
 
 void WorldReader::check_header(const toml::table& root) const {
   const toml::node* format = root.get("format");
-  if (!format) fail(1, "the file names no format", "begin it with format = \"vernier/world\"");
+  if (!format) fail(1, "the file has no format", "add format = \"vernier/world\"");
   const std::string kind = text(*format, "format");
   if (kind != "vernier/world") {
-    fail(*format, "this is '" + kind + "', not a world", "give a file of format vernier/world");
+    fail(*format, "the format is '" + kind + "'", "use a file of format vernier/world");
   }
   const toml::node* version = root.get("version");
-  if (!version) fail(1, "the file has no version", "write version = 1");
+  if (!version) fail(1, "the file has no version", "add version = 1");
   if (!version->is_integer() || version->as_integer()->get() != 1) {
     std::ostringstream is;
     version->visit([&](const auto& value) { is << value; });
-    fail(*version, "version " + is.str() + " is not known here", "this program reads version 1");
+    fail(*version, "version " + is.str() + " is not supported", "supported: 1");
   }
 }
 
 WorldDescription WorldReader::read(const toml::table& root) {
   check_header(root);
-  // [[view_dependency]] belongs to the visibility that reads it, and is no fault here.
+  // [[view_dependency]] is read by the visibility and accepted here.
   check_keys(root,
              {"format", "version", "name", "template", "instance", "loose", "segment", "surface",
               "corner", "route", "view_dependency"},

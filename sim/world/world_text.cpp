@@ -43,7 +43,7 @@ FeatureSet rounded(const FeatureSet& features) {
   return result;
 }
 
-// What the text will say, so that the checks see what a reader of the text would see.
+// Rounds as the text does, so that the checks apply to the values of the file.
 WorldDescription rounded(const WorldDescription& description) {
   WorldDescription result = description;
   for (auto& entry : result.templates) entry.features = rounded(entry.features);
@@ -55,10 +55,10 @@ WorldDescription rounded(const WorldDescription& description) {
   return result;
 }
 
-// By integers, so that no locale and no printf decides about the bytes.
+// Integer arithmetic: the bytes do not depend on the locale or printf.
 std::string number(double value) {
   if (!(std::abs(value) < largest)) {
-    throw Error("world", "a number is beyond 1e9 or not finite", "check the description");
+    throw Error("world", "a number exceeds 1e9 or is not finite", "check the description");
   }
   const std::int64_t steps = std::llround(value * steps_per_unit);
   const std::int64_t size = steps < 0 ? -steps : steps;
@@ -94,7 +94,7 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-// One entry a line, so that a complaint's line number points at the feature itself.
+// One entry per line, so that the line number of an error identifies the feature.
 template <typename Entries, typename Format>
 void append_list(const char* key, const Entries& entries, const Format& format, std::string& text) {
   if (entries.empty()) return;

@@ -25,7 +25,7 @@ namespace {
 
 using Patches = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor>;
 
-/// The patches of an image's corners, of zero mean and unit length, one a column.
+/// The patches of an image's corners with zero mean and unit norm, one per column.
 Patches patches(const CornerImage& image, int half) {
   const int side = 2 * half + 1;
   Patches all(side * side, static_cast<Eigen::Index>(image.corners.size()));
@@ -44,7 +44,7 @@ Patches patches(const CornerImage& image, int half) {
   return all;
 }
 
-/// Corners by the square of the image that they are in.
+/// Corners by image tile.
 class CornerGrid {
  public:
   explicit CornerGrid(const std::vector<ImageCorner>& corners) {
@@ -83,7 +83,7 @@ struct Candidate {
   float score = 0;
 };
 
-/// What the right image's corners are searched with.
+/// Search structures of the right image.
 struct RightSearch {
   RightSearch(const std::vector<ImageCorner>& from, double gate_probability)
       : corners(from), grid(from), nearest(from.size()) {
@@ -96,10 +96,10 @@ struct RightSearch {
   CornerGrid grid;
   double gate[3] = {0, 0, 0};
   double largest_variance = 0;
-  std::vector<BandDistance> nearest;  ///< of each corner to the curve in hand
+  std::vector<BandDistance> nearest;  ///< of each corner to the current curve
 };
 
-/// Right corners within the gate of a curve, in the order of their indices.
+/// Right corners within the gate of a curve, in ascending order of their indices.
 std::vector<Candidate> candidates_of(const std::vector<BandNode>& curve, RightSearch& search) {
   std::vector<int> seen;
   for (std::size_t i = 1; i < curve.size(); ++i) {
@@ -128,8 +128,7 @@ std::vector<Candidate> candidates_of(const std::vector<BandNode>& curve, RightSe
   return candidates;
 }
 
-/// The candidate that stands out, if one does; `best_of_right` keeps each right corner's best
-/// score.
+/// The unambiguous candidate, if any; `best_of_right` keeps each right corner's best score.
 std::optional<Candidate> best_candidate(std::vector<Candidate>& candidates,
                                         const CornerMatchingOptions& options) {
   if (candidates.empty()) return std::nullopt;
@@ -155,7 +154,7 @@ CornerMatch aligned_match(const Alignment& aligned,
   return match;
 }
 
-/// Steps 1 and 2 of match_corners(): one candidate a left corner, or none.
+/// Steps 1 and 2 of match_corners(): one candidate per left corner, or none.
 std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
                                                  const CornerImage& right,
                                                  const EpipolarBand& band,
@@ -184,11 +183,11 @@ std::vector<std::optional<Candidate>> correlated(const CornerImage& left,
 
 void check(const CornerMatchingOptions& options) {
   if (!(options.gate_probability > 0 && options.gate_probability < 1)) {
-    throw Error("matching", "the gate's probability is not between 0 and 1", "give 0.997, say");
+    throw Error("matching", "gate_probability is not between 0 and 1", "use e.g. 0.997");
   }
   if (options.patch_half_px < 1 || options.aligned_half_px < 2 || options.neighbours < 1) {
-    throw Error("matching", "a patch has no pixels, or no neighbours are to be asked",
-                "give whole numbers above 1");
+    throw Error("matching", "the patch size or the number of neighbours is not positive",
+                "use integers above 1");
   }
 }
 

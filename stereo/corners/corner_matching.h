@@ -12,30 +12,30 @@
 
 namespace vernier::stereo::internal {
 
-/// An image and its corners.
+/// A grey image with its corners.
 struct CornerImage {
   cv::Mat grey;      ///< as CV_32F
-  double noise = 0;  ///< grey values
+  double noise = 0;  ///< standard deviation, grey levels
   std::vector<ImageCorner> corners;
 };
 
-/// Measures the noise and finds the corners of an 8-bit image.
+/// Measures the noise of an 8-bit image and detects its corners.
 CornerImage corner_image(const cv::Mat& grey, const HarrisOptions& options);
 
-/// Corners matched from left to right, in the order of the left ones:
+/// Corners matched from left to right, in the order of the left corners:
 ///
-///  1. candidates: right corners within the gate of the left one's band
-///  (stereo/corners/epipolar_band.h);
-///  2. the one whose patch correlates best (ZNCC), if by at least `min_score`, if by
-///     `min_margin` more than the second best, and if it has no better left one itself;
-///  3. least squares matching about both (stereo/image/patch_alignment.h) has to settle within
-///     `max_shift_px` of the corner and correlate by `min_aligned_score`; its place is the
-///     match's right pixel;
-///  4. of the `neighbours` nearest matches at least `support` have nearly the same displacement: it
-///     differs by a pixel or by `support_slope` of their distance. Where fewer matches than
-///     `neighbours` are left this is not asked.
+///  1. candidates: right corners within the gate of the left corner's epipolar band
+///     (stereo/corners/epipolar_band.h);
+///  2. the candidate with the best patch correlation (ZNCC), if it reaches `min_score`, leads the
+///     second best by `min_margin`, and has no better left corner itself;
+///  3. least squares matching around both (stereo/image/patch_alignment.h) must converge within
+///     `max_shift_px` of the corner with a ZNCC of at least `min_aligned_score`; the result is the
+///     right pixel of the match;
+///  4. at least `support` of the `neighbours` nearest matches must have nearly the same
+///     displacement: the difference is at most a pixel or `support_slope` times their distance.
+///     Skipped if fewer matches than `neighbours` are left.
 ///
-/// `candidates`, where given, is set to their number. Throws Error where options make no sense.
+/// Sets `candidates`, if given, to the number of candidates. Throws Error for options out of range.
 std::vector<CornerMatch> match_corners(const CornerImage& left,
                                        const CornerImage& right,
                                        const EpipolarBand& band,

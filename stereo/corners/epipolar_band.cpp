@@ -29,7 +29,7 @@ bool near_image(const Camera& camera, const Eigen::Vector2d& pixel) {
 
 }  // namespace
 
-/// What a left pixel brings: its ray and how that depends on the pixel and on the left intrinsics.
+/// The ray of a left pixel and its derivatives by the pixel and the left intrinsics.
 struct EpipolarBand::Ray {
   Eigen::Vector3d direction;                           ///< (x, y, 1), left frame
   Eigen::Matrix2d by_pixel;                            ///< of (x, y)
@@ -42,23 +42,24 @@ EpipolarBand::EpipolarBand(const Rig& rig,
                            const BandOptions& options)
     : rig_(rig), covariance_(covariance), options_(options) {
   if (rig.cameras.size() != 2) {
-    throw Error("rig", "it has " + std::to_string(rig.cameras.size()) + " cameras, a pair has 2",
-                "give the rig of the two cameras that took the images");
+    throw Error("rig", "it has " + std::to_string(rig.cameras.size()) + " cameras instead of 2",
+                "use the rig of the two cameras that took the images");
   }
   const Eigen::Index n = parameter_count(rig);
   if (covariance.rows() != n || covariance.cols() != n) {
-    throw Error("rig", "its covariance is not of its parameters", "give both of one rig");
+    throw Error("rig", "the covariance does not have the size of its parameters",
+                "use both of one rig");
   }
   if (!(options.nearest_m > 0) || !(options.corner_sigma_px >= 0)) {
-    throw Error("epipolar band", "the nearest depth is not above 0 or the corners' sigma below it",
-                "give metres and pixels");
+    throw Error("epipolar band", "nearest_m is not above 0 or corner_sigma_px is negative",
+                "use metres and pixels");
   }
 }
 
 std::optional<BandNode> EpipolarBand::node(const Ray& ray, double inverse_depth) const {
   const Pose& T = rig_.T_camera_first[1];
   const Eigen::Vector3d turned = T.R * ray.direction;
-  const Eigen::Vector3d x = turned + inverse_depth * T.t;  // the point over its left depth
+  const Eigen::Vector3d x = turned + inverse_depth * T.t;  // the point divided by its left depth
   if (!(x.z() > 1e-3 * x.norm())) return std::nullopt;
   ProjectionJacobian J;
   BandNode node{inverse_depth, project(rig_.cameras[1], x, J)};
@@ -103,7 +104,7 @@ void EpipolarBand::subdivide(const Ray& ray,
   nodes.back().follows = true;
 }
 
-/// The last node on the way from one that is near the image to an inverse depth that is not.
+/// The last node between one near the image and an inverse depth whose node is not.
 BandNode EpipolarBand::edge(const Ray& ray, BandNode in, double out) const {
   for (int i = 0; i < edge_halvings; ++i) {
     const double middle = 0.5 * (in.inverse_depth + out);

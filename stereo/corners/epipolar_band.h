@@ -18,51 +18,53 @@ struct UncertainPixel {
   Eigen::Matrix2d covariance_px2;
 };
 
-/// Where the right camera may see what is at a left pixel: a point at inverse depth ρ on the curve
+/// A node of the epipolar curve: the right pixel of a point at inverse depth ρ on the left pixel's
+/// ray.
 struct BandNode {
-  double inverse_depth = 0;  ///< 1 / z in the left camera's frame, 1 / m
-  Eigen::Vector2d pixel_px;  ///< q(ρ), in the right image as it is, distorted
+  double inverse_depth = 0;  ///< 1 / z in the left camera frame, 1 / m
+  Eigen::Vector2d pixel_px;  ///< q(ρ) in the raw (distorted) right image
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  ///< of q(ρ)
-  bool follows = false;  ///< the curve runs here from the node before
+  bool follows = false;  ///< whether the curve is connected to the previous node
 };
 
-/// How near a right pixel is to the curve.
+/// Distance of a right pixel from the curve.
 struct BandDistance {
   double mahalanobis2 = std::numeric_limits<double>::infinity();
-  int dof =
-      1;  ///< of mahalanobis2 for the true pixel: 1 beside the curve, 2 beyond one of its ends
+  /// Degrees of freedom for the true pixel: 1 beside the curve, 2 beyond one of its ends.
+  int dof = 1;
   double inverse_depth = 0;
-  Eigen::Vector2d direction{1, 0};  ///< of the curve there, unit, towards nearer points
+  Eigen::Vector2d direction{1, 0};  ///< tangent of the curve there, unit, towards smaller depths
 };
 
 struct BandOptions {
-  double nearest_m = 0.5;        ///< depth at which the curve ends; it begins at infinity
-  double corner_sigma_px = 0.3;  ///< by which corners of one thing differ beyond their covariances
+  double nearest_m = 0.5;  ///< depth at which the curve ends; it begins at infinity
+  /// Extra standard deviation of corner positions between views, beyond their covariances.
+  double corner_sigma_px = 0.3;
 };
 
-/// The part of the right image in which the corner at a left pixel p has to be, by how well the rig
-/// is known. At inverse depth ρ the right camera sees it at
+/// Search region in the right image for the corner at a left pixel p, from the covariance of the
+/// rig. A point at inverse depth ρ projects to
 ///
 ///     q(ρ) = project_r(R x + ρ T),   x = unproject_l(p)
 ///
-/// and with all derivatives taken exactly (the left intrinsics through x: δx = −P⁻¹ ∂project_l δa,
-/// P = ∂project_l / ∂(x, y)) its covariance is
+/// with all derivatives analytic (the left intrinsics through x: δx = −P⁻¹ ∂project_l δa,
+/// P = ∂project_l / ∂(x, y)). Its covariance is
 ///
 ///     J_a C J_aᵀ + J_p C_p J_pᵀ + σ_c² I
 ///
-/// of the rig's C, the left corner's C_p and σ_c, `corner_sigma_px`. The distance to the curve is
-/// the least over ρ of Mahalanobis' with the right corner's covariance added: χ² of one degree of
-/// freedom beside the curve, of two beyond its ends. Errors of the rig are common to all corners of
-/// an image, so the rate at which the truth lies outside a gate holds over rigs, not over the
-/// corners of one.
+/// with C of the rig, C_p of the left corner, and σ_c = `corner_sigma_px`. The distance to the
+/// curve is the minimum over ρ of the Mahalanobis distance with the right corner's covariance
+/// added: χ² with one degree of freedom beside the curve and two beyond its ends. Rig errors are
+/// common to all corners of an image, so the gate's miss rate holds over rigs, not over the corners
+/// of one rig.
 class EpipolarBand {
  public:
-  /// Throws Error unless the rig is a pair, the covariance is of its parameters and the options are
-  /// above 0 (the corners' sigma may be 0).
+  /// Throws Error unless the rig has two cameras, the covariance has the size of its parameters,
+  /// and the options are above 0 (`corner_sigma_px` may be 0).
   EpipolarBand(const Rig& rig, const Eigen::MatrixXd& covariance, const BandOptions& options = {});
 
-  /// The curve of a left corner, in steps straight to a tenth of a pixel, as far as it is within
-  /// half an image's size of the right image. Empty where the pixel has no ray.
+  /// The curve of a left corner as a polyline accurate to a tenth of a pixel, clipped to half an
+  /// image size around the right image. Empty if the pixel cannot be unprojected.
   std::vector<BandNode> curve(const UncertainPixel& left) const;
 
  private:
@@ -76,12 +78,12 @@ class EpipolarBand {
   BandOptions options_;
 };
 
-/// Distance of a right corner to the curve between node i − 1 and node i, i > 0.
+/// Distance of a right corner to the curve between nodes i − 1 and i, i > 0.
 BandDistance distance_to_step(const std::vector<BandNode>& curve,
                               std::size_t i,
                               const UncertainPixel& right);
 
-/// To the whole curve: the least.
+/// Minimum distance of a right corner to the whole curve.
 BandDistance distance_to_curve(const std::vector<BandNode>& curve, const UncertainPixel& right);
 
 }  // namespace vernier::stereo::internal

@@ -15,7 +15,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-/// The gradient's filter: a sampled Gaussian, and its central difference.
+/// The gradient filter: a sampled Gaussian, and its central difference.
 struct GradientFilter {
   explicit GradientFilter(double scale_px) {
     const int radius = static_cast<int>(std::ceil(4 * scale_px));
@@ -40,7 +40,7 @@ struct Gradients {
   cv::Mat x, y;
 };
 
-/// Products of the gradient under the window, and Harris' response.
+/// Windowed products of the gradient, and the Harris response.
 struct StructureTensor {
   StructureTensor(const Gradients& g, const HarrisOptions& options) : k(options.k) {
     const int radius = static_cast<int>(std::ceil(4 * options.integration_scale_px));
@@ -65,8 +65,8 @@ struct Peak {
   double strength = 0;
 };
 
-/// Whether no neighbour is stronger; of equal ones the first in reading order is the peak. The
-/// nearest rows are asked first, for most pixels fail there.
+/// Whether no neighbour is stronger; the first in reading order if tied. The nearest rows are
+/// tested first, because most pixels fail there.
 bool is_peak(const cv::Mat& r, int x, int y, int radius) {
   const float own = r.at<float>(y, x);
   for (int row = 0; row <= 2 * radius; ++row) {
@@ -96,7 +96,7 @@ std::vector<Peak> peaks(const cv::Mat& r, const HarrisOptions& options) {
   return found;
 }
 
-/// Every part's strongest first, up to its share of the count; then the rest.
+/// Each cell's strongest first, up to its part of the count; then the rest.
 std::vector<Peak> spread(const std::vector<Peak>& sorted,
                          cv::Size size,
                          const HarrisOptions& options) {
@@ -113,7 +113,7 @@ std::vector<Peak> spread(const std::vector<Peak>& sorted,
   return first;
 }
 
-/// Peak of the parabola through three values, from the middle one, and its derivatives by them.
+/// Peak of the parabola through three values, relative to the middle one, and its derivatives.
 struct Vertex {
   Vertex(double before, double at, double after) {
     const double bend = before - 2 * at + after;
@@ -128,7 +128,7 @@ struct Vertex {
   double offset = 0, by_values[3] = {0, 0, 0};
 };
 
-/// Förstner's point about a peak of the response.
+/// Förstner's point around a peak of the response.
 class PointFit {
  public:
   PointFit(const Gradients& g,
@@ -158,8 +158,8 @@ class PointFit {
     return centre_ + shift_;
   }
 
-  /// σ² Σ_q c_q c_qᵀ with c_q = ∂p / ∂I_q: derivatives by the gradients, through the gradient's
-  /// filter once more.
+  /// σ² Σ_q c_q c_qᵀ with c_q = ∂p / ∂I_q: derivatives by the gradients, passed through the
+  /// gradient filter again.
   Eigen::Matrix2d covariance(const GradientFilter& filter, double noise) const {
     if (noise == 0) return Eigen::Matrix2d::Zero();
     const int margin = filter.reach(), size = 2 * (half_ + margin) + 1;
@@ -213,8 +213,8 @@ class PointFit {
     return inverse_ * sum;
   }
 
-  /// ∂c / ∂g of the gradient at the peak's pixel (i, j): through the responses of the parabolas,
-  /// with ∂R = (yy − 2k tr) ∂xx + (xx − 2k tr) ∂yy − 2 xy ∂xy.
+  /// ∂c / ∂g of the gradient at the peak's pixel (i, j), through the responses that enter the
+  /// parabolas, with ∂R = (yy − 2k tr) ∂xx + (xx − 2k tr) ∂yy − 2 xy ∂xy.
   Eigen::Matrix2d centre_by_gradient(int i, int j, const Eigen::Vector2d& g) const {
     Eigen::Matrix2d by_gradient = Eigen::Matrix2d::Zero();
     for (int axis = 0; axis < 2; ++axis) {
@@ -237,7 +237,7 @@ class PointFit {
     return at < 0 || at >= tensor_.window.rows ? 0 : tensor_.window.at<float>(at);
   }
 
-  /// visit(i, j, pixel less the window's centre, gradient), i and j from the peak's pixel.
+  /// visit(i, j, pixel minus window centre, gradient), i and j relative to the peak's pixel.
   template <class Visit>
   void for_window(Visit visit) const {
     for (int j = -half_; j <= half_; ++j) {
@@ -258,11 +258,11 @@ class PointFit {
   double scale_;
   int half_;
   Vertex vertex_[2];
-  Eigen::Vector2d centre_, shift_;  ///< of the window, and to the point
+  Eigen::Vector2d centre_, shift_;  ///< of the window, and from it to the point
   Eigen::Matrix2d inverse_;         ///< M⁻¹
 };
 
-/// Two peaks may have one point.
+/// Two peaks may have the same refined point.
 bool is_new(const std::vector<ImageCorner>& corners, const Eigen::Vector2d& point) {
   return std::none_of(corners.begin(), corners.end(), [&](const ImageCorner& corner) {
     return (corner.pixel_px - point).squaredNorm() < 1;

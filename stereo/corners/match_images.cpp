@@ -32,8 +32,8 @@ FilesByNumber by_number(const std::vector<std::filesystem::path>& files) {
     const auto [at, is_new] = numbered.emplace(number, file);
     if (!is_new) {
       throw Error(file.string(),
-                  "it has the number " + std::to_string(number) + " of " + at->second.string(),
-                  "give each image of a camera a last number of its own in its name");
+                  "has the same number " + std::to_string(number) + " as " + at->second.string(),
+                  "make the last number in each camera's file names unique");
     }
   }
   return numbered;
@@ -43,10 +43,10 @@ void check_all_paired(const FilesByNumber& own, const FilesByNumber& others, con
   for (const auto& [number, file] : own) {
     if (others.count(number)) continue;
     throw Error(file.string(),
-                std::string("no ") + side + " image has its number " + std::to_string(number) +
-                    " (" + std::to_string(own.size()) + " images against " +
-                    std::to_string(others.size()) + ")",
-                "the last number in a name is the pair; give simultaneous images the same");
+                std::string("no ") + side + " image has the number " + std::to_string(number) +
+                    " (" + std::to_string(own.size()) + " images here, " +
+                    std::to_string(others.size()) + " on the other side)",
+                "images of one pair must have the same last number in their names");
   }
 }
 
@@ -57,10 +57,10 @@ cv::Mat read_image(const std::filesystem::path& file,
   if (Eigen::Vector2i(grey.cols, grey.rows) != camera.size_px) {
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     throw Error(file.string(),
-                "its size " + size(grey.cols, grey.rows) + " is not that of the camera \"" +
-                    camera.name + "\" of " + prior_place + ", " +
+                "the size " + size(grey.cols, grey.rows) + " differs from that of camera \"" +
+                    camera.name + "\" in " + prior_place + ", " +
                     size(camera.size_px[0], camera.size_px[1]),
-                "give images as the prior's cameras take them, or the prior of these");
+                "use images and a prior of the same cameras");
   }
   return grey;
 }
@@ -87,9 +87,8 @@ ImageMatching match_images(const ImageFiles& files,
   const Covariance& covariance = required_covariance(prior, prior_place);
   if (prior.rig.cameras.size() != 2) {
     throw Error(prior_place,
-                "it is a rig of " + std::to_string(prior.rig.cameras.size()) +
-                    " cameras; corners are matched between two",
-                "give the prior of the two that took the images");
+                "the rig has " + std::to_string(prior.rig.cameras.size()) + " cameras instead of 2",
+                "use the rig of the two cameras that took the images");
   }
   const EpipolarBand band(prior.rig, covariance.matrix, options.band);
   HarrisOptions harris{.count = options.corners, .cells = options.cells};

@@ -13,44 +13,44 @@
 
 namespace vernier::stereo::internal {
 
-/// Two simultaneous images.
+/// Two images taken at the same time.
 struct ImageFiles {
   int number = 0;
   std::filesystem::path left, right;
 };
 
-/// The files that two patterns match, paired by the last number in their names, ascending; one file
-/// a side is a pair whatever its name. Throws Error naming the file where one has no partner or
-/// shares its number with another of its side.
+/// Files matching two glob patterns, paired by the last number in their names, in ascending order;
+/// a single file per side forms a pair whatever its name. Throws Error naming the file if an image
+/// has no partner or two images of one side have the same number.
 std::vector<ImageFiles> paired_images(const std::string& left, const std::string& right);
 
 struct ImageMatchingOptions {
-  int corners = 400;  ///< at most, in the left image; the right one may have half as many again
-  int cells = 0;      ///< corners spread evenly over cells x cells parts of the image; 0: not
+  int corners = 400;  ///< maximum in the left image; the right image may have half as many more
+  int cells = 0;      ///< distributes corners evenly over a grid of cells x cells; 0: off
   BandOptions band;
   CornerMatchingOptions matching;
 };
 
-/// What became of an image pair.
+/// Result of matching an image pair.
 struct ImageMatching {
   ImageFiles files;
   int corners_left = 0, corners_right = 0;
-  double noise_left = 0, noise_right = 0;  ///< standard deviation, grey values
-  long candidates = 0;                     ///< pairs of corners that the prior lets be one
+  double noise_left = 0, noise_right = 0;  ///< standard deviation, grey levels
+  long candidates = 0;                     ///< corner pairs within the epipolar gate
   std::vector<CornerMatch> matches;
 };
 
-/// Matches the corners of an image pair (stereo/corners/corner_matching.h), searching where a prior
-/// of the rig says. The left image's corners may be near the weakest of the right one's, which is
-/// why the right image gets more. Throws Error for files that are no images or not of the size of
-/// the prior's cameras (`prior_place` is the prior's name in messages), and where it has no
-/// covariance.
+/// Matches the corners of an image pair (stereo/corners/corner_matching.h) within the epipolar
+/// bands of a prior rig. The partner of a left corner may be among the weakest in the right image,
+/// so the right image gets more corners. `prior_place` names the prior in error messages. Throws
+/// Error for files that are not images, image sizes other than those of the prior's cameras, and a
+/// prior without covariance.
 ImageMatching match_images(const ImageFiles& files,
                            const RigEstimate& prior,
                            const std::string& prior_place,
                            const ImageMatchingOptions& options = {});
 
-/// The matches as observations of image pair files.number, appended.
+/// Appends the matches as observations of image pair files.number.
 void add_matches(PairObservations& pairs, const ImageMatching& matching);
 
 }  // namespace vernier::stereo::internal

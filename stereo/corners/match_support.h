@@ -8,10 +8,10 @@
 
 namespace vernier::stereo::internal {
 
-/// The matches that enough of their nearest neighbours agree with: displacements right − left
-/// differ by at most a pixel or `support_slope` of the distance in the left image, which is a limit
-/// on the disparity gradient (Pollard, Mayhew and Frisby 1985). All of them where there are no more
-/// than `neighbours`.
+/// Matches consistent with at least `support` of their nearest neighbours: displacements right −
+/// left differ by at most a pixel or `support_slope` times the distance in the left image, a limit
+/// on the disparity gradient (Pollard, Mayhew and Frisby 1985). Returns all matches if there are no
+/// more than `neighbours`.
 std::vector<CornerMatch> supported(const std::vector<CornerMatch>& matches,
                                    const CornerMatchingOptions& options);
 

@@ -25,15 +25,15 @@ using namespace internal;
 
 namespace {
 
-constexpr int strip = 48;  // rows at a time, for the processor's cache
+constexpr int strip = 48;  // rows at a time, for cache locality
 
 enum GradientPeak : int { no_peak = 0, weak_peak = 1, sharp_peak = 2 };
 
-/// For every pixel of a row whether its |g| is at least `low` and the largest along g: larger than
-/// on the one side and no smaller than on the other, by interpolation between the two pixels that g
-/// passes one row (or column, whichever g is steeper to) away. A sharp peak is so along that row or
-/// column too: a straight edge has one in each. All products with |g_x| or |g_y|, so that nothing
-/// is divided, and no branches, so that the compiler makes vectors.
+/// For every pixel of a row, whether its |g| is at least `low` and a maximum along g: larger than
+/// on one side and no smaller than on the other, interpolated between the two pixels that g crosses
+/// one row away (or column, whichever g is steeper to). A sharp peak is a maximum along that row or
+/// column too, so a straight edge has one in each. All values are multiplied by |g_x| or |g_y|
+/// instead of divided, and there are no branches, so that the compiler can vectorise it.
 void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::vector<int>& found) {
   const float* const gx = gradient.x.ptr<float>(row);
   const float* const gy = gradient.y.ptr<float>(row);
@@ -45,7 +45,7 @@ void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::ve
     const float nw = above[x - 1], n = above[x], ne = above[x + 1], w = at[x - 1], own = at[x],
                 e = at[x + 1], sw = below[x - 1], s = below[x], se = below[x + 1];
     const float along_x = std::abs(gx[x]), along_y = std::abs(gy[x]);
-    const bool falls = gx[x] * gy[x] >= 0;  // g is to the right and down, or to the left and up
+    const bool falls = gx[x] * gy[x] >= 0;  // g points right and down, or left and up
     const bool steep = along_x < along_y;
     const float major = std::max(along_x, along_y), minor = std::min(along_x, along_y);
     const float one = steep ? s : e, other = steep ? n : w;
@@ -61,11 +61,12 @@ void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::ve
   }
 }
 
-/// Whether the eight neighbours that are peaks (bits, clockwise from the upper left) hang together
-/// without the pixel, and one of the four nearest is none: then it is not needed.
+/// Whether the neighbouring peaks among the eight (bits, clockwise from the upper left) stay
+/// connected without the pixel, and one of the four nearest is not a peak: then the pixel is
+/// redundant.
 constexpr bool is_spare(unsigned neighbours) {
   const auto set = [&](unsigned k) { return (neighbours >> (k % 8) & 1U) != 0; };
-  int groups = 0;  // runs around; a corner's neighbours on either side touch each other
+  int groups = 0;  // runs around; the two neighbours of a corner touch each other
   for (unsigned k = 0; k < 8; k += 2) {
     const bool side = set(k + 1);
     if (!side && (set(k + 2) || set(k + 3))) ++groups;
@@ -80,7 +81,7 @@ constexpr std::array<bool, 256> spare_table() {
   return table;
 }
 
-/// Peaks of |g| across edges, row by row, and which of them are connected.
+/// Peaks of |g| across edges, row by row, and their connections.
 class PeakFinder {
  public:
   PeakFinder(cv::Size size, const CannyOptions& options)
@@ -94,12 +95,12 @@ class PeakFinder {
         string_above_(size.width, -1),
         string_(string_above_) {}
 
-  /// No points nearer to the image's border, where what is beyond it would displace them.
+  /// No points close to the image border, where the replicated border would displace them.
   static int border_px(const CannyOptions& options) {
     return std::max(2, static_cast<int>(std::ceil(2 * options.scale_px)));
   }
 
-  /// Rows have to come one after the other from the border on, with the gradient of two more.
+  /// Rows must be processed in order from the border on, with the gradient of two more rows.
   void add_row(const GradientRows& gradient, int y, std::vector<EdgePoint>& peaks) {
     for (; next_row_ <= y + 1; ++next_row_) read(gradient, next_row_);
     thin();
@@ -133,7 +134,7 @@ class PeakFinder {
     std::fill(below_.end() - border_, below_.end(), no_peak);
   }
 
-  /// Weak peaks, beside sharp ones along slanted edges, stay only where they connect others.
+  /// Weak peaks beside sharp ones along slanted edges are kept only where they connect others.
   void thin() {
     static constexpr std::array<bool, 256> spare = spare_table();
     for (int x = border_; x < size_.width - border_; ++x) {
@@ -154,8 +155,8 @@ class PeakFinder {
   ConnectedSets sets_;
 };
 
-/// Keeps the points of strings with a strong one and enough of them, and numbers the strings in the
-/// order of their first points.
+/// Keeps the edges with a strong point and enough points, and numbers them in the order of their
+/// first points.
 void keep_strings(ConnectedSets& sets,
                   const CannyOptions& options,
                   std::vector<EdgePoint>& points) {
@@ -185,19 +186,19 @@ void check(const GreyLevels& image, const CannyOptions& options) {
   const auto values = static_cast<std::size_t>(std::max(0, image.width_px)) *
                       static_cast<std::size_t>(std::max(0, image.height_px));
   if (image.width_px < 0 || image.height_px < 0 || image.values.size() != values) {
-    throw Error("canny_edges", "the image's values do not fill its size",
-                "give width times height of them");
+    throw Error("canny_edges", "the number of values does not match the image size",
+                "give width x height values");
   }
   int not_finite = 0;
   for (const float value : image.values) not_finite |= static_cast<int>(!std::isfinite(value));
   if (not_finite != 0) {
-    throw Error("canny_edges", "a grey level is not finite", "give numbers from 0 to 255");
+    throw Error("canny_edges", "a grey level is not finite", "use 0 to 255");
   }
   if (!(options.scale_px >= 0.5 && options.scale_px <= 20)) {
-    throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "choose one near 1 px");
+    throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "use e.g. 1 px");
   }
   if (!(options.low > 0 && options.high >= options.low)) {
-    throw Error("canny_edges", "the thresholds are not 0 < low <= high", "choose 2 and 5, say");
+    throw Error("canny_edges", "the thresholds are not 0 < low <= high", "use e.g. 2 and 5");
   }
 }
 

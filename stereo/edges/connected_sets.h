@@ -7,7 +7,7 @@
 
 namespace vernier::stereo::internal {
 
-/// Sets of things numbered from 0 on, joined one after the other; a set is named by its first.
+/// Union-find over indices from 0; the root of a set is its smallest index.
 class ConnectedSets {
  public:
   int add() {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int max_spur_points = 2;
 
-/// Which points are neighbours.
+/// The neighbours of each point.
 class Neighbours {
  public:
   explicit Neighbours(const std::vector<EdgePoint>& points) : of_(points.size()) {
@@ -31,7 +31,7 @@ class Neighbours {
 
   int count(int i) const { return of_[i].count; }
   int operator()(int i, int k) const { return of_[i].points[k]; }
-  /// The neighbour of a point of two that is not `other`.
+  /// The other neighbour of a point that has two.
   int beyond(int i, int other) const { return of_[i].points[of_[i].points[0] == other ? 1 : 0]; }
 
   void unlink(int a, int b) {
@@ -121,7 +121,7 @@ std::vector<EdgeChain> edge_chains(const std::vector<EdgePoint>& points) {
       if (!chain.points.empty()) chains.push_back(std::move(chain));
     }
   }
-  for (int i = 0; i < count; ++i) {  // what is left is closed
+  for (int i = 0; i < count; ++i) {  // the remaining chains are closed
     if (done[i] || neighbours.count(i) != 2) continue;
     EdgeChain chain;
     chain.closed = true;

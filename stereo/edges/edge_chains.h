@@ -8,16 +8,16 @@
 
 namespace vernier::stereo::internal {
 
-/// Edge points in the order in which an edge passes through them, by their places in the list.
+/// Edge points in order along an edge, as indices into the list of points.
 struct EdgeChain {
   std::vector<int> points;
-  bool closed = false;  ///< the last is a neighbour of the first
+  bool closed = false;  ///< the last point is a neighbour of the first
 };
 
-/// The points of edges (sorted by (y, x), one a pixel), in order. Neighbours are points in
-/// 4-neighbouring pixels, and in diagonal ones where no 4-neighbour of both is a point, whose
-/// normals are less than 90° apart. A point of three and more neighbours is a junction, where
-/// chains end and which is in none of them; a spur of one or two points is none.
+/// Orders edge points (sorted by (y, x), one per pixel) into chains. Neighbours are points in
+/// 4-neighbouring pixels, and in diagonal pixels that share no 4-neighbouring point, with normals
+/// less than 90° apart. A point with three or more neighbours is a junction: chains end there and
+/// do not include it. Spurs of one or two points are dropped.
 std::vector<EdgeChain> edge_chains(const std::vector<EdgePoint>& points);
 
 }  // namespace vernier::stereo::internal

@@ -8,31 +8,31 @@
 
 namespace vernier::stereo::internal {
 
-/// A straight edge's place to look at, and its way.
+/// A query position on a straight edge.
 struct EdgePlace {
-  Eigen::Vector2d at_px, normal;  ///< the normal is unit, towards the brighter side
+  Eigen::Vector2d at_px, normal;  ///< unit normal, towards the brighter side
 };
 
-/// How far an edge point may be from a place to be the same edge.
+/// Maximum distance and rotation of an edge point that belongs to the same edge.
 struct EdgeGate {
   double across_px = 2, along_px = 1;
-  double turned_rad = 0.44;  ///< 25°, of the normals
+  double turned_rad = 0.44;  ///< 25°, between the normals
 };
 
-/// An edge point beside a place.
+/// An edge point near a query position.
 struct EdgeNeighbour {
   int point = -1;        ///< −1: none
-  double across_px = 0;  ///< from the place towards the brighter side
+  double across_px = 0;  ///< from the query position towards the brighter side
 };
 
-/// Finds edge points by their place. Keeps a reference to the points, sorted by (y, x).
+/// Finds edge points by position. Keeps a reference to the points, sorted by (y, x).
 class EdgeNeighbours {
  public:
   explicit EdgeNeighbours(const std::vector<EdgePoint>& points);
 
-  /// The one in the gate that is nearest across. How far its edge is off is the mean of those of
-  /// its string in the gate and within 1 px of it: the nearest one's own distance is too small, for
-  /// it was chosen by its noise.
+  /// The point within the gate that is nearest across the edge. The distance across is the mean
+  /// over the points of its connected edge within the gate and within 1 px of it: the nearest
+  /// point's own distance is biased towards 0, because it was selected by its noise.
   EdgeNeighbour nearest(const EdgePlace& place, const EdgeGate& gate) const;
 
  private:

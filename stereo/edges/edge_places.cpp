@@ -14,9 +14,10 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr float min_ratio = 0.1F;        // of a neighbour's gradient to the peak's
-constexpr float min_curvature = 0.005F;  // of log |g|, that of a step blurred by 14 px
-constexpr float max_offset = 0.75F;      // of a pixel along the nearer axis
+constexpr float min_ratio = 0.1F;  // minimum ratio of a neighbour's gradient to the peak's
+// Minimum curvature of log |g|: that of a step blurred by 14 px.
+constexpr float min_curvature = 0.005F;
+constexpr float max_offset = 0.75F;  // in pixels along the nearer axis
 
 /// Σ_u a(u) b(u + shift)
 double correlation(const std::vector<double>& a, const std::vector<double>& b, int shift) {
@@ -30,11 +31,11 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b, i
 
 }  // namespace
 
-/// One number a point each.
+/// One number per point.
 struct EdgePlaces::Batch {
   Lanes nx, ny;                 ///< normal
   Lanes strength;               ///< |g| at the pixel
-  std::array<Lanes, 9> ratio;   ///< |g_i| to that of the pixel
+  std::array<Lanes, 9> ratio;   ///< |g_i| relative to that of the pixel
   std::array<Lanes, 9> by_log;  ///< ∂t / ∂log |g_i|
   Lanes offset, standard_deviation;
 };

@@ -11,19 +11,19 @@
 
 namespace vernier::stereo::internal {
 
-/// Where the edges are in the pixels that the gradient is largest in, across it: the peak along the
-/// normal n of the quadratic that fits log |g| in 3 x 3 pixels best, and the standard deviation
-/// that the image's white noise gives it (canny_edges.h).
+/// Sub-pixel edge positions within the pixels of maximum gradient: the peak along the normal n of
+/// the least squares quadratic through log |g| in 3 x 3 pixels, and its standard deviation under
+/// white image noise (canny_edges.h).
 class EdgePlaces {
  public:
-  /// `noise` in grey levels; if it is not a number, nor are the standard deviations.
+  /// `noise` in grey levels; NaN gives NaN standard deviations.
   EdgePlaces(const GradientKernel& kernel, double noise);
 
-  /// Fills in all but the string of points that have a pixel, within the gradient's rows.
+  /// Sets everything but the `string` of points that have a pixel, within the gradient's rows.
   void place(const GradientRows& gradient, std::span<EdgePoint> points) const;
 
  private:
-  static constexpr int lanes = 16;  ///< points at a time, for the compiler to make vectors of
+  static constexpr int lanes = 16;  ///< points per batch, for vectorisation
   using Lanes = std::array<float, lanes>;
   struct Batch;
 
@@ -32,8 +32,8 @@ class EdgePlaces {
   void propagate(Batch& batch) const;
 
   float noise_;
-  /// Noise of the gradients at two pixels, products of their components xx, xy + yx and yy, by
-  /// their distance (dx, dy) at [dy * 5 + dx + 2]; both signs of it in one.
+  /// Noise covariance of the gradients at two pixels, components xx, xy + yx and yy, by their
+  /// offset (dx, dy) at [dy * 5 + dx + 2]; both signs of it combined.
   std::array<std::array<float, 3>, 15> correlation_;
 };
 

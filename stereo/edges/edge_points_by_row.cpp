@@ -20,7 +20,8 @@ class RowScan {
     end_ = points.row_begin[static_cast<std::size_t>(row) + 1];
   }
 
-  /// Within `reach` pixels of x, the right one of two; −1: none. x does not fall between calls.
+  /// Within `reach` pixels of x, the right one if tied; −1: none. x must not decrease between
+  /// calls.
   int nearest(int x, int reach) {
     while (at_ < end_ && x_[at_] < x) ++at_;
     const int after = at_ < end_ ? x_[at_] - x : reach + 1;
@@ -34,8 +35,8 @@ class RowScan {
   int begin_ = 0, end_ = 0, at_ = 0;
 };
 
-/// The neighbours above (step −1) or below (+1) of the points of a row: straight, where gaps of up
-/// to two rows are bridged, and on the diagonals.
+/// The neighbours above (step −1) or below (+1) of a row's points: straight, bridging gaps of up to
+/// two rows, and diagonal.
 void find_across(PointsByRow& points, int row, int step) {
   RowScan next(points, row + step), second(points, row + 2 * step), third(points, row + 3 * step),
       left(points, row + step), right(points, row + step);

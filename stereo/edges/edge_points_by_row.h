@@ -7,21 +7,21 @@
 
 namespace vernier::stereo::internal {
 
-/// Points of an image in the order of (y, x), at most one a pixel, and which of them support each
-/// other: along the row, up and down, and on both diagonals, to the nearest in reach.
+/// Points of an image sorted by (y, x), at most one per pixel, and their support neighbours: the
+/// nearest within reach along the row, up and down, and on both diagonals.
 struct PointsByRow {
   std::vector<int> x, y;
-  std::vector<int> row_begin;  ///< of every row and the end
+  std::vector<int> row_begin;  ///< first index of every row, and the end
 
   /// Neighbours left, above, above left, above right; then right, below, below right, below left.
-  /// −1 where there is none in reach.
+  /// −1: none within reach.
   std::vector<std::array<int, 8>> neighbours;
 
   int size() const { return static_cast<int>(x.size()); }
   double distance_px(int a, int b) const;
 };
 
-/// `x` and `y` are of the same length and in order.
+/// `x` and `y` have the same length and are sorted by (y, x).
 PointsByRow points_by_row(std::vector<int> x, std::vector<int> y, int height_px);
 
 }  // namespace vernier::stereo::internal

@@ -19,11 +19,11 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double end_sigma_px = 3;       // along the line, of an end that is no corner
-constexpr double corner_reach_px = 8;    // from a segment's last point to the corner
-constexpr double corner_sigma_px = 0.5;  // a corner less well known than this is none
+constexpr double end_sigma_px = 3;     // along the line, of an end that is not a corner
+constexpr double corner_reach_px = 8;  // maximum distance of a segment's last point from the corner
+constexpr double corner_sigma_px = 0.5;  // maximum standard deviation of a corner
 
-/// A closed chain from where it turns most, so that no side is cut in two.
+/// Rotates a closed chain to begin where it turns most, so that no side is cut in two.
 void start_at_a_corner(const std::vector<EdgePoint>& points, std::vector<int>& chain) {
   const std::size_t size = chain.size();
   constexpr std::size_t step = 3;
@@ -46,7 +46,7 @@ struct End {
   bool is_corner = false;
 };
 
-/// Where two lines meet, if near both ends and well known.
+/// Intersection of two lines, if near both ends and accurate enough.
 std::optional<End> corner_of(const EdgeLine& one,
                              const Eigen::Vector2d& one_end,
                              const EdgeLine& other,
@@ -107,7 +107,7 @@ class ChainSegments {
   }
 
  private:
-  /// An end that is no corner.
+  /// An end that is not a corner.
   End plain_end(const EdgeLine& line, int point) const {
     const double along = line.along(points_[point].pixel_px.cast<double>());
     return {line.at(along),
@@ -132,22 +132,22 @@ void check(const std::vector<EdgePoint>& points, const EdgeSegmentOptions& optio
     return a.y > b.y || (a.y == b.y && a.x >= b.x);
   };
   if (std::adjacent_find(points.begin(), points.end(), not_after) != points.end()) {
-    throw Error("edge_segments", "the points are not sorted by y, then x, one a pixel",
-                "give them as canny_edges returns them");
+    throw Error("edge_segments", "the points are not sorted by y, then x, with one per pixel",
+                "use the order of canny_edges");
   }
   if (!points.empty() &&
       (points.front().y < 0 || std::any_of(points.begin(), points.end(),
                                            [](const EdgePoint& point) { return point.x < 0; }))) {
-    throw Error("edge_segments", "a point's pixel is negative", "number pixels from 0");
+    throw Error("edge_segments", "a point has a negative pixel", "count pixels from 0");
   }
   if (!(options.max_rms_px > 0)) {
-    throw Error("edge_segments", "the largest rms is not above 0 px", "choose 0.15 px, say");
+    throw Error("edge_segments", "max_rms_px is not above 0", "use e.g. 0.15 px");
   }
   if (options.min_points < 4) {
-    throw Error("edge_segments", "fewer than 4 points make no segment", "choose 8, say");
+    throw Error("edge_segments", "a segment needs at least 4 points", "use e.g. 8");
   }
   if (!(options.scale_px > 0)) {
-    throw Error("edge_segments", "the scale is not above 0 px", "give that of canny_edges");
+    throw Error("edge_segments", "the scale is not above 0 px", "use that of canny_edges");
   }
 }
 

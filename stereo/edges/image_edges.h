@@ -11,19 +11,19 @@
 
 namespace vernier::stereo::internal {
 
-/// The edges of an image and the straight pieces of them.
+/// Edge points and straight segments of an image.
 struct ImageEdges {
   int width_px = 0, height_px = 0;
   std::vector<EdgePoint> points;      ///< sorted by (y, x)
-  std::vector<EdgeSegment> segments;  ///< of these points
+  std::vector<EdgeSegment> segments;  ///< refer to `points`
 };
 
-/// Those of an image. Throws Error as canny_edges and edge_segments do.
+/// Detects both. Throws Error as canny_edges and edge_segments do.
 ImageEdges image_edges(const GreyLevels& image,
                        const CannyOptions& canny = {},
                        const EdgeSegmentOptions& segments = {});
 
-/// The segment that each point is of; −1: none.
+/// Index of the segment that each point belongs to; −1: none.
 std::vector<int> segment_of_points(const ImageEdges& edges);
 
 }  // namespace vernier::stereo::internal

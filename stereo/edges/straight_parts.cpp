@@ -13,10 +13,10 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double min_cosine = 0.7;      // of a point's normal to the mean of its part
-constexpr int min_break_points = 2;     // on either side of a break
-constexpr int max_rounding_points = 4;  // at an end, left out to know the line of the others
-constexpr double max_deviations = 3;    // of a point at an end from that line
+constexpr double min_cosine = 0.7;   // minimum, between a point's normal and the mean of its part
+constexpr int min_break_points = 2;  // on either side of a break
+constexpr int max_rounding_points = 4;  // at an end, excluded to fit the line of the others
+constexpr double max_deviations = 3;    // maximum, of a point at an end from that line
 
 class StraightParts {
  public:
@@ -47,14 +47,14 @@ class StraightParts {
   }
 
  private:
-  /// From the first point of the chain, for precision.
+  /// Relative to the first point of the chain, for precision.
   Eigen::Vector2d place(int i) const {
     return (points_[chain_[i]].pixel_px - points_[chain_[0]].pixel_px).cast<double>();
   }
 
   LineRegression regression(int begin, int end) const { return sums_[end].since(sums_[begin]); }
 
-  /// Empty where not even the fewest points are straight.
+  /// Empty if not even the minimum number of points is straight.
   ChainPart grow(int begin) const {
     const int size = static_cast<int>(chain_.size()), least = begin + options_.min_points;
     Eigen::Vector2d brighter(0, 0);
@@ -68,7 +68,7 @@ class StraightParts {
     return {begin, end >= least ? end : begin};
   }
 
-  /// Neighbours only.
+  /// Between adjacent parts only.
   void move_break(ChainPart& part, ChainPart& next) const {
     if (next.begin - part.end > options_.min_points) return;
     int best = part.end;
@@ -85,8 +85,8 @@ class StraightParts {
     if (least >= 0) part.end = next.begin = best;
   }
 
-  /// Two points in a row, so that one of large noise is none. Where little would be left the edge
-  /// is a curve, and all stay.
+  /// Two consecutive points, so that a single noisy one is not taken for rounding. If little would
+  /// be left the edge is a curve, and all points are kept.
   ChainPart without_rounding(const ChainPart& all) const {
     ChainPart part = all;
     for (int pass = 0; pass < 3; ++pass) {

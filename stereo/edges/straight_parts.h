@@ -10,17 +10,17 @@
 
 namespace vernier::stereo::internal {
 
-/// A part of a chain of points, [begin, end).
+/// A range [begin, end) of a chain of points.
 struct ChainPart {
   int begin = 0, end = 0;
   int size() const { return end - begin; }
 };
 
-/// The straight parts of a chain of edge points, in its order. From the first point on each grows
-/// while the rms of its orthogonal regression is below the threshold, its normals within 45° of
-/// their mean; then the next begins. As growing runs past a corner, the break between two parts is
-/// then moved to where the squares of both together are least, and points at the ends that are off
-/// the line of the inner ones, in the rounding of a corner, are left out.
+/// Splits a chain of edge points into straight parts, in order. A part grows from its first point
+/// while the RMS distance from its orthogonal regression line is below the threshold and its
+/// normals are within 45° of their mean; then the next begins. Since growing overshoots corners,
+/// the break between two parts is then moved to minimise the sum of squares of both, and end points
+/// off the line of the inner ones (rounded corners) are removed.
 std::vector<ChainPart> straight_parts(const std::vector<EdgePoint>& points,
                                       std::span<const int> chain,
                                       const EdgeSegmentOptions& options);

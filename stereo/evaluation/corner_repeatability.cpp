@@ -18,7 +18,7 @@ namespace {
 
 constexpr double displaced_px = 12;
 
-/// The truth at corners takes them for points of edges.
+/// Looks up the truth at corners as if they were edge points.
 std::vector<TruthAtEdge> truth_at_corners(const std::vector<Eigen::Vector2d>& corners_px,
                                           const StereoTruth& truth) {
   std::vector<EdgePoint> points;

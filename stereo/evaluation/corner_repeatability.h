@@ -10,32 +10,33 @@
 namespace vernier::stereo::internal {
 
 struct CornerRepeatOptions {
-  double within_px = 1.5;  ///< a right corner this near to where the truth puts it is the same one
-  double border_px = 12;   ///< what falls nearer to the right image's border is not asked for
+  double within_px = 1.5;  ///< maximum distance of a right corner from the true position
+  double border_px = 12;   ///< true positions closer to the right image border are skipped
 };
 
-/// Whether the right image has a corner for a left one that it should show.
+/// Whether a left corner is detected again in the right image.
 struct CornerRepeatability {
   Eigen::Vector2d left_px;
   bool found = false;
-  double chance = 0;  ///< share of eight displacements by 12 px where some other corner is as near
+  /// Chance level: fraction of eight displacements by 12 px with another corner as near.
+  double chance = 0;
 };
 
-/// Left corners that the truth knows and the right image shows, against the right image's corners.
-/// At a step of the truth any disparity of the 3 x 3 pixels counts.
+/// Repeatability of the left corners with known ground truth that are visible in the right image.
+/// At a truth discontinuity any disparity of the 3 x 3 pixels counts.
 std::vector<CornerRepeatability> corner_repeatabilities(
     const std::vector<Eigen::Vector2d>& left_px,
     const std::vector<Eigen::Vector2d>& right_px,
     const StereoTruth& truth,
     const CornerRepeatOptions& options = {});
 
-/// How far a match is from where the truth puts the left corner.
+/// Distance of a match from the true position of its left corner.
 struct CornerError {
   Eigen::Vector2d left_px;
   double error_px = 0;
 };
 
-/// Of matches whose left corner the truth knows, those on occluded corners included.
+/// For matches whose left corner has known ground truth, occluded ones included.
 std::vector<CornerError> corner_errors(const std::vector<CornerMatch>& matches,
                                        const StereoTruth& truth);
 

@@ -16,7 +16,7 @@ namespace vernier::stereo::internal {
 namespace {
 
 constexpr std::array<double, 4> displacements_px = {-12, -8, 8, 12};
-constexpr double slack_px = 0.2;  // along: an edge has a point at every half of its spacing
+constexpr double slack_px = 0.2;  // along: an edge point is expected every half spacing
 
 class LossSearch {
  public:

@@ -14,7 +14,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-/// The right segment that holds the most of a left segment's points; −1: none holds enough.
+/// The right segment with the most points of a left segment; −1: none has enough.
 int partner_of(const WarpedSegment& left,
                const EdgeNeighbours& neighbours,
                const std::vector<int>& segment_of,

@@ -36,8 +36,8 @@ void check(const std::vector<DensityCurves>& scenes) {
                        [](const auto& curve) { return curve.empty(); });
   };
   if (!scenes.empty() && std::none_of(scenes.begin(), scenes.end(), is_bad)) return;
-  throw Error("equal density", "there is a scene without curves, or none",
-              "give a curve of both matchers, and of as many settings, on every scene");
+  throw Error("equal density", "no scenes, or a scene without curves",
+              "give one curve per matcher and setting for every scene");
 }
 
 Pair mean_of(const std::vector<std::vector<Pair>>& pairs,
@@ -53,10 +53,10 @@ Pair mean_of(const std::vector<std::vector<Pair>>& pairs,
   return {mean.density / n, mean.own / n, mean.peer / n};
 }
 
-/// Not a number where both are 0.
+/// NaN if both are 0.
 double ratio_of(const Pair& pair) { return pair.own / pair.peer; }
 
-/// The setting of the largest ratio.
+/// The setting with the largest ratio.
 std::size_t best_setting(const std::vector<std::vector<Pair>>& pairs,
                          std::span<const std::size_t> scenes) {
   std::size_t best = 0;

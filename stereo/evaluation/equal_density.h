@@ -11,25 +11,25 @@
 
 namespace vernier::stereo::internal {
 
-/// Errors against density of a matcher and of a peer's settings on one scene, densest first
+/// Error–density curves of a matcher and of a peer's settings on one scene, densest first
 /// (stereo/matcher_evaluation.h).
 struct DensityCurves {
   std::vector<CurvePoint> own;
-  std::vector<std::vector<CurvePoint>> peer;  ///< one curve for each setting
+  std::vector<std::vector<CurvePoint>> peer;  ///< one curve per setting
 };
 
-/// How two matchers' shares of errors above 1 px compare where both leave out as much.
+/// Fractions of errors above 1 px of two matchers at the same density.
 struct EqualDensity {
-  std::size_t setting = 0;  ///< of the peer: the one that compares best
+  std::size_t setting = 0;  ///< index of the peer's best setting
   double density = 0;       ///< mean over scenes
   double own_bad_1 = 0, peer_bad_1 = 0;
-  double ratio = 0;   ///< of the means, own over the peer's; infinite where the peer's alone is 0
-  Interval interval;  ///< of the ratio, scenes resampled, the best setting chosen anew; its upper
-                      ///< end may be infinite
+  double ratio = 0;  ///< mean of own over mean of peer; infinite if only the peer's is 0
+  /// 95 %; scenes are resampled and the best setting chosen anew; the upper end may be infinite.
+  Interval interval;
 };
 
-/// On each scene the density is the largest that both reach. Throws Error without scenes, or where
-/// they have different numbers of settings, or a curve is empty.
+/// On each scene the density is the largest that both reach. Throws Error for no scenes, unequal
+/// numbers of settings, and empty curves.
 EqualDensity at_equal_density(const std::vector<DensityCurves>& scenes,
                               const vernier::internal::BootstrapOptions& options = {});
 

@@ -23,8 +23,8 @@ std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const StereoTruth& truth,
                                     const LineMatchOptions& options) {
   if (found.size() != left.points.size()) {
-    throw Error("line matches", "edges and disparities are not of one number",
-                "give one disparity for every edge point");
+    throw Error("line matches", "edges and disparities differ in number",
+                "give one disparity per edge point");
   }
   const std::vector<TruthAtEdge> at = truth_at(truth, left.points);
   std::vector<LineMatch> lines;

@@ -11,22 +11,22 @@
 namespace vernier::stereo::internal {
 
 struct LineMatchOptions {
-  double min_angle_rad = 0.0873;  ///< segments nearer to the row (5°) are not asked
-  double min_share = 0.5;         ///< of a segment's points that have to be matched
+  double min_angle_rad = 0.0873;  ///< segments closer to horizontal (5°) are skipped
+  double min_share = 0.5;         ///< minimum fraction of a segment's points that must be matched
 };
 
-/// What a matcher made of a left segment as a whole.
+/// Match of a left segment as a whole.
 struct LineMatch {
-  Eigen::Vector2d left_px;  ///< its middle
-  double disparity_px = 0;  ///< true, the median of its points
-  bool matched = false;     ///< at least `min_share` of its points are
+  Eigen::Vector2d left_px;  ///< midpoint
+  double disparity_px = 0;  ///< ground truth, median of its points
+  bool matched = false;     ///< at least `min_share` of its points are matched
   double error_px = 0;      ///< median of |found − true disparity| of its matched points
-  bool occluded = false;    ///< the right image does not show most of its points
+  bool occluded = false;    ///< most of its points are not visible in the right image
 };
 
-/// Left segments of which the truth knows at least `min_share` of the points. An error at a step
-/// of the truth is to the nearest surface (DiscontinuityRule::either). `found` holds one for each
-/// point.
+/// One per left segment with known ground truth at `min_share` of its points or more. At a truth
+/// discontinuity the error is to the nearest surface (DiscontinuityRule::either). `found` has one
+/// entry per edge point.
 std::vector<LineMatch> line_matches(const ImageEdges& left,
                                     const std::vector<EdgeDisparity>& found,
                                     const StereoTruth& truth,

@@ -21,11 +21,11 @@ void check_sizes(const std::vector<EdgePoint>& edges,
                  const std::vector<EdgeDisparity>& found,
                  const std::vector<TruthAtEdge>& truth) {
   if (edges.size() == found.size() && edges.size() == truth.size()) return;
-  throw Error("evaluation", "edges, disparities and truth are not of one number",
-              "give one of each for every edge");
+  throw Error("evaluation", "edges, disparities and truth differ in number",
+              "give one of each per edge");
 }
 
-/// Counts towards EdgeMetrics.
+/// Running counts for EdgeMetrics.
 struct Tally {
   EdgeMetrics of;
   double squares = 0, sum = 0;
@@ -61,7 +61,7 @@ struct Tally {
 
 int angle_bin(const EdgePoint& edge) {
   const double sine = std::min(1.0, static_cast<double>(std::abs(edge.normal.x())));
-  const double share = std::asin(sine) / (0.5 * M_PI);  // 0 along the row, 1 upright
+  const double share = std::asin(sine) / (0.5 * M_PI);  // 0 along the row, 1 vertical
   return std::min(angle_bins - 1, static_cast<int>(share * angle_bins));
 }
 
@@ -187,7 +187,7 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
 
 double bad_1_at(const std::vector<CurvePoint>& curve, double density) {
   if (curve.empty()) return 0;
-  for (std::size_t i = 1; i < curve.size(); ++i) {  // densities fall
+  for (std::size_t i = 1; i < curve.size(); ++i) {  // densities decrease
     const CurvePoint &a = curve[i - 1], &b = curve[i];
     if (density > a.density) return a.bad_1;
     if (density < b.density) continue;

@@ -42,7 +42,7 @@ DisparityMap mirrored_map(DisparityMap map) {
   return map;
 }
 
-/// A pinhole pair of which `range` is what depths from the nearest to infinity are seen at.
+/// A pinhole pair in which `range` corresponds to depths from the nearest to infinity.
 struct AssumedRig {
   Rig rig;
   double nearest_m = 1;
@@ -93,7 +93,7 @@ void sample_corners(const RectifiedPair& pair,
   samples.corner_matches = corner_errors(match_corners(left, right, band), truth);
 }
 
-/// The same seen in a mirror: the right image becomes the left one of a pair.
+/// The mirrored pair: the right image becomes the left one.
 std::vector<SegmentLoss> losses_to_left(const RectifiedPair& pair,
                                         const StereoTruth& truth,
                                         const PairSamplesOptions& options) {

@@ -19,7 +19,8 @@
 namespace vernier::stereo::internal {
 
 struct PairSamplesOptions {
-  int corners = 400;  ///< strongest ones of the left image; the right one has half as many again
+  /// Maximum in the left image, strongest first; the right image may have half as many more.
+  int corners = 400;
   WarpOptions warp;
   EdgeLossOptions loss;
   SegmentShiftOptions shift;
@@ -28,14 +29,14 @@ struct PairSamplesOptions {
   LineMatchOptions lines;
 };
 
-/// What a rectified pair with ground truth tells of each source of error, one sample a segment or
+/// Samples of every source of error from a rectified pair with ground truth, one per segment or
 /// corner.
 struct PairSamples {
   std::string name;
   int width_px = 0, height_px = 0;
-  std::vector<SegmentLoss> losses;          ///< of left segments in the right image
-  std::vector<SegmentLoss> losses_to_left;  ///< and of right ones in the left image, in places of
-                                            ///< the right image seen in a mirror
+  std::vector<SegmentLoss> losses;  ///< left segments in the right image
+  /// Right segments in the left image, in coordinates of the mirrored right image.
+  std::vector<SegmentLoss> losses_to_left;
   std::vector<SegmentShift> shifts;
   std::vector<SegmentEnds> ends;
   std::vector<CornerRepeatability> corners;
@@ -43,18 +44,19 @@ struct PairSamples {
   std::vector<LineMatch> lines;
 };
 
-/// Finds edges, segments and corners in both images, matches them, and holds them against the truth
-/// (docs/characterise.md). Corners are matched as match_corners does, within the rows and the range
-/// of disparities. Throws Error on images of unequal size, a range that does not fit them, and
-/// whatever the matcher throws.
+/// Detects edges, segments and corners in both images, matches them and compares them with the
+/// ground truth (docs/characterise.md). Corners are matched as in match_corners, within the rows
+/// and the disparity range. Throws Error for images of different sizes, a range that does not fit
+/// them, and errors of the matcher.
 PairSamples pair_samples(const RectifiedPair& pair,
                          const StereoTruth& truth,
                          const DisparityRange& range,
                          const Matcher& matcher,
                          const PairSamplesOptions& options = {});
 
-/// The right image's disparities by the left one's truth, interpolated along the row between left
-/// pixels of one surface that the right image shows; not known where no left pixel falls.
+/// Disparities of the right image from the left ground truth, interpolated along the row between
+/// left pixels of one surface that are visible in the right image; unknown where no left pixel
+/// maps.
 DisparityMap truth_of_right(const StereoTruth& truth);
 
 }  // namespace vernier::stereo::internal

@@ -19,7 +19,7 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double part_distance_px = 4;  // of the two parts: the noise of points reaches 3 px
+constexpr double part_distance_px = 4;  // between the two parts: edge noise is correlated over 3 px
 constexpr double outlier_px = 1;        // from the median
 constexpr int min_in_part = 3;
 
@@ -44,7 +44,7 @@ double mean_across(const std::vector<Beside>& points, double from_px, double to_
   return sum / std::max(1, count);
 }
 
-/// The shift of points that are all of one edge, if both parts have enough.
+/// The shift of points of one edge, if both parts have enough.
 std::optional<SegmentShift> shift_of(const WarpedSegment& left, std::vector<Beside> points) {
   const double middle_px = median_across(points);
   std::erase_if(points, [&](const Beside& point) {

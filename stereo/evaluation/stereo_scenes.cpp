@@ -32,9 +32,10 @@ DisparityMap read_map(const std::filesystem::path& file,
   DisparityMap map = read_disparity(file, options);
   if (map.width_px != width_px || map.height_px != height_px) {
     throw Error(file.string(),
-                "its size " + fmt::format("{}x{}", map.width_px, map.height_px) +
-                    " is not that of the images, " + fmt::format("{}x{}", width_px, height_px),
-                "give the truth of these images");
+                "the size " + fmt::format("{}x{}", map.width_px, map.height_px) +
+                    " differs from that of the images, " +
+                    fmt::format("{}x{}", width_px, height_px),
+                "use the ground truth of these images");
   }
   check_known(map, file.string());
   return map;
@@ -44,7 +45,7 @@ constexpr std::array<std::string_view, 4> truth_kinds = {"exact", "measured", "r
                                                          "labelled"};
 constexpr int max_disparity_px = 1 << 15;
 
-/// Turns the tables of a list into pairs. Every complaint carries the file and the line.
+/// Converts the tables of a list to pairs. Every error has the file and the line.
 class SceneReader : private TomlReader {
  public:
   explicit SceneReader(const std::filesystem::path& file)
@@ -54,7 +55,7 @@ class SceneReader : private TomlReader {
     check_keys(root, {"pair"}, "");
     std::vector<StereoSceneFile> scenes;
     for (const toml::table* pair : tables(root, "pair")) scenes.push_back(scene(*pair));
-    if (scenes.empty()) fail(root, "lists no pair", "write a [[pair]]");
+    if (scenes.empty()) fail(root, "lists no pair", "add a [[pair]]");
     return scenes;
   }
 
@@ -67,9 +68,9 @@ class SceneReader : private TomlReader {
     StereoSceneFile scene;
     const toml::node& name = required(pair, "name", "[[pair]]");
     scene.name = text(name, "name");
-    if (scene.name.empty()) fail(name, "name is empty", "give every pair a name");
+    if (scene.name.empty()) fail(name, "name is empty", "add a name");
     if (!names_.insert(scene.name).second) {
-      fail(name, "the name '" + scene.name + "' is given twice", "give every pair its own");
+      fail(name, "duplicate name '" + scene.name + "'", "rename one of the pairs");
     }
     const std::string owner = "pair '" + scene.name + "'";
     scene.left = file_of(required(pair, "left", owner), "left");
@@ -81,7 +82,7 @@ class SceneReader : private TomlReader {
     if (const auto* node = pair.get("truth_scale")) {
       scene.truth_scale = number(*node, "truth_scale");
       if (!(scene.truth_scale > 0)) {
-        fail(*node, "truth_scale is not positive", "give the values a pixel of disparity");
+        fail(*node, "truth_scale is not positive", "give the file values per pixel of disparity");
       }
     }
     if (const auto* node = pair.get("truth_kind")) scene.truth_kind = kind(*node);
@@ -95,7 +96,7 @@ class SceneReader : private TomlReader {
     const DisparityRange range{least ? disparity(*least, "min_disparity") : 0,
                                disparity(most, "max_disparity")};
     if (range.min_px > range.max_px) {
-      fail(most, "max_disparity is below min_disparity", "give the range to be searched");
+      fail(most, "max_disparity is below min_disparity", "give the search range");
     }
     return range;
   }
@@ -103,7 +104,7 @@ class SceneReader : private TomlReader {
   int disparity(const toml::node& node, const char* key) const {
     const std::int64_t value = integer(node, key);
     if (value < -max_disparity_px || value > max_disparity_px) {
-      fail(node, std::string(key) + " is no disparity of an image", "give it in pixels");
+      fail(node, std::string(key) + " is out of range", "give a disparity in pixels");
     }
     return static_cast<int>(value);
   }
@@ -113,16 +114,15 @@ class SceneReader : private TomlReader {
     for (std::size_t i = 0; i < truth_kinds.size(); ++i) {
       if (word == truth_kinds[i]) return static_cast<TruthKind>(i);
     }
-    fail(node, "truth_kind '" + word + "' is not known",
-         "say exact, measured, reduced or labelled");
+    fail(node, "unknown truth_kind '" + word + "'", "use exact, measured, reduced or labelled");
   }
 
   std::filesystem::path file_of(const toml::node& node, const char* key) const {
     const std::filesystem::path file = folder_ / text(node, key);
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) {
-      fail(node, std::string(key) + ": there is no file " + file.string(),
-           "name files from the folder of the list");
+      fail(node, std::string(key) + ": no such file: " + file.string(),
+           "give the path relative to the list");
     }
     return file;
   }

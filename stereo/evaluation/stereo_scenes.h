@@ -13,48 +13,48 @@
 
 namespace vernier::stereo::internal {
 
-/// How a ground truth came about, which says what figures it can judge.
+/// How a ground truth was made, which limits the errors it can measure.
 enum class TruthKind {
-  exact,     ///< made with the images: all of them
-  measured,  ///< by structured light or a laser: sub-pixel figures hold its own error too
-  reduced,   ///< measured at a larger size: may be biased by tenths of a pixel
-  labelled,  ///< whole pixels: nothing below one
+  exact,     ///< known from how the images were made: valid for all figures
+  measured,  ///< structured light or laser: its own error adds to sub-pixel figures
+  reduced,   ///< measured at a larger image size: may be biased by tenths of a pixel
+  labelled,  ///< integer pixels: no sub-pixel figures
 };
 
 std::string_view name(TruthKind kind);
 
-/// A rectified pair with ground truth, by its files.
+/// Files of a rectified pair with ground truth.
 struct StereoSceneFile {
   std::string name;
   std::filesystem::path left, right;
   std::filesystem::path truth;        ///< disparities of the left image (stereo/disparity_file.h)
-  std::filesystem::path right_truth;  ///< those of the right one; empty: none
-  double truth_scale = 1;             ///< values a pixel in both
+  std::filesystem::path right_truth;  ///< disparities of the right image; empty: none
+  double truth_scale = 1;             ///< file values per pixel, in both
   TruthKind truth_kind = TruthKind::measured;
-  DisparityRange range;       ///< to be searched
-  std::filesystem::path rig;  ///< that took the pair; empty: not known
+  DisparityRange range;       ///< search range
+  std::filesystem::path rig;  ///< rig of the pair; empty: unknown
 };
 
-/// Reads a list of pairs, TOML with one table a pair:
+/// Reads a list of pairs: TOML with one table per pair:
 ///
 ///     [[pair]]
 ///     name = "teddy"
-///     left = "teddy/im2.png"          # beside the list, unless it begins with /
+///     left = "teddy/im2.png"          # relative to the list, or absolute
 ///     right = "teddy/im6.png"
 ///     truth = "teddy/disp2.png"
-///     truth_scale = 4                 # 1 if not given
+///     truth_scale = 4                 # default 1
 ///     max_disparity = 64
-///     right_truth = "teddy/disp6.png" # and the rest: if there is one
+///     right_truth = "teddy/disp6.png" # this and the rest are optional
 ///     min_disparity = 0
 ///     truth_kind = "measured"
 ///     rig = "teddy.rig.json"
 ///
-/// Throws Error(file:line) for a key that is missing or not known, a name given twice, an empty
-/// range and a file that is not there.
+/// Paths are relative to the list. Throws Error(file:line) for a missing or unknown key, a
+/// duplicate name, an empty range and a file that does not exist.
 std::vector<StereoSceneFile> read_stereo_scenes(const std::filesystem::path& file);
 
-/// Reads a pair's ground truth. Throws Error naming the file, for its size too where that is not
-/// the images' one.
+/// Reads the ground truth of a pair. Throws Error naming the file, also if its size differs from
+/// that of the images.
 StereoTruth read_stereo_truth(const StereoSceneFile& scene, int width_px, int height_px);
 
 }  // namespace vernier::stereo::internal

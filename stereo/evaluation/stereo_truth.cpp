@@ -23,7 +23,7 @@ using namespace internal;
 
 namespace {
 
-/// Pixels of a row that are on both sides of a fold have different numbers.
+/// Labels row pixels so that those on both sides of a fold have different numbers.
 std::vector<int> folds_of(const DisparityMap& map, int y) {
   std::vector<int> folds(static_cast<std::size_t>(map.width_px), 0);
   int count = 0;
@@ -39,7 +39,7 @@ std::vector<int> folds_of(const DisparityMap& map, int y) {
   return folds;
 }
 
-/// The left pixel that is seen, because it is the nearest, at every right pixel of a row; -1: none.
+/// The visible, i.e. nearest, left pixel at every right pixel of a row; -1: none.
 std::vector<int> seen_in_right(const DisparityMap& map, int y) {
   std::vector<int> seen(static_cast<std::size_t>(map.width_px), -1);
   const auto put = [&](long right, int x) {
@@ -51,7 +51,7 @@ std::vector<int> seen_in_right(const DisparityMap& map, int y) {
     if (!map.known(x, y)) continue;
     const long right = std::lround(static_cast<float>(x) - map(x, y));
     put(right, x);
-    // a surface that is wider in the right image leaves no gap
+    // A surface that is wider in the right image must not leave a gap.
     const bool joined = x > 0 && map.known(x - 1, y) && std::abs(map(x, y) - map(x - 1, y)) < 1;
     if (joined && std::lround(static_cast<float>(x - 1) - map(x - 1, y)) == right - 2) {
       put(right - 1, x - 1);
@@ -133,9 +133,9 @@ TruthAtEdge truth_at(const StereoTruth& truth, const EdgePoint& edge) {
 StereoTruth stereo_truth(DisparityMap left, const DisparityMap* right) {
   if (right && (right->width_px != left.width_px || right->height_px != left.height_px)) {
     throw Error("ground truth",
-                "the left image's has the size " + size_text(left.width_px, left.height_px) +
-                    " and the right one's " + size_text(right->width_px, right->height_px),
-                "give both of one pair");
+                "the left map has the size " + size_text(left.width_px, left.height_px) +
+                    " and the right one " + size_text(right->width_px, right->height_px),
+                "use both of one pair");
   }
   check_known(left, "ground truth");
   StereoTruth truth;

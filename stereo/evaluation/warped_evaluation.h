@@ -12,22 +12,22 @@
 
 namespace vernier::stereo::internal {
 
-/// What wrong rows do to a pair before any matcher sees it, over the edges that are asked about.
+/// Effect of row errors on a pair, before matching, over the scored edges.
 struct GeometricError {
-  int edges = 0;                        ///< of none the rest is 0
-  double bias_px = 0, bias_rms_px = 0;  ///< disparities of points, less those of the pair as given
+  int edges = 0;                        ///< if 0, the other fields are 0
+  double bias_px = 0, bias_rms_px = 0;  ///< disparity of points minus that in the original pair
   double rows_rms_px = 0;               ///< v_left − v_right
 };
 
-/// How a matcher did on such a pair.
+/// Score of a matcher on such a pair.
 struct WarpedScore {
-  /// Against the warped truth (stereo/evaluation/warped_pair.h): what is wrong here was matched to
-  /// something else, whatever the geometry.
+  /// Against the warped truth (stereo/evaluation/warped_pair.h): an error here is a mismatch,
+  /// independent of the geometry.
   MatcherScore score;
-  /// Root mean square of found disparities less those of the pair as given, of smooth matches that
-  /// are no mismatch: the geometric error as it reaches the depth.
+  /// RMS of found disparities minus those of the original pair, over smooth matches that are not
+  /// mismatches: the geometric error that reaches the depth.
   double disparity_error_rms_px = 0;
-  int right = 0;  ///< how many those are
+  int right = 0;  ///< number of those matches
 };
 
 /// `truth` is truth_at(warped, edges).
@@ -36,7 +36,7 @@ GeometricError geometric_error(const WarpedPair& warped,
                                const std::vector<TruthAtEdge>& truth,
                                const EvaluationOptions& options = {});
 
-/// Throws Error where edges and disparities are not of one number.
+/// Throws Error if edges and disparities differ in number.
 WarpedScore evaluate(const WarpedPair& warped,
                      const std::vector<EdgePoint>& edges,
                      const std::vector<TruthAtEdge>& truth,

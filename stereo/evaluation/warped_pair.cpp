@@ -50,7 +50,7 @@ void check_sizes(const RectifiedPair& pair,
                   "rig rectifies to {}x{} px",
                   pair.left.width_px, pair.left.height_px, pair.right.width_px,
                   pair.right.height_px, map.width_px, map.height_px, size_px[0], size_px[1]),
-      "give the rig that the pair was rectified by");
+      "use the rig that the pair was rectified with");
 }
 
 DisparityMap map_of_unknown(int width_px, int height_px) {
@@ -59,7 +59,8 @@ DisparityMap map_of_unknown(int width_px, int height_px) {
               static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), unknown)};
 }
 
-/// Between the four pixels about a place, if all are known and of one surface; else the nearest's.
+/// Bilinear between the four pixels around a position if all are known and on one surface; else the
+/// nearest.
 float disparity_between(const DisparityMap& map, const Eigen::Vector2d& at) {
   const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
   const int near_x = static_cast<int>(std::lround(at.x()));
@@ -73,7 +74,7 @@ float disparity_between(const DisparityMap& map, const Eigen::Vector2d& at) {
   return (1 - t) * ((1 - s) * a + s * b) + t * ((1 - s) * c + s * d);
 }
 
-/// Both rectifications of one raw pair, and the way from one to the other.
+/// Both rectifications of one raw pair, and the mapping between them.
 struct Detour {
   const Rig &believed, &true_rig;
   RectifiedGeometry given, drawn;

@@ -18,9 +18,9 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double beyond_px = 3, beyond_corner_px = 9;  // ends from the last points shown
+constexpr double beyond_px = 3, beyond_corner_px = 9;  // of ends from the last visible points
 
-/// A straight line through (s, d).
+/// A straight line fitted to (s, d).
 struct TruthLine {
   double at_zero = 0, slope = 0, rms = 0;
   double operator()(double s) const { return at_zero + slope * s; }
@@ -137,8 +137,8 @@ std::vector<WarpedSegment> warped_segments(const ImageEdges& left,
                                            const StereoTruth& truth,
                                            const WarpOptions& options) {
   if (truth.disparity.width_px != left.width_px || truth.disparity.height_px != left.height_px) {
-    throw Error("warped segments", "the ground truth is not of the left image's size",
-                "give the truth of this image");
+    throw Error("warped segments", "the ground truth differs in size from the left image",
+                "use the ground truth of this image");
   }
   const SegmentWarp warp(left, truth, options);
   std::vector<WarpedSegment> warped;

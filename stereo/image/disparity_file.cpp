@@ -27,21 +27,21 @@ namespace {
 
 constexpr double png_scale = 256;  // of written files
 
-/// A map as its file holds it.
+/// A map as stored in its file.
 struct StoredMap {
   int width = 0, height = 0;
   bool of_whole_numbers = false;
-  std::vector<double> values;  ///< row by row from the top
+  std::vector<double> values;  ///< row-major from the top
 };
 
-/// The next word of a PFM's head.
+/// The next token of a PFM header.
 std::string_view next_word(std::string_view bytes, std::size_t& at, const std::string& place) {
   const std::string_view blanks(" \t\r\n");
   const std::size_t begin = bytes.find_first_not_of(blanks, at);
   const std::size_t end =
       begin == std::string_view::npos ? begin : bytes.find_first_of(blanks, begin);
   if (end == std::string_view::npos || end - begin > 32) {
-    throw Error(place, "is cut off or damaged in its PFM header", "write it again");
+    throw Error(place, "is truncated or damaged in its PFM header", "write it again");
   }
   at = end;
   return bytes.substr(begin, end - begin);
@@ -55,23 +55,22 @@ StoredMap parse_pfm(std::string_view bytes, const std::string& place) {
   const double scale = parse_real(next_word(bytes, at, place), place, "a scale");
   constexpr int max_side = 1 << 20;
   if (map.width < 1 || map.height < 1 || map.width > max_side || map.height > max_side) {
-    throw Error(place, fmt::format("has a size of {} x {}", map.width, map.height),
-                "give a map of an image");
+    throw Error(place, fmt::format("has the size {} x {}", map.width, map.height),
+                "use a map of an image");
   }
   if (!std::isfinite(scale) || scale == 0) {
-    throw Error(place, "has a PFM scale that is 0 or not finite",
-                "write -1 for little-endian values, 1 for big-endian ones");
+    throw Error(place, "the PFM scale is 0 or not finite",
+                "use -1 for little-endian and 1 for big-endian values");
   }
   at += bytes.substr(at, 2) == "\r\n" ? 2 : 1;
   const auto width = static_cast<std::size_t>(map.width);
   const auto height = static_cast<std::size_t>(map.height);
   const std::size_t wanted = 4 * width * height;
   if (bytes.size() - at != wanted) {
-    throw Error(
-        place,
-        fmt::format("holds {} bytes of values, {} than the {} of {} x {}", bytes.size() - at,
-                    bytes.size() - at < wanted ? "fewer" : "more", wanted, width, height),
-        "write it again");
+    throw Error(place,
+                fmt::format("has {} bytes of values, {} than the {} for {} x {}", bytes.size() - at,
+                            bytes.size() - at < wanted ? "fewer" : "more", wanted, width, height),
+                "write it again");
   }
   map.values.resize(width * height);
   for (std::size_t y = 0; y < height; ++y) {
@@ -82,7 +81,7 @@ StoredMap parse_pfm(std::string_view bytes, const std::string& place) {
   return map;
 }
 
-/// The only channel, or one of three that are equal.
+/// The only channel, or one of three equal ones.
 cv::Mat one_channel(const cv::Mat& pixels, const std::string& place) {
   cv::Mat first;
   cv::extractChannel(pixels, first, 0);
@@ -90,9 +89,9 @@ cv::Mat one_channel(const cv::Mat& pixels, const std::string& place) {
     cv::Mat other;
     cv::extractChannel(pixels, other, i);
     if (pixels.channels() != 3 || cv::norm(first, other, cv::NORM_INF) != 0) {
-      throw Error(place,
-                  pixels.channels() == 3 ? "is a colour image" : "is an image with transparency",
-                  "give a map of grey values");
+      throw Error(
+          place, pixels.channels() == 3 ? "is a colour image" : "is an image with an alpha channel",
+          "use a single-channel image");
     }
   }
   return first;
@@ -101,7 +100,7 @@ cv::Mat one_channel(const cv::Mat& pixels, const std::string& place) {
 StoredMap parse_image(const std::string& bytes, const std::filesystem::path& file) {
   const int largest = largest_grey_value(bytes);
   if (is_png(bytes) && largest < 255) {
-    throw Error(file.string(), "has fewer than 8 bits a pixel", "save it with 8 or 16 bits");
+    throw Error(file.string(), "has fewer than 8 bits per pixel", "save it with 8 or 16 bits");
   }
   const cv::Mat grey = one_channel(decode_image(bytes, cv::IMREAD_UNCHANGED, file), file.string());
   StoredMap map{grey.cols, grey.rows, true, {}};
@@ -115,19 +114,18 @@ StoredMap parse_map(const std::filesystem::path& file) {
   const std::string bytes = read_whole(file);
   const std::string place = file.string(), start = bytes.substr(0, 2);
   if (start == "Pf") return parse_pfm(bytes, place);
-  if (start == "PF") throw Error(place, "is a PFM of 3 channels", "write one of 1 channel (Pf)");
+  if (start == "PF") throw Error(place, "is a PFM of 3 channels", "use one channel (Pf)");
   if (is_numpy(bytes)) {
     NumpyArray array = parse_numpy(bytes, place);
     return {static_cast<int>(array.columns), static_cast<int>(array.rows), array.of_whole_numbers,
             std::move(array.values)};
   }
   if (start == "PK") {
-    throw Error(place, "is an archive (.npz), which is not read",
-                "save the array in it with numpy.save, as .npy");
+    throw Error(place, ".npz archives are not supported", "save the array as .npy with numpy.save");
   }
   if (is_png(bytes) || start == "P5") return parse_image(read_image_bytes(file), file);
   throw Error(place, bytes.empty() ? "is empty" : "is neither PFM, PNG, PGM nor .npy",
-              "give a disparity map in one of these formats");
+              "use one of these formats");
 }
 
 std::string pfm_bytes(const DisparityMap& map) {
@@ -148,8 +146,8 @@ std::string png_bytes(const DisparityMap& map, const std::string& place) {
       if (!map.known(x, y)) continue;
       const double value = std::round(png_scale * map(x, y));
       if (map(x, y) < 0 || value > 65535) {
-        throw Error(place, fmt::format("cannot hold a disparity of {} px as PNG", map(x, y)),
-                    "write .pfm or .npy");
+        throw Error(place, fmt::format("cannot store a disparity of {} px as PNG", map(x, y)),
+                    "use .pfm or .npy");
       }
       pixels.at<ushort>(y, x) = static_cast<ushort>(std::max(value, 1.0));
     }
@@ -164,7 +162,8 @@ std::string png_bytes(const DisparityMap& map, const std::string& place) {
 DisparityMap read_disparity(const std::filesystem::path& file,
                             const DisparityFileOptions& options) {
   if (!(options.scale > 0) || !std::isfinite(options.scale)) {
-    throw Error("scale of " + file.string(), "is not a positive number", "give values a pixel");
+    throw Error("scale of " + file.string(), "is not a positive number",
+                "give file values per pixel");
   }
   const StoredMap stored = parse_map(file);
   const bool zero_is_unknown = options.zero_is_unknown.value_or(stored.of_whole_numbers);
@@ -184,7 +183,8 @@ void write_disparity(const std::filesystem::path& file, const DisparityMap& map)
   const std::string kind = file.extension().string(), place = file.string();
   if (map.width_px < 1 || map.height_px < 1 ||
       map.values.size() != static_cast<std::size_t>(map.width_px) * map.height_px) {
-    throw Error(place, "would hold no map", "give width x height values");
+    throw Error(place, "the number of values does not match the map's size",
+                "give width x height values");
   }
   if (kind == ".pfm") {
     write_atomically(file, pfm_bytes(map));
@@ -193,7 +193,7 @@ void write_disparity(const std::filesystem::path& file, const DisparityMap& map)
   } else if (kind == ".png") {
     write_atomically(file, png_bytes(map, place));
   } else {
-    throw Error(place, "has a name that says no format", "end it in .pfm, .png or .npy");
+    throw Error(place, "unknown file extension", "use .pfm, .png or .npy");
   }
 }
 

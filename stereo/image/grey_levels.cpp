@@ -18,19 +18,19 @@ using namespace vernier::internal;
 
 namespace {
 
-/// What a grey value is multiplied by, so that the file's range becomes 0 to 255.
+/// Factor that maps the file's range to 0 to 255.
 double scale_of(const cv::Mat& pixels, std::string_view bytes) {
   const int stated = is_png(bytes) ? 0 : largest_grey_value(bytes);
   if (stated > 0) return 255.0 / stated;
   return pixels.depth() == CV_8U ? 1 : 1.0 / 257;
 }
 
-/// What is done to the image, and whether it holds hardly anything of its range.
+/// Describes the conversion, and whether the image uses hardly any of its range.
 std::string remark_on(const cv::Mat& pixels, double scale) {
   const bool is_colour = pixels.channels() > 1, is_deep = pixels.depth() == CV_16U;
   if (!is_colour && !is_deep && scale == 1) return "";
   std::string remark = is_deep ? "16-bit " : "";
-  remark += is_colour ? "colour image, weighed to grey" : "image";
+  remark += is_colour ? "colour image, converted to grey" : "image";
   if (scale < 1) remark += fmt::format(", scaled by 1/{:.6g}", 1 / scale);
   if (scale > 1) remark += fmt::format(", scaled by {:.6g}", scale);
   double largest = 0;
@@ -47,7 +47,7 @@ GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* rema
   const std::string bytes = read_image_bytes(file);
   const cv::Mat pixels = decode_image(bytes, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH, file);
   if (pixels.depth() != CV_8U && pixels.depth() != CV_16U) {
-    throw Error(file.string(), "has pixels that are neither of 8 nor of 16 bits, without sign",
+    throw Error(file.string(), "the pixels are neither unsigned 8-bit nor unsigned 16-bit",
                 "save it as an 8- or 16-bit image");
   }
   const double scale = scale_of(pixels, bytes);

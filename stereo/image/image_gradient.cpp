@@ -23,7 +23,7 @@ GradientKernel::GradientKernel(double scale_px)
 
 void GradientRows::compute(const cv::Mat& grey, const GradientKernel& kernel, int first, int end) {
   first_row = first;
-  const cv::Mat rows = grey.rowRange(first, end);  // the filter looks beyond them
+  const cv::Mat rows = grey.rowRange(first, end);  // the filter reads beyond them
   const auto filter = [&](cv::Mat& to, const auto& along_x, const auto& along_y) {
     cv::sepFilter2D(rows, to, CV_32F, along_x, along_y, {-1, -1}, 0, cv::BORDER_REPLICATE);
   };

@@ -7,18 +7,18 @@
 
 namespace vernier::stereo::internal {
 
-/// A sampled Gaussian of sum one and its derivative, of response one to a ramp of one grey level a
-/// pixel: the two factors of a gradient's filter. Cut off at 3.5 σ.
+/// A sampled Gaussian with sum one and its derivative with unit response to a ramp of one grey
+/// level per pixel: the two factors of a separable gradient filter. Truncated at 3.5 σ.
 struct GradientKernel {
   explicit GradientKernel(double scale_px);
-  int reach;  ///< pixels on either side
+  int reach;  ///< half-width in pixels
   std::vector<double> smooth, slope;
 };
 
-/// The gradient behind a Gaussian in some rows of an image, grey levels a pixel (CV_32F). Beyond
-/// its border the image goes on with its outermost pixels.
+/// Gaussian-smoothed gradient of some rows of an image, grey levels per pixel (CV_32F). The border
+/// is extended by replication.
 struct GradientRows {
-  /// Rows [first, end) of `grey`, into the same memory where they are as many as before.
+  /// Rows [first, end) of `grey`; reuses the memory if the number of rows is the same.
   void compute(const cv::Mat& grey, const GradientKernel& kernel, int first, int end);
 
   int first_row = 0;

@@ -18,8 +18,8 @@ namespace {
 constexpr int block = 16;
 constexpr double min_noise = 0.2886751345948129;  // 1/√12
 
-/// The lower quintile. For the spread of a block's own estimate, 8.6 % (256 values of n that are
-/// correlated with their neighbours), it is 8 % below the mean where all blocks are plain.
+/// The lower quintile. With the spread of a block's own estimate, 8.6 % (256 values of n that are
+/// correlated with their neighbours), it is 8 % below the mean if no block has texture.
 double lower_quintile(const std::vector<double>& values) {
   return 1.08 * quantile(values, 0.2, QuantileKind::upper);
 }

@@ -8,7 +8,7 @@
 
 namespace vernier::stereo::internal {
 
-/// The image as a CV_32F matrix of the same memory: to be read only, as long as the image lives.
+/// A read-only CV_32F view of the image's memory, valid as long as the image.
 inline cv::Mat matrix_of(const GreyLevels& image) {
   return {image.height_px, image.width_px, CV_32F, const_cast<float*>(image.values.data())};
 }

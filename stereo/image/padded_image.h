@@ -10,7 +10,7 @@
 
 namespace vernier::stereo::internal {
 
-/// An image with its outermost pixels repeated about it, so that nothing has to ask for the border.
+/// An image padded by replicating its border, so that access needs no bounds checks.
 class PaddedImage {
  public:
   PaddedImage(const GreyLevels& image, int margin_px)
@@ -32,7 +32,7 @@ class PaddedImage {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Its pixel 0; −margin to width + margin − 1 are there.
+  /// Pixel 0 of a row; pixels −margin to width + margin − 1 are valid.
   const float* row(int y) const {
     return values_.data() + static_cast<std::size_t>(y + margin_) * stride_ +
            static_cast<std::size_t>(margin_);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int max_steps = 25;
 constexpr double min_step_px = 0.01;
-constexpr double step_share =
-    0.6;  // differences rise less than the image does: full steps overshoot
+// Differences rise less than the image does: full steps overshoot.
+constexpr double step_share = 0.6;
 constexpr double max_gain = 3;
 constexpr double max_stretch = 0.6;
 
@@ -28,7 +28,7 @@ std::array<double, 4> cubic_weights(double t) {
           0.5 * (t3 - t2)};
 }
 
-/// The left patch: per pixel its offset, weight, grey value and row of the Jacobian (by shift u, v,
+/// The left patch: offset, weight, grey level and Jacobian row of each pixel (by shift u, v,
 /// stretch, shear, gain, offset).
 struct Template {
   std::vector<Eigen::Vector2d> offsets;
@@ -38,8 +38,7 @@ struct Template {
   bool holds = false;
 };
 
-/// Σ wx wy K over the 4 x 4 pixels from (left − 1, top − 1); beyond the border, its outermost
-/// pixels'.
+/// Σ wx wy K over the 4 x 4 pixels from (left − 1, top − 1); the border is replicated.
 double weighed(const cv::Mat& image,
                int left,
                int top,
@@ -61,7 +60,7 @@ double weighed(const cv::Mat& image,
   return sum;
 }
 
-/// Grey values at p + (i, j), |i| and |j| <= reach, a row of the image a column.
+/// Grey levels at p + (i, j), |i| and |j| <= reach, one image row per column.
 Eigen::MatrixXd grid_about(const cv::Mat& image, const Eigen::Vector2d& p, int reach) {
   const int left = static_cast<int>(std::floor(p.x())), top = static_cast<int>(std::floor(p.y()));
   const auto wx = cubic_weights(p.x() - left), wy = cubic_weights(p.y() - top);
@@ -109,7 +108,7 @@ Template make_template(const cv::Mat& left,
   return patch;
 }
 
-/// Maps offsets about the left pixel to right pixels.
+/// Maps offsets from the left pixel to right pixels.
 struct Warp {
   Eigen::Matrix2d D = Eigen::Matrix2d::Identity();
   Eigen::Vector2d q;
@@ -131,7 +130,7 @@ double correlation(const Eigen::VectorXd& w, Eigen::VectorXd a, Eigen::VectorXd 
   return power > 0 ? w.dot(a.cwiseProduct(b)) / std::sqrt(power) : 0;
 }
 
-/// The warp with the small one that `fit` tells of undone before it.
+/// Composes the warp with the inverse of the small update of `fit`.
 Warp composed(const Warp& warp, const Vector6d& fit, const Eigen::Vector2d& direction) {
   const double gain = fit[4] / step_share;
   const Eigen::Matrix2d small =

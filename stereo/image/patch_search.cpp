@@ -10,8 +10,8 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr float flat_variance = 4;  // grey values²; a patch with less has nothing to correlate
-constexpr int min_distance_px = 2;  // the second best lies beyond this of the best
+constexpr float flat_variance = 4;  // grey levels²; patches below have no texture
+constexpr int min_distance_px = 2;  // the second best must be farther from the best
 
 bool is_inside(const cv::Mat& image, cv::Point centre, int half) {
   return centre.x >= half && centre.y >= half && centre.x + half < image.cols &&
@@ -30,7 +30,7 @@ Moments moments(const cv::Mat& image, cv::Point centre, int half) {
   return {static_cast<float>(mean[0]), static_cast<float>(deviation[0])};
 }
 
-/// Offset of the vertex of a parabola through three scores, from the middle one.
+/// Vertex of a parabola through three scores, relative to the middle one.
 double peak_offset(float before, float at, float after) {
   const double bend = static_cast<double>(before) - 2.0 * at + after;
   if (!(bend < 0)) return 0;
@@ -60,7 +60,7 @@ PatchSearch::PatchSearch(const cv::Mat& image, int half_px) : image_(image), hal
   }
 }
 
-/// Scores of the window before they are divided by the patch's own length.
+/// Scores of the window, before division by the patch's own norm.
 void PatchSearch::correlate(const cv::Mat& other,
                             cv::Point centre,
                             float mean,

@@ -10,12 +10,12 @@
 
 namespace vernier::stereo::internal {
 
-/// Where an image has what a pixel of its resampled one shows; nothing: not known.
+/// Source position of a pixel of the resampled image; nullopt: none.
 using PixelSource = std::function<std::optional<Eigen::Vector2d>(int x, int y)>;
 
-/// An image read at other places, by cubic convolution (Keys 1981, a = −1/2) in full precision.
-/// Places beyond the border take the border's value, those not known 0. Bits do not depend on the
-/// number of threads.
+/// Resamples an image by cubic convolution (Keys 1981, a = −1/2) without rounding to grey levels.
+/// The border is replicated; pixels without a source are 0. Results do not depend on the number of
+/// threads.
 GreyLevels resampled(const GreyLevels& image,
                      const Eigen::Vector2i& size_px,
                      const PixelSource& source,

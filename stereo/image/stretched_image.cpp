@@ -32,7 +32,7 @@ GreyLevels stretched(const GreyLevels& image, double scale) {
     for (int x = 0; x < result.width_px; ++x) {
       float sum = 0;
       for (int i = 0; i < samples; ++i) {
-        const double part = (i + 0.5) / samples - 0.5;  // of the new pixel
+        const double part = (i + 0.5) / samples - 0.5;  // position within the new pixel
         sum += between(row, image.width_px, (x + part) / scale);
       }
       result.values.push_back(sum / static_cast<float>(samples));

@@ -6,11 +6,11 @@
 
 namespace vernier::stereo::internal {
 
-/// The image `scale` times as wide: pixel P shows what is at P / scale, linearly between pixels,
-/// averaged over a new pixel's width where it becomes narrower.
+/// The image resized to `scale` times its width: pixel P samples P / scale, with linear
+/// interpolation, averaged over a new pixel's width when shrinking.
 GreyLevels stretched(const GreyLevels& image, double scale);
 
-/// With every row turned round.
+/// The image mirrored along its rows.
 GreyLevels mirrored(const GreyLevels& image);
 
 }  // namespace vernier::stereo::internal

@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 constexpr int half_width = 4, half_height = 3, block = 256;
 
 /// The bits of up to `block` pixels. `rows` are those from half_height above to half_height below,
-/// each with half_width pixels more at both ends; loops are for the compiler to vectorise.
+/// each with half_width more pixels at both ends; the loops are written for auto-vectorisation.
 void census_block(const std::uint8_t* const* rows, int n, std::uint64_t* out) {
   const std::uint8_t* const centre = rows[half_height] + half_width;
   for (int half = 0; half < 2; ++half) {
@@ -58,7 +58,7 @@ namespace {
 
 constexpr std::uint64_t unlike_anything = 0x1555555555555555;
 
-/// Whole grey levels with the outermost pixels repeated about them.
+/// Integer grey levels with a replicated border.
 struct Padded {
   explicit Padded(const GreyLevels& image)
       : width(image.width_px + 2 * half_width_px),

@@ -10,9 +10,9 @@
 
 namespace vernier::stereo::internal {
 
-/// The census transform of an image (Zabih and Woodfill 1994): of each pixel, which of the 62 about
-/// it in 9 x 7 are brighter, as bits. Rows have `border` words before and after them that resemble
-/// nothing.
+/// Census transform of an image (Zabih and Woodfill 1994): for each pixel, one bit for each of the
+/// 62 others in 9 x 7 that tells whether it is brighter. Rows are padded with `border` words on
+/// both sides that match nothing.
 struct CensusImage {
   int width = 0, height = 0, border = 0;
   std::vector<std::uint64_t> words;
@@ -26,11 +26,10 @@ struct CensusImage {
   std::size_t stride() const { return static_cast<std::size_t>(width + 2 * border); }
 };
 
-/// Grey levels are rounded to whole ones first; beyond the image's border its outermost pixels are
-/// repeated.
+/// Grey levels are rounded to integers first; the image border is replicated.
 CensusImage census_transform(const GreyLevels& image, int border);
 
-/// The same with every row turned round.
+/// The transform mirrored along its rows.
 CensusImage mirrored(const CensusImage& census);
 
 }  // namespace vernier::stereo::internal

@@ -22,15 +22,16 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr int fine = 16;      // of OpenCV's disparities a pixel, and what their number divides
-constexpr int max_px = 2000;  // 16 bits hold them
+// OpenCV's subdivisions of a pixel, and the divisor of its number of disparities.
+constexpr int fine = 16;
+constexpr int max_px = 2000;  // limit of 16-bit disparities
 
-/// How the images are prolonged: so far that no pixel of theirs is in OpenCV's unsearched band.
+/// Padding of the images, so that none of their pixels is in OpenCV's unsearched band.
 struct Border {
   int sides_px = 0, left_px = 0, right_px = 0;
 };
 
-/// The disparities that OpenCV is told to search.
+/// The disparity range passed to OpenCV.
 struct DenseSearch {
   int min_px = 0, count = 0;
   Border border;
@@ -59,7 +60,7 @@ void check(bool good, const char* place, const char* fault, const char* remedy) 
   if (!good) throw Error(place, fault, remedy);
 }
 
-/// What OpenCV found, without what lies outside of the range or of the right image.
+/// OpenCV's result, without disparities outside the range or matches outside the right image.
 DisparityMap cut_out(const cv::Mat& found,
                      const DenseSearch& search,
                      const RectifiedPair& pair,
@@ -89,7 +90,7 @@ DisparityMap run(cv::StereoMatcher& matcher,
     matcher.compute(eight_bits(pair.left, search.border), eight_bits(pair.right, search.border),
                     found);
   } catch (const cv::Exception& error) {
-    throw Error(place, "OpenCV refuses it: " + error.err, "choose other options");
+    throw Error(place, "OpenCV error: " + error.err, "change the options");
   }
   return cut_out(found, search, pair, range);
 }
@@ -100,8 +101,7 @@ DenseSearch checked_search(const RectifiedPair& pair,
                            const char* place) {
   check_matcher_input(pair, range, place);
   check(std::max(std::abs(range.min_px), std::abs(range.max_px)) < max_px, place,
-        "searches disparities of 2000 px and more, which OpenCV cannot hold",
-        "search fewer, or reduce the images");
+        "the search range reaches 2000 px, OpenCV's limit", "reduce the range or the images");
   return search_of(range, block_px);
 }
 
@@ -123,11 +123,11 @@ std::vector<Matcher> for_each_uniqueness(Options options,
 DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, const BmOptions& o) {
   const DenseSearch search = checked_search(pair, range, o.block_px, "bm");
   check(o.block_px % 2 == 1 && o.block_px >= 5 && o.block_px <= 255, "bm",
-        "its block is not of 5, 7, … 255 px", "choose an odd side");
+        "its block size is not 5, 7, … 255 px", "use an odd number");
   check(o.pre_filter_cap >= 1 && o.pre_filter_cap <= 63, "bm",
-        "its pre-filter is not capped between 1 and 63", "choose 31");
+        "its pre-filter cap is not between 1 and 63", "use e.g. 31");
   check(o.uniqueness_percent >= 0 && o.texture_threshold >= 0, "bm",
-        "its uniqueness or texture threshold is negative", "choose 0 for none");
+        "its uniqueness or texture threshold is negative", "use 0 to disable it");
   const cv::Ptr<cv::StereoBM> matcher = cv::StereoBM::create(search.count, o.block_px);
   matcher->setMinDisparity(search.min_px);
   matcher->setPreFilterType(cv::StereoBM::PREFILTER_XSOBEL);
@@ -136,7 +136,7 @@ DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, cons
   matcher->setUniquenessRatio(o.uniqueness_percent);
   matcher->setDisp12MaxDiff(o.disp12_max_diff_px);
   matcher->setSpeckleWindowSize(o.speckle_px);
-  matcher->setSpeckleRange(o.speckle_range_px * fine);  // here in 1/16 px, in SGBM in pixels
+  matcher->setSpeckleRange(o.speckle_range_px * fine);  // in 1/16 px here, in pixels for SGBM
   return run(*matcher, pair, range, search, "bm");
 }
 
@@ -147,12 +147,12 @@ DisparityMap sgbm_map(const RectifiedPair& pair,
                            cv::StereoSGBM::MODE_SGBM_3WAY, cv::StereoSGBM::MODE_HH4};
   const DenseSearch search = checked_search(pair, range, o.block_px, "sgbm");
   check(o.block_px % 2 == 1 && o.block_px >= 1 && o.block_px <= 25, "sgbm",
-        "its block is not of 1, 3, … 25 px", "choose an odd side");
+        "its block size is not 1, 3, … 25 px", "use an odd number");
   const int p1 = o.p1 > 0 ? o.p1 : 8 * o.block_px * o.block_px;
   const int p2 = o.p2 > 0 ? o.p2 : 32 * o.block_px * o.block_px;
-  check(p1 < p2, "sgbm", "its penalty p2 is not above p1", "choose four times as much");
+  check(p1 < p2, "sgbm", "its penalty p2 is not above p1", "use e.g. four times p1");
   check(o.uniqueness_percent >= 0 && o.uniqueness_percent <= 100, "sgbm",
-        "its uniqueness is not between 0 and 100 %", "choose 10");
+        "its uniqueness is not between 0 and 100 %", "use e.g. 10");
   const cv::Ptr<cv::StereoSGBM> matcher =
       cv::StereoSGBM::create(search.min_px, search.count, o.block_px, p1, p2, o.disp12_max_diff_px,
                              o.pre_filter_cap, o.uniqueness_percent, o.speckle_px,

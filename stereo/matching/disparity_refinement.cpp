@@ -24,7 +24,7 @@
 namespace vernier::stereo::internal {
 
 constexpr int half_width = 4, half_height = 3, width = 9, rows = 7;
-constexpr int lanes = 16;    // of a row: its nine pixels, then nothing
+constexpr int lanes = 16;    // per row: its nine pixels, then padding
 constexpr int unknowns = 5;  // shift, stretch, shear, gain, offset
 constexpr double pixels = width * rows;
 
@@ -36,7 +36,7 @@ struct LeftPatch {
   alignas(64) float g[rows][lanes], I[rows][lanes];
 };
 
-/// What the right patch K sums to with the left one.
+/// Sums of the right patch K with the left one.
 struct RightSums {
   Unknowns with_left;  ///< JᵀK, J = (g, g i, g j, I, 1)
   double squares = 0, sum = 0;
@@ -222,7 +222,7 @@ RefinedDisparity refine(const PaddedImage& left,
       judge_fit(J2, K, fit, factor.solve(Unknowns::Unit(0))[0], stretch, options, result);
       result.settled = std::abs(shift) < near_px;
     }
-    // The left patch moved by (shift, stretch, shear) is what the right one shows now: undo it.
+    // The left patch warped by (shift, stretch, shear) matches the right one: apply the inverse.
     const float undone = 1 / (1 + std::clamp(more_stretch, -0.3f, 0.3f));
     centre -= stretch * undone * std::clamp(shift, -0.6f, 0.6f);
     shear -= stretch * undone * std::clamp(more_shear, -0.3f, 0.3f);

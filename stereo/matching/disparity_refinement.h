@@ -9,7 +9,8 @@
 
 namespace vernier::stereo::internal {
 
-/// Where refinement of a point starts: its pixel in the left image, and how the right one shows it.
+/// Start of a refinement: the point's pixel in the left image and the initial warp to the right
+/// image.
 struct RefinementStart {
   int x = 0, y = 0;
   float disparity_px = 0;
@@ -21,28 +22,28 @@ struct RefinedDisparity {
   bool settled = false;
   float disparity_px = 0;  ///< at the pixel's centre
   float stretch = 1, shear = 0;
-  float sigma_px = 0;  ///< of the disparity, from the residuals and not below the images' noise
-  float score = 0;     ///< ZNCC of the patches as aligned
+  float sigma_px = 0;  ///< of the disparity, from the residuals, at least that of the image noise
+  float score = 0;     ///< ZNCC of the aligned patches
 };
 
 struct RefinementOptions {
   float noise_left = 1, noise_right = 1;  ///< standard deviation, grey levels
-  float max_shift_px = 1;                 ///< from the start
-  float stretch_sigma = 0.3f;  ///< how much stretch and shear are expected to differ from the start
+  float max_shift_px = 1;                 ///< maximum distance from the start
+  float stretch_sigma = 0.3f;  ///< expected deviation of stretch and shear from their start
   int iterations = 6;
 };
 
-/// Least squares matching along the row (Förstner 1982; Grün 1985), of patches of 9 x 7 pixels: the
-/// right image K shows the left one I as
+/// Least squares matching along the row (Förstner 1982; Grün 1985) of patches of 9 x 7 pixels: the
+/// right image K is related to the left image I by
 ///
 ///     K(x − d + r i + s j, y + j) = α I(x + i, y + j) + β,   |i| <= 4, |j| <= 3
 ///
-/// with shift, stretch r, shear s, gain α and offset β unknown, all pixels of one weight. Steps of
-/// r and s are damped as by weak priors, so that an edge without texture beside it stays near its
-/// start's. Steps are of the inverse composition (Baker and Matthews 2004): gradients of the left
-/// patch alone; the last is one below 0.05 px, which leaves about a tenth of it. With N the normal
-/// matrix, the disparity has the variance r² m N⁻¹₀₀ / α², m the residuals' mean square, at
-/// least (noise_left² α² + noise_right²).
+/// with shift, stretch r, shear s, gain α and offset β unknown and all pixels weighted equally.
+/// Steps of r and s are damped as by weak priors, so that an edge without texture around it stays
+/// near the start. Iterations are inverse compositional (Baker and Matthews 2004): gradients of the
+/// left patch only; they stop after a step below 0.05 px, which leaves about a tenth of it. With N
+/// the normal matrix, the variance of the disparity is r² m N⁻¹₀₀ / α², m the mean squared
+/// residual, at least (noise_left² α² + noise_right²).
 class DisparityRefiner {
  public:
   DisparityRefiner(const GreyLevels& left,

@@ -13,7 +13,7 @@
 namespace vernier::stereo::internal {
 namespace {
 
-/// Chains of matched points that are near each other and agree, built row by row.
+/// Groups of matched points that are close and agree, built row by row.
 class Chains {
  public:
   Chains(const PointsByRow& points, int reach, double slope, const std::vector<float>& disparity)
@@ -21,9 +21,9 @@ class Chains {
     for (int p = 0; p < points.size(); ++p) sets_.add();
   }
 
-  /// The rows in their order.
+  /// To be called for the rows in order.
   void add_row(int y) {
-    std::vector<int> from;  // the first of each row above that is not too far left
+    std::vector<int> from;  // first candidate of each row above
     for (int j = std::max(0, y - reach_); j < y; ++j) {
       from.push_back(row_begin_[static_cast<std::size_t>(j)]);
     }
@@ -41,7 +41,7 @@ class Chains {
     row_begin_.push_back(static_cast<int>(matched_.size()));
   }
 
-  /// Matched points whose chain has fewer.
+  /// Matched points in smaller groups.
   std::vector<int> of_fewer_than(int least) {
     std::vector<int> size(disparity_.size(), 0), few;
     for (const int p : matched_) ++size[static_cast<std::size_t>(sets_.root(p))];
@@ -54,7 +54,7 @@ class Chains {
  private:
   int x_of(int p) const { return points_.x[static_cast<std::size_t>(p)]; }
 
-  /// Joins p with those of matched_[begin, end) that agree; `begin` follows p to the right.
+  /// Joins p with the consistent ones of matched_[begin, end); `begin` follows p to the right.
   void join_near(int p, int& begin, int end) {
     const int x = x_of(p);
     while (begin < end && x_of(matched_[static_cast<std::size_t>(begin)]) < x - reach_) ++begin;

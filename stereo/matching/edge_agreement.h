@@ -8,9 +8,9 @@
 
 namespace vernier::stereo::internal {
 
-/// Drops points that fewer than `min_points` agree with, in a chain of matched points within
-/// reach of each other in row and column whose disparities differ by at most one, and by `slope`
-/// for every column between them.
+/// Drops points in groups smaller than `min_points`. A group is a chain of matched points within
+/// reach of each other in row and column whose disparities differ by at most one, plus `slope` for
+/// every column between them.
 void remove_isolated(const PointsByRow& points,
                      int min_points,
                      int reach,

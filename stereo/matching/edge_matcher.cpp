@@ -29,17 +29,17 @@ using namespace internal;
 
 namespace {
 
-/// What was found for the left points.
+/// Result of a search for the left points.
 struct Found {
   std::vector<Winner> winners;
-  std::vector<bool> confirmed;  ///< found again from the right image, within a disparity
+  std::vector<bool> confirmed;  ///< matched back from the right image, within one disparity
   std::vector<double> stretch;  ///< du_right / du_left
-  bool slanted = false;         ///< surfaces that slant were tried
+  bool slanted = false;         ///< slanted surfaces were searched
 };
 
-constexpr double slanted_slope = 0.6;  // of disparity, pixels a pixel
+constexpr double slanted_slope = 0.6;  // of disparity, pixels per pixel
 
-/// Searches points of the left image in the right one, and back.
+/// Matches points of the left image to the right one, and back.
 class EdgeSearch {
  public:
   EdgeSearch(const RectifiedPair& pair, const DisparityRange& range)
@@ -56,14 +56,14 @@ class EdgeSearch {
     mirrored_right_ = mirrored(right_);
   }
 
-  /// Of surfaces that face the cameras or, with `slanted`, of all.
+  /// For fronto-parallel surfaces or, with `slanted`, all.
   Found find(const PointsByRow& points, bool slanted) const {
     std::vector<StretchedView> from_left, from_right;
     SupportOptions support;
     if (slanted) {
       from_left = stretched_views(mirrored(pair_.right), Facing::opposite);
       support.slope = slanted_slope;
-      support.small_step = 10;  // what steps cost would make slopes into stairs
+      support.small_step = 10;  // otherwise step penalties would turn slopes into stairs
       support.large_step = 600;
     }
     std::vector<int> first;
@@ -84,7 +84,7 @@ class EdgeSearch {
   int least() const { return least_; }
 
  private:
-  /// Words are of pixels in the images' own order: a mirrored image is turned back for them.
+  /// Census words refer to the images' own pixel order, so a mirrored image is mirrored back.
   std::vector<StretchedView> stretched_views(const GreyLevels& image, Facing facing) const {
     std::vector<StretchedView> views;
     for (const double scale : {1.3, 1.7, 2.1, 2.6, 3.2, 0.74, 0.55, 0.42}) {
@@ -97,7 +97,7 @@ class EdgeSearch {
     return views;
   }
 
-  /// Searches from where the left points were found.
+  /// Searches from the matched positions of the left points.
   void confirm(const PointsByRow& points,
                const std::vector<StretchedView>* stretched_left,
                const SupportOptions& support,
@@ -144,7 +144,7 @@ class EdgeSearch {
   CensusImage left_, right_, mirrored_right_;
 };
 
-/// Disparities that pass all tests, not a number for the others.
+/// Disparities that pass all tests, NaN for the others.
 std::vector<float> accepted(const PointsByRow& points,
                             const EdgeSearch& search,
                             const Found& found,
@@ -160,7 +160,7 @@ std::vector<float> accepted(const PointsByRow& points,
   return disparity;
 }
 
-/// What was found, and what of it stands.
+/// Result of a search and its valid part.
 struct Attempt {
   Found found;
   std::vector<float> disparity;  ///< of points that pass all tests
@@ -174,8 +174,8 @@ double unmatched_share(const std::vector<float>& disparity) {
   return static_cast<double>(unmatched) / static_cast<double>(disparity.size());
 }
 
-/// Of surfaces that face the cameras; of all, where too much stays unmatched or too much of what is
-/// matched slants.
+/// For fronto-parallel surfaces; for all, if too many points stay unmatched or too many matched
+/// ones slant.
 Attempt attempt_at(const RectifiedPair& pair,
                    const PointsByRow& points,
                    const DisparityRange& range,
@@ -196,8 +196,8 @@ Attempt attempt_at(const RectifiedPair& pair,
   return attempt;
 }
 
-/// Least squares from neighbours' surfaces: at points that nothing was found for; where surfaces
-/// slant at all that it has not settled, for there nothing else is right to a pixel.
+/// Least squares starting from neighbours' surfaces: at unmatched points and, if there are slanted
+/// surfaces, at all points not refined yet, because the support is not accurate to a pixel there.
 void grow(Attempt& attempt) {
   EdgeRefinement& refinement = *attempt.refinement;
   if (!attempt.found.slanted) {
@@ -227,9 +227,9 @@ void check_edges(const std::vector<EdgePoint>& edges, const GreyLevels& image) {
         i == 0 || edges[i - 1].y < e.y || (edges[i - 1].y == e.y && edges[i - 1].x < e.x);
     if (inside && in_order) continue;
     throw Error("edge",
-                inside ? "the edge points are not in the order of their rows and columns"
-                       : "an edge point lies outside of the left image",
-                "give those that canny_edges finds in it");
+                inside ? "the edge points are not sorted by row and column"
+                       : "an edge point is outside the left image",
+                "use the points of canny_edges");
   }
 }
 
@@ -265,7 +265,8 @@ std::vector<EdgeMatch> match_edges(const RectifiedPair& pair,
     if (accepted) match.at.sigma_px = static_cast<float>(options.unrefined_sigma_px);
     if (!match.refined) continue;
     const RefinedDisparity& fit = attempt.refinement->fit(static_cast<int>(k));
-    if (!attempt.confirmed[k]) match.at.confidence = fit.score - 1;  // less sure than any confirmed
+    if (!attempt.confirmed[k])
+      match.at.confidence = fit.score - 1;  // less confident than any confirmed match
     const float off_centre = left_edges[edge[k]].row_x_px - static_cast<float>(points.x[k]);
     match.at.disparity_px = fit.disparity_px + (1 - fit.stretch) * off_centre;
     match.at.sigma_px = std::hypot(fit.sigma_px, static_cast<float>(options.sigma_floor_px));

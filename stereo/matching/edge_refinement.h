@@ -15,8 +15,8 @@
 
 namespace vernier::stereo::internal {
 
-/// Least squares at points: at first where disparities were found, then from neighbours that are
-/// settled already, whose surface says where to start.
+/// Least squares refinement of edge points: first where disparities were found, then at neighbours
+/// of refined points, starting from their surface.
 class EdgeRefinement {
  public:
   EdgeRefinement(const RectifiedPair& pair,
@@ -30,7 +30,7 @@ class EdgeRefinement {
         refiner_(pair.left, pair.right, options_of(pair, slanted)),
         fits_(points.x.size()) {}
 
-  /// From disparities found otherwise; not a number: none.
+  /// Starts from given disparities; NaN: none.
   void from(const std::vector<float>& disparity, const std::vector<double>& stretch) {
     std::vector<RefinementStart> starts;
     std::vector<int> at;
@@ -43,7 +43,7 @@ class EdgeRefinement {
     take(starts, at);
   }
 
-  /// Share of the settled points whose surface's disparity changes by more than 0.2 px a pixel.
+  /// Fraction of the refined points with a disparity gradient above 0.2 px per pixel.
   double slanted_share() const {
     constexpr float slant = 0.2f;
     int settled = 0, slanted = 0;
@@ -54,8 +54,8 @@ class EdgeRefinement {
     return static_cast<double>(slanted) / std::max(1, settled);
   }
 
-  /// One sweep over the points that are not settled, but for those `spared`; returns how many were
-  /// won.
+  /// One sweep over the points that are not refined yet, except those `spared`; returns the number
+  /// gained.
   int grow(const std::vector<bool>& spared) {
     std::vector<RefinementStart> starts;
     std::vector<int> at;
@@ -79,7 +79,7 @@ class EdgeRefinement {
     return take(starts, at);
   }
 
-  /// Unsettles points whose surface most of their settled neighbours contradict by over a pixel.
+  /// Discards points whose surface most of their refined neighbours contradict by over a pixel.
   void remove_inconsistent() {
     std::vector<int> dropped;
     for (int p = 0; p < points_.size(); ++p) {
@@ -102,13 +102,14 @@ class EdgeRefinement {
  private:
   static RefinementOptions options_of(const RectifiedPair& pair, bool slanted) {
     RefinementOptions how;
-    how.max_shift_px = slanted ? 1.0f : 0.7f;  // support is right to half a disparity, mostly
+    how.max_shift_px =
+        slanted ? 1.0f : 0.7f;  // the support's disparity is mostly within half a pixel
     how.noise_left = static_cast<float>(image_noise(matrix_of(pair.left)));
     how.noise_right = static_cast<float>(image_noise(matrix_of(pair.right)));
     return how;
   }
 
-  /// Where point p would be on the surface found at q.
+  /// Predicted start at point p on the surface found at q.
   RefinementStart seen_from(int q, int p) const {
     const auto a = static_cast<std::size_t>(q), b = static_cast<std::size_t>(p);
     const RefinedDisparity& fit = fits_[a];
@@ -118,7 +119,7 @@ class EdgeRefinement {
             fit.stretch, fit.shear};
   }
 
-  /// Keeps the fits that correlate better than what a point has.
+  /// Keeps the fits with a better correlation than the current one of the point.
   int take(const std::vector<RefinementStart>& starts, const std::vector<int>& at) {
     const std::vector<RefinedDisparity> found = refiner_.refine(starts);
     int won = 0;

@@ -10,16 +10,17 @@
 
 namespace vernier::stereo::internal {
 
-/// What a dense map says at an edge between two surfaces.
+/// Which disparity of a dense map to use at an edge between two surfaces.
 enum class EdgeSampling {
   nearest,     ///< that of the pixel where the edge crosses its row
-  foreground,  ///< the largest of the 3 x 3 pixels about it: an outline belongs to what is nearer
+  foreground,  ///< the largest of the 3 x 3 pixels around it: an occluding contour belongs to the
+               ///< nearer surface
 };
 
 /// Disparities of a dense map at edge points of the left image: interpolated along the row at
-/// EdgePoint::row_x_px; where the 3 x 3 pixels about it hold a step (stereo_truth.h) as `sampling`
-/// says. No match where the map does not know the nearest pixel. Confidence is 1. Throws Error for
-/// edges outside the map.
+/// EdgePoint::row_x_px; if the 3 x 3 pixels around it contain a discontinuity (stereo_truth.h), by
+/// `sampling`. No match if the nearest pixel is unknown. Confidence is 1. Throws Error for edges
+/// outside the map.
 std::vector<EdgeDisparity> sample_at_edges(const DisparityMap& map,
                                            const std::vector<EdgePoint>& edges,
                                            EdgeSampling sampling = EdgeSampling::foreground);

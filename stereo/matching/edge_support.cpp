@@ -11,7 +11,7 @@
 #include "stereo/matching/census.h"
 #include "stereo/matching/recent_values.h"
 
-// As in calib/solver/view_kernel.cpp, but for targets that count bits in vectors.
+// As in calib/solver/view_kernel.cpp, but for targets with a vector popcount.
 #define HWY_WANT_AVX3_DL
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -26,7 +26,7 @@ namespace vernier::stereo::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Costs of a point with the words of `other` from place `first` on, n of them.
+/// Costs of a point against n words of `other` from `first` on.
 HWY_INLINE void distances(const CensusCosts& at,
                           int point,
                           const CensusImage& other,
@@ -64,7 +64,7 @@ HWY_INLINE void distances(const CensusCosts& at,
   std::fill(costs + end, costs + n, no_place_cost);
 }
 
-/// The same of a stretched view, at the places of the image as it is.
+/// The same for a stretched view, at the positions of the unstretched image.
 void stretched_costs(const CensusCosts& at,
                      int point,
                      const StretchedView& view,
@@ -116,19 +116,19 @@ double best_scale(const CensusCosts& at, int point, int index) {
   return scale;
 }
 
-/// What a neighbour's support is worth at a distance; below 0 where it is out of reach.
+/// Weight of a neighbour at a distance; below 0 out of reach.
 HWY_INLINE float share_at(float distance_px, const SupportOptions& options) {
   const auto reach = static_cast<float>(options.reach_px);
   if (distance_px > 2 * reach) return -1;
   return std::clamp(1 - (distance_px - 1) / reach, static_cast<float>(options.min_share), 1.0f);
 }
 
-/// A direction's step towards a point: the neighbour's values and what steps cost.
+/// A direction's step to a point: the neighbour's values and the penalties.
 struct Step {
   const std::int16_t* from;
   std::int16_t least, small, large;
   std::int16_t* to;
-  int reach;  ///< disparities that a small step may take
+  int reach;  ///< maximum disparity change of a small step
 };
 
 HWY_INLINE Step step_from(const PointsByRow& points,
@@ -156,8 +156,8 @@ HWY_INLINE Step step_from(const PointsByRow& points,
           std::max(1, reach)};
 }
 
-/// Before a step of more than one disparity: each value as the least within reach. The value itself
-/// stays free of the small step's price.
+/// For steps of more than one disparity: the minimum of the values within reach. The value itself
+/// keeps no penalty.
 void widen(Step& step, int n, std::vector<std::int16_t>& wide) {
   if (step.reach <= 1) return;
   const auto size = static_cast<std::size_t>(n) + 128;
@@ -173,7 +173,7 @@ void widen(Step& step, int n, std::vector<std::int16_t>& wide) {
   step.from = wide.data() + 64;
 }
 
-/// The four directions of a pass at a point, added to `sum`, which the first pass begins.
+/// The four directions of a pass at a point, added to `sum`, which the first pass initialises.
 template <bool first>
 HWY_INLINE void take_steps(
     const Step* steps, const std::int16_t* cost, int n, std::int16_t* sum, std::int16_t* least) {
@@ -206,7 +206,7 @@ HWY_INLINE void take_steps(
   }
 }
 
-/// The first place of the least value, n a multiple of the lanes.
+/// The first index of the minimum, n a multiple of the lanes.
 HWY_INLINE int place_of_least(const std::int16_t* values, int n) {
   const hn::ScalableTag<std::int16_t> lanes;
   const auto step = static_cast<int>(hn::Lanes(lanes));
@@ -219,7 +219,7 @@ HWY_INLINE int place_of_least(const std::int16_t* values, int n) {
   }
 }
 
-/// Leaves `sums` changed about the winner.
+/// Overwrites `sums` near the winner.
 HWY_INLINE Winner winner_of(std::int16_t* sums, int n) {
   Winner best;
   best.index = place_of_least(sums, n);
@@ -236,13 +236,13 @@ HWY_INLINE Winner winner_of(std::int16_t* sums, int n) {
     sums[d] = out_of_question;
   }
   const int next = sums[place_of_least(sums, n)];
-  constexpr float floor = 200;  // of eight directions: no margin is of noise alone
+  constexpr float floor = 200;  // over eight directions: keeps noise from giving a margin
   best.margin = static_cast<float>(next - least) / (static_cast<float>(least) + floor);
   return best;
 }
 
-/// Forward pass into `sums`, then the backward one, which is done with a point when it leaves it.
-/// Costs are found again rather than kept: memory is slower.
+/// Forward pass into `sums`, then the backward pass, which completes each point in turn. Costs are
+/// recomputed rather than stored, because memory access is slower.
 void semi_global_disparities(const CensusCosts& costs,
                              Support support,
                              const SupportOptions& options,
@@ -251,7 +251,7 @@ void semi_global_disparities(const CensusCosts& costs,
   const PointsByRow& points = costs.points;
   const int n = costs.disparities;
   std::vector<std::int16_t> cost(static_cast<std::size_t>(n)), wide[directions];
-  const std::vector<std::int16_t> nothing(static_cast<std::size_t>(n) + 128, 0);  // of no neighbour
+  const std::vector<std::int16_t> nothing(static_cast<std::size_t>(n) + 128, 0);  // no neighbour
   for (const bool backward : {false, true}) {
     if (backward && support == Support::from_above) break;
     RecentValues recent(points, n);

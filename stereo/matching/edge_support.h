@@ -10,71 +10,71 @@
 
 namespace vernier::stereo::internal {
 
-/// Where a disparity has no place in the other image.
+/// Cost of a disparity whose position lies outside the other image.
 constexpr std::int16_t no_place_cost = 560;
 
-/// Whether two images are walked through in the same direction, or the other one is mirrored.
+/// Whether both images are scanned in the same direction, or the other one is mirrored.
 enum class Facing { same, opposite };
 
-/// Another image stretched along its rows.
+/// The other image stretched along its rows.
 struct StretchedView {
-  double scale = 1;  ///< place p of the other image is at scale p here
+  double scale = 1;  ///< position p of the other image maps to scale p here
   CensusImage image;
 };
 
-/// Costs of points at their places in another image: Hamming distances of the 3 x 3 census words
-/// about both, summed, 0 to 558. The places of a point are first_place + k, k from 0, so that
-/// disparities grow with k: seen from the left image the right one is mirrored,
+/// Matching costs of points at positions in the other image: summed Hamming distances of 3 x 3
+/// census words around both, 0 to 558. The positions of a point are first_place + k, k from 0;
+/// disparities increase with k because the right image is mirrored when searched from the left:
 ///
 ///     from the left:    other = mirrored right,  first place = width − 1 − x + least disparity
 ///     from the right:   other = left,            first place = x + least disparity
 ///
-/// `disparities` is a multiple of 32, and all places are within the images' border.
+/// `disparities` is a multiple of 32, and all positions lie within the padded images.
 struct CensusCosts {
   const PointsByRow& points;
   const CensusImage &own, &other;
   const std::vector<int>& first_place;
   Facing facing = Facing::same;
   int disparities = 0;
-  /// The other image stretched, for surfaces that slant: a point's cost is the least of all, with
-  /// `stretched_penalty` added to these.
+  /// Stretched versions of the other image, for slanted surfaces: a point's cost is the minimum
+  /// over all versions, with `stretched_penalty` added to these.
   const std::vector<StretchedView>* stretched = nullptr;
   int stretched_penalty = 30;
 };
 
-/// The scale whose cost is the least of a point at a place, 1 for the image as it is.
+/// The scale with the minimum cost of a point at a position, 1 for the unstretched image.
 double best_scale(const CensusCosts& at, int point, int index);
 
-/// Those of one point, into `costs`.
+/// All costs of one point, into `costs`.
 void census_costs(const CensusCosts& at, int point, std::int16_t* costs);
 
-/// The directions in which support comes.
+/// Directions of aggregation.
 enum class Support { all, from_above };
 
 struct SupportOptions {
-  int small_step = 120;    ///< added where neighbours differ by one disparity
-  int large_step = 350;    ///< added where they differ by more
-  double reach_px = 12;    ///< distance over which a neighbour's support fades …
-  double min_share = 0.1;  ///< … to this share; at twice the reach it ends
+  int small_step = 120;    ///< penalty for neighbours that differ by one disparity
+  int large_step = 350;    ///< penalty for neighbours that differ by more
+  double reach_px = 12;    ///< distance at which a neighbour's weight has fallen …
+  double min_share = 0.1;  ///< … to this fraction; 0 at twice the distance
   double slope = 0;  ///< change of disparity a pixel that counts as a small step, from a pixel on
 };
 
-/// The disparity that support chooses for a point.
+/// The disparity selected for a point.
 struct Winner {
-  int index = 0;     ///< among those searched
-  float offset = 0;  ///< of the vertex of the parabola through it and its neighbours
-  float margin = 0;  ///< how much worse the best is that is not beside it, relative
+  int index = 0;     ///< index into the searched disparities
+  float offset = 0;  ///< vertex of the parabola through it and its neighbours, relative to it
+  float margin = 0;  ///< relative excess cost of the best non-adjacent disparity
 };
 
-/// Semi-global support (Hirschmüller 2008) between points instead of pixels: along eight
+/// Semi-global aggregation (Hirschmüller 2008) between points instead of pixels: along eight
 /// directions r, from each neighbour n at distance g,
 ///
 ///     L_r(p, d) = C(p, d) + min( L_r(n, d), L_r(n, d ± 1) + w P_1, min L_r(n) + w P_2 ) − min
 ///     L_r(n)
 ///
-/// with w falling from 1 to `min_share` over the reach; C(p, d) alone where there is none. A
-/// point gets the disparity of the least Σ_r L_r, the smallest of equal ones.
-/// From above alone, four of the directions count, in a single pass.
+/// with w falling from 1 to `min_share` over the reach; C(p, d) alone if there is no neighbour. A
+/// point gets the disparity with the smallest Σ_r L_r, the smallest disparity if tied. With
+/// neighbours from above only, four of the directions are used, in a single pass.
 std::vector<Winner> semi_global_disparities(const CensusCosts& costs,
                                             Support support = Support::all,
                                             const SupportOptions& options = {});

@@ -42,9 +42,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> outputs =
      {"{output.png}", "output.png"},
      {"{output.npy}", "output.npy"}}};
 
-/// A command parted into words, and the name of the map that it writes.
+/// A command split into words, and the name of the map that it writes.
 struct Command {
-  std::string place;  ///< in messages
+  std::string place;  ///< used in error messages
   std::vector<std::string> words;
   std::string output;
 };
@@ -71,7 +71,7 @@ std::vector<std::string> words_of(const std::string& command, const std::string&
     }
   }
   if (quote != 0) {
-    throw Error(place, fmt::format("has a quote {} that is not closed", quote), "close it");
+    throw Error(place, fmt::format("unclosed quote {}", quote), "close it");
   }
   return words;
 }
@@ -83,29 +83,30 @@ Command parse_command(const std::string& command) {
       parsed.place.begin(), parsed.place.end(),
       [](unsigned char letter) { return std::iscntrl(letter) != 0; }, ' ');
   parsed.words = words_of(command, parsed.place);
-  if (parsed.words.empty()) throw Error("matcher", "its command is empty", "name a program");
+  if (parsed.words.empty()) throw Error("matcher", "the command is empty", "give a program");
   for (const char* needed : {"{left}", "{right}"}) {
     if (command.find(needed) == std::string::npos) {
       throw Error(parsed.place, std::string("has no ") + needed,
-                  "write it where the image belongs");
+                  "add it where the program expects the image");
     }
   }
   for (const auto& [placeholder, file] : outputs) {
     if (command.find(placeholder) == std::string::npos) continue;
     if (!parsed.output.empty() && parsed.output != file) {
-      throw Error(parsed.place, "has an {output} of two kinds", "name one");
+      throw Error(parsed.place, "has {output} in two formats", "use one");
     }
     parsed.output = file;
   }
   if (parsed.output.empty()) {
-    throw Error(parsed.place, "has no {output}", "write it where the map's name belongs");
+    throw Error(parsed.place, "has no {output}",
+                "add it where the program expects the output file");
   }
   return parsed;
 }
 
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-/// In one go: what is put in may look like a placeholder itself.
+/// In a single pass: inserted values may look like placeholders themselves.
 std::string filled(std::string_view word, const Values& values) {
   std::string text;
   while (!word.empty()) {
@@ -147,32 +148,32 @@ void write_image(const fs::path& file, const GreyLevels& grey) {
   write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Throws Error for a program that did not do its work.
+/// Throws Error for a program that failed.
 void check_run(const ProgramRun& run, const Command& command, double time_limit_s) {
   std::string fault;
   if (run.start_error == ENOENT) {
-    fault = "the program '" + command.words[0] + "' is not found";
+    fault = "program '" + command.words[0] + "' not found";
   } else if (run.start_error) {
-    fault = "the program '" + command.words[0] +
+    fault = "program '" + command.words[0] +
             "' cannot be run: " + std::generic_category().message(run.start_error);
   } else if (run.timed_out) {
-    fault = fmt::format("did not end within {} s and was stopped", time_limit_s);
+    fault = fmt::format("exceeded the time limit of {} s and was stopped", time_limit_s);
   } else if (run.signal) {
-    fault = fmt::format("was ended by signal {}: {}", run.signal, run.last_output_line());
+    fault = fmt::format("was terminated by signal {}: {}", run.signal, run.last_output_line());
   } else if (run.exit_code != 0) {
-    fault = fmt::format("ended with status {}: {}", run.exit_code, run.last_output_line());
+    fault = fmt::format("exited with status {}: {}", run.exit_code, run.last_output_line());
   }
-  if (!fault.empty()) throw Error(command.place, fault, "try the command by hand");
+  if (!fault.empty()) throw Error(command.place, fault, "try the command in a shell");
 }
 
-/// The program's map; its faults are the program's.
+/// Reads the program's map; errors refer to the program.
 DisparityMap read_output(const fs::path& file,
                          const Command& command,
                          const DisparityRange& range,
                          double scale) {
   if (!fs::is_regular_file(file)) {
-    throw Error(command.place, "ended well but wrote no map to {output}",
-                "let it write the file that {output} names");
+    throw Error(command.place, "exited with status 0 but wrote no file to {output}",
+                "make it write its map to {output}");
   }
   try {
     const std::string bytes = read_whole(file);
@@ -206,7 +207,7 @@ DisparityMap run(const Command& command,
     throw Error(command.place,
                 fmt::format("wrote a map of {}x{} for images of {}x{}", map.width_px, map.height_px,
                             pair.left.width_px, pair.left.height_px),
-                "let it write one disparity for each pixel of the left image");
+                "make it write one disparity per pixel of the left image");
   }
   return map;
 }

@@ -12,35 +12,34 @@
 namespace vernier::stereo::internal {
 
 struct ExternalMatcherOptions {
-  std::string name = {};    ///< empty: that of the program
-  double time_limit_s = 0;  ///< for each pair; 0: none. With one, the terminal's interrupt does not
-                            ///< reach the program
-  double scale = 0;         ///< values a pixel of its map; 0: 256 in a 16-bit PNG, 1 in the rest
+  std::string name = {};  ///< empty: name of the program
+  /// Per pair; 0: none. With a limit, the terminal's interrupt does not reach the program.
+  double time_limit_s = 0;
+  double scale = 0;  ///< file values per pixel; 0: 256 for a 16-bit PNG, else 1
   EdgeSampling sampling = EdgeSampling::foreground;
 };
 
-/// A program as a matcher, by the command that runs it for a pair:
+/// Runs a program as a matcher, by a command line per pair:
 ///
 ///     my_matcher --left {left} --right {right} --max-disparity {most} -o {output}
 ///
-/// {left} and {right} become the names of the images as 8-bit grey PNG, {least} and {most} the
-/// disparities to be searched, {output} the name of the map that it has to write, a PFM.
-/// {output.png} and {output.npy} ask for these instead (stereo/disparity_file.h says what is read).
-/// The images and the map are in a temporary folder of their own, which is removed whatever
-/// happens; the program runs in the folder of the caller.
+/// {left} and {right} are replaced by the images as 8-bit grey PNG, {least} and {most} by the
+/// disparity range, and {output} by the file to be written, a PFM. {output.png} and {output.npy}
+/// request these formats instead (stereo/disparity_file.h). Images and map are in a temporary
+/// folder, which is always removed; the program runs in the caller's working directory.
 ///
-/// The command is parted at blanks; '…' and "…" keep them, a backslash (not within '…') keeps the
-/// next letter. No shell takes part: nothing else has a meaning, and names are put in after the
-/// parting, so that blanks in them do no harm. Who needs a shell writes sh -c '…' sh {left} … and
-/// finds the names in "$1" ….
+/// The command is split at blanks; '…' and "…" quote, a backslash (not within '…') escapes the next
+/// character. No shell is involved: nothing else is special, and placeholders are replaced after
+/// splitting, so blanks in file names are safe. To use a shell, write sh -c '…' sh {left} … and
+/// refer to "$1" ….
 ///
-/// What lies more than half a pixel below the range, −1 for instance, counts as not known. Throws
-/// Error naming the command where it lacks {left}, {right} or {output}; on matching, where the
-/// program is not found, takes longer than the limit, ends with a status that is not 0 (with the
-/// last line of its complaint), or leaves no map or none of the images' size.
+/// Disparities more than half a pixel below the range, such as −1, are unknown. Throws Error naming
+/// the command if {left}, {right} or {output} is missing; when matching, if the program is not
+/// found, exceeds the time limit, exits with a non-zero status (with its last line of output), or
+/// writes no map or one of another size.
 Matcher external_matcher(const std::string& command, const ExternalMatcherOptions& options = {});
 
-/// The whole map.
+/// The dense disparity map.
 DisparityMap external_map(const RectifiedPair& pair,
                           const DisparityRange& range,
                           const std::string& command,

@@ -14,7 +14,8 @@
 namespace vernier::stereo::internal {
 namespace {
 
-/// Whether there is a step along a line of `count` pixels from (x, y) in direction (dx, dy).
+/// Whether there is a discontinuity along a line of `count` pixels from (x, y) in direction (dx,
+/// dy).
 bool line_has_step(const DisparityMap& map, int x, int y, int dx, int dy, int count) {
   int last = -1;
   float before = 0;
@@ -50,9 +51,9 @@ bool MapWindow::has_step() const {
 int column_of(const EdgePoint& edge, const DisparityMap& map, const std::string& place) {
   if (edge.x < 0 || edge.y < 0 || edge.x >= map.width_px || edge.y >= map.height_px) {
     throw Error(place,
-                fmt::format("is {}x{} pixels large, and an edge is at ({}, {})", map.width_px,
+                fmt::format("has {}x{} pixels, but an edge is at ({}, {})", map.width_px,
                             map.height_px, edge.x, edge.y),
-                "give the map of the image that the edges are of");
+                "use the map and the edges of one image");
   }
   return std::clamp(static_cast<int>(std::lround(edge.row_x_px)), 0, map.width_px - 1);
 }
@@ -68,7 +69,7 @@ float along_row(const DisparityMap& map, float x, int y) {
 
 void check_known(const DisparityMap& map, const std::string& place) {
   if (std::all_of(map.values.begin(), map.values.end(), [](float d) { return std::isnan(d); })) {
-    throw Error(place, "holds no known disparity", "give a map of the scene");
+    throw Error(place, "has no known disparity", "check the map");
   }
 }
 

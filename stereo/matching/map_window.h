@@ -19,19 +19,20 @@ struct MapWindow {
 
   MapWindow(const DisparityMap& of, int x, int y, int half);
 
-  /// Whether two known pixels next to each other along a row or column, or with only unknown ones
-  /// between, have disparities that differ by more than their distance.
+  /// Whether two known pixels adjacent along a row or column, or separated only by unknown ones,
+  /// have disparities that differ by more than their distance.
   bool has_step() const;
 };
 
-/// The column nearest to where an edge crosses its row. Throws Error(place) for edges outside.
+/// The column nearest to where an edge crosses its row. Throws Error(place) for edges outside the
+/// map.
 int column_of(const EdgePoint& edge, const DisparityMap& map, const std::string& place);
 
-/// Interpolated along row y between the two pixels beside x; the known one's where the other is
-/// not.
+/// Linear interpolation along row y between the two pixels beside x; the known one if only one is
+/// known.
 float along_row(const DisparityMap& map, float x, int y);
 
-/// Throws Error(place) for a map without a known disparity.
+/// Throws Error(place) for a map without any known disparity.
 void check_known(const DisparityMap& map, const std::string& place);
 
 }  // namespace vernier::stereo::internal

@@ -29,20 +29,21 @@ void check_matcher_input(const RectifiedPair& pair,
     throw Error(place,
                 fmt::format("the left image is {}x{} and the right one {}x{}", left.width_px,
                             left.height_px, right.width_px, right.height_px),
-                "give a rectified pair of one size");
+                "use a rectified pair");
   }
   if (!is_whole(left) || !is_whole(right)) {
-    throw Error(place, "the images have no pixels", "give a rectified pair");
+    throw Error(place, "the images have no pixels", "use a rectified pair");
   }
   if (range.min_px > range.max_px) {
-    throw Error(place, fmt::format("no disparity is between {} and {}", range.min_px, range.max_px),
-                "give the least one first");
+    throw Error(place,
+                fmt::format("the disparity range {} to {} is empty", range.min_px, range.max_px),
+                "give the smaller value first");
   }
   if (range.max_px >= left.width_px || range.min_px <= -left.width_px) {
     throw Error(place,
-                fmt::format("disparities of {} to {} reach beyond the images' width of {}",
+                fmt::format("the disparity range {} to {} exceeds the image width of {}",
                             range.min_px, range.max_px, left.width_px),
-                "give disparities that the scene can have");
+                "reduce the range");
   }
 }
 

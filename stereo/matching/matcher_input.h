@@ -8,8 +8,8 @@
 
 namespace vernier::stereo::internal {
 
-/// What every matcher refuses: images of unequal size or without pixels, and a range that is empty
-/// or reaches beyond the images' width. Throws Error(place).
+/// Checks common to all matchers: throws Error(place) for images of different sizes or without
+/// pixels, and for a range that is empty or exceeds the image width.
 void check_matcher_input(const RectifiedPair& pair,
                          const DisparityRange& range,
                          const std::string& place);

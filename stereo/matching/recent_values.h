@@ -11,8 +11,8 @@
 
 namespace vernier::stereo::internal {
 
-constexpr int directions = 4;                // of a pass; the other has the opposite ones
-constexpr std::int16_t never_least = 30000;  // with P1 added still a number
+constexpr int directions = 4;                // per pass; the other pass has the opposite ones
+constexpr std::int16_t never_least = 30000;  // stays representable with P1 added
 
 /// Values of the four directions at the points of the last few rows.
 class RecentValues {

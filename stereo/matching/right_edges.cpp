@@ -20,7 +20,7 @@ RightEdges::RightEdges(const GreyLevels& right, const StretchOptions& options)
       min_cosine_(static_cast<float>(std::cos(options.max_turn_rad))),
       width_(right.width_px),
       height_(right.height_px) {
-  // A view turns edges a little; those along the row cross it nowhere.
+  // Edges rotate a little between views; horizontal edges do not cross their row.
   const auto min_sine = static_cast<float>(std::sin(0.5 * options.min_angle_rad));
   const std::vector<EdgePoint> edges = canny_edges(right, options.right_edges);
   crossings_.reserve(edges.size());
@@ -46,7 +46,7 @@ bool RightEdges::is_like(const EdgePoint& left, const Crossing& right) const {
 }
 
 float RightEdges::nearest_px(const EdgePoint& left, float x_px) const {
-  constexpr float from_pixel_px = 1.5f;  // that an edge is within in its row
+  constexpr float from_pixel_px = 1.5f;  // maximum distance of an edge from its pixel along its row
   const float reach = reach_px_ + from_pixel_px;
   const auto column = [&](float x) {
     return static_cast<int>(std::clamp(x, 0.0f, static_cast<float>(width_)));

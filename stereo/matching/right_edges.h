@@ -10,17 +10,18 @@
 
 namespace vernier::stereo::internal {
 
-/// Edges of the right image by their pixels, to find the one that a left edge is seen as.
+/// Right edge points indexed by pixel, to find the one that corresponds to a left edge point.
 class RightEdges {
  public:
   RightEdges(const GreyLevels& right, const StretchOptions& options);
 
-  /// Where the edge like `left` that crosses its row nearest to `x_px` does so; not a number if
-  /// there is none in reach. Edges of the rows above and below are followed along their tangents.
+  /// Where the compatible edge that crosses the row of `left` nearest to `x_px` crosses it; NaN if
+  /// there is none within reach. Edges of the rows above and below are extended along their
+  /// tangents.
   float nearest_px(const EdgePoint& left, float x_px) const;
 
  private:
-  /// An edge that crosses its own row at x_px and others in a straight line.
+  /// An edge point that crosses its own row at x_px and adjacent rows along its tangent.
   struct Crossing {
     float x_px, place_x_px, place_y_px, slope;
     Eigen::Vector2f normal;
@@ -31,7 +32,8 @@ class RightEdges {
   float reach_px_, max_ratio_, min_cosine_;
   int width_, height_;
   std::vector<Crossing> crossings_;  ///< by row, then by pixel
-  std::vector<int> from_pixel_;      ///< the first crossing from a pixel on; one more a row
+  /// Index of the first crossing at or after a pixel; one extra entry per row.
+  std::vector<int> from_pixel_;
 };
 
 }  // namespace vernier::stereo::internal

@@ -31,24 +31,23 @@ void require(bool good, const char* fault, const char* remedy) {
 void check_options(const StretchOptions& o) {
   const auto odd = [](int n, int least, int most) { return n % 2 == 1 && n >= least && n <= most; };
   require(odd(o.width_px, 3, 63) && odd(o.height_px, 1, 63) && o.width_px * o.height_px <= 2000,
-          "a block's width and height are not odd or not from 3 x 1 to 2000 pixels",
-          "give 17 x 9, for instance");
-  require(o.step_x_px > 0 && o.step_y_px > 0, "blocks do not advance", "give steps from 1 px on");
+          "the block size is not odd or not from 3 x 1 to 2000 pixels", "use e.g. 17 x 9");
+  require(o.step_x_px > 0 && o.step_y_px > 0, "the block spacing is not positive",
+          "use at least 1 px");
   require(odd(o.stretches, 1, 99) && odd(o.shears, 1, 99),
-          "the number of stretches or shears is not odd", "give odd numbers below 100");
+          "the number of stretches or shears is not odd", "use odd numbers below 100");
   require(o.max_gradient > 0 && o.max_gradient <= 1.5,
-          "the disparity gradient's limit is not above 0 and up to 1.5", "give 1, for instance");
-  require(std::abs(o.max_shear) <= 2, "the largest shear is above 2", "give 0.5, for instance");
-  require(o.scale_px > 0 && o.scale_px <= 10, "the derivative's scale is not from 0 to 10 px",
-          "give 1 px, for instance");
-  require(o.rank_reach_px >= 1 && o.rank_reach_px <= 7, "ranks do not reach 1 to 7 px",
-          "give 5, for instance");
+          "the disparity gradient limit is not above 0 and at most 1.5", "use e.g. 1");
+  require(std::abs(o.max_shear) <= 2, "the maximum shear is above 2", "use e.g. 0.5");
+  require(o.scale_px > 0 && o.scale_px <= 10,
+          "the derivative scale is not above 0 and at most 10 px", "use e.g. 1 px");
+  require(o.rank_reach_px >= 1 && o.rank_reach_px <= 7,
+          "the rank window reach is not from 1 to 7 px", "use e.g. 4");
   require(o.rank_least_grey >= 0 && o.rank_least_grey <= 255,
-          "what is darker or brighter in ranks is not from 0 to 255 grey levels",
-          "give 4, for instance");
-  require(o.halvings >= 0 && o.halvings <= 6, "halvings are not from 0 to 6", "give 1 or 2");
+          "the minimum difference for ranks is not from 0 to 255 grey levels", "use e.g. 4");
+  require(o.halvings >= 0 && o.halvings <= 6, "halvings is not from 0 to 6", "use 1 or 2");
   require(o.edge_reach_px >= 0 && o.max_contrast_ratio >= 1 && o.margin_px >= 0,
-          "a reach or a margin is negative or a contrast ratio below 1", "give larger ones");
+          "a reach or margin is negative or the contrast ratio is below 1", "use larger values");
 }
 
 bool agrees(const StretchBlock& a, const StretchBlock& b, double gradient) {
@@ -58,7 +57,7 @@ bool agrees(const StretchBlock& a, const StretchBlock& b, double gradient) {
          static_cast<float>(gradient) * std::hypot(across, static_cast<float>(a.y - b.y));
 }
 
-/// Calls visit(block) for the blocks of a grid at a place and around it.
+/// Calls visit(block) for the blocks of a grid at a position and around it.
 template <class Blocks, class Visit>
 void for_each_about(Blocks& grid, int column, int row, const Visit& visit) {
   for (int y = std::max(0, row - 1); y <= std::min(grid.rows - 1, row + 1); ++y) {
@@ -68,7 +67,7 @@ void for_each_about(Blocks& grid, int column, int row, const Visit& visit) {
   }
 }
 
-/// Says of every block what becomes of it.
+/// Sets the status of every block.
 void decide(const StretchOptions& options, StretchBlocks& grid) {
   const auto good = [&](const StretchBlock& block) {
     return block.searched > 0 && block.score >= static_cast<float>(options.min_score);
@@ -89,8 +88,8 @@ void decide(const StretchOptions& options, StretchBlocks& grid) {
   }
 }
 
-/// What kept blocks of `from`, each of its pixels `scale` wide, had about every block; everything
-/// where there are none.
+/// Search ranges from the kept blocks of `from` around every block, with pixels `scale` wide; the
+/// full range if there are none.
 std::vector<BlockRange> ranges_about(const StretchBlocks& from,
                                      int scale,
                                      const StretchBlocks& grid,
@@ -135,7 +134,7 @@ GreyLevels halved(const GreyLevels& image) {
   return half;
 }
 
-/// Blocks of the images at half their size, if they are not too small for that.
+/// Blocks of the images at half size, unless they are too small.
 StretchBlocks coarser_blocks(const RectifiedPair& pair,
                              const std::vector<EdgePoint>& left_edges,
                              const DisparityRange& range,
@@ -156,15 +155,15 @@ StretchBlocks coarser_blocks(const RectifiedPair& pair,
   return stretch_blocks(half, edges, half_range, options);
 }
 
-/// Ranges that the last frame leaves, and the whole one for some blocks all the same.
+/// Ranges from the last frame, and the full range for some blocks.
 std::vector<BlockRange> ranges_after(const StretchBlocks& last,
                                      std::uint32_t frame,
                                      const StretchBlocks& grid,
                                      const DisparityRange& range,
                                      const StretchOptions& options) {
   if (last.columns != grid.columns || last.rows != grid.rows) {
-    throw Error("last frame", "its blocks are of images of another size or of other options",
-                "begin a sequence anew where these change");
+    throw Error("last frame", "its blocks come from another image size or other options",
+                "start a new sequence when these change");
   }
   std::vector<BlockRange> ranges = ranges_about(last, 1, grid, range, options);
   for (std::size_t k = 0; k < ranges.size(); ++k) {
@@ -177,7 +176,7 @@ std::vector<BlockRange> ranges_after(const StretchBlocks& last,
   return ranges;
 }
 
-/// For every pixel the kept block of the best score that holds it, −1 for none.
+/// For every pixel, the kept block with the best score that contains it, −1 if none.
 class BestBlocks {
  public:
   BestBlocks(const StretchBlocks& grid, const StretchOptions& options, int width, int height)

@@ -24,9 +24,9 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of n pixels, how many more of the squares about them are darker than brighter, by more than
-/// `least`; more are written, up to a vector. `rows` are those from `reach` above to `reach` below,
-/// each from `reach` pixels before the first.
+/// Rank filter of n pixels: number of darker minus brighter pixels in the square around each, by
+/// more than `least`; writes up to a vector more. `rows` are those from `reach` above to `reach`
+/// below, each from `reach` pixels before the first.
 void ranks(
     const std::int16_t* const* rows, int reach, std::int16_t least, int n, std::int16_t* out) {
   const hn::ScalableTag<std::int16_t> lanes;
@@ -59,7 +59,7 @@ HWY_EXPORT(ranks);
 
 namespace {
 
-constexpr int vector_pixels = 64;  // and more of a row that vectors may read or write
+constexpr int vector_pixels = 64;  // row padding for vector reads and writes
 
 std::int16_t whole(float value) {
   constexpr float most = max_filtered;

@@ -11,17 +11,16 @@
 
 namespace vernier::stereo::internal {
 
-constexpr int max_filtered = 255;  // of a filtered pixel's magnitude
+constexpr int max_filtered = 255;  // maximum magnitude of a filtered pixel
 
-/// An image as blocks of it are compared: one or more planes of whole numbers, with their outermost
-/// pixels repeated about them.
+/// A filtered image for block comparison: one or more integer planes with replicated borders.
 struct FilteredImage {
   int width = 0, height = 0, planes = 1;
   int margin_x = 0, margin_y = 0;
   std::vector<std::int16_t> values;
 
   std::size_t stride() const { return static_cast<std::size_t>(width + 2 * margin_x); }
-  /// Its pixel 0; −margin_x to width + margin_x − 1 are there, rows likewise.
+  /// Pixel 0 of a row; −margin_x to width + margin_x − 1 are valid, rows likewise.
   const std::int16_t* row(int plane, int y) const { return values.data() + place(plane, y); }
   std::int16_t* row(int plane, int y) { return values.data() + place(plane, y); }
 

@@ -27,7 +27,7 @@ const hn::RebindToFloat<decltype(wide)> real;
 using Wide = decltype(hn::Zero(wide));
 
 #if HWY_TARGET == HWY_SCALAR
-/// A pair of numbers in the place of a vector of them.
+/// A pair of numbers in place of a vector of pairs.
 struct Pairs {
   std::int16_t first, second;
 };
@@ -36,7 +36,7 @@ Pairs pairs_in(Wide v) {
   const std::int32_t bits = hn::GetLane(v);
   return {static_cast<std::int16_t>(bits), static_cast<std::int16_t>(bits >> 16)};
 }
-/// Sums of the products of pairs added to those of `even` and `odd`.
+/// Adds the sums of the products of pairs to those of `even` and `odd`.
 Wide add_products(Pairs a, Pairs b, Wide even, Wide& /*odd*/) {
   return hn::Add(even, hn::Set(wide, a.first * b.first + a.second * b.second));
 }
@@ -58,7 +58,7 @@ HWY_INLINE Pairs low_halves(Wide a, Wide b) {
 }
 #endif
 
-/// Pairs of pixels weighed.
+/// Weighted pairs of pixels.
 HWY_INLINE Wide sample(const std::int16_t* pairs, Wide weights) {
   Wide odd = hn::Zero(wide);
   const Wide even = add_products(load_pairs(pairs), pairs_in(weights), hn::Zero(wide), odd);
@@ -120,7 +120,7 @@ void add_row_sums(const std::int16_t* pairs,
   for (; x < n; x += lanes) add_sums_of<1>(pairs + 2 * x, warp, row, sums + x, squares + x);
 }
 
-/// A vector of rows at a time.
+/// One vector of rows at a time.
 void spread_weights(const StretchWarp& warp, const std::int16_t* left, std::int32_t* weights) {
   const hn::CappedTag<std::int16_t, 16> rows;
   const int stride = StretchWarp::row_stride(warp.rows);
@@ -163,7 +163,7 @@ void block_weights(const StretchWarp& warp, const std::int16_t* left, std::int32
 }
 
 void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse) {
-  // Below a hundredth of variance there is nothing to compare.
+  // Blocks with a variance below 0.01 have no texture.
   constexpr float min_variance = 0.01f * StretchWarp::steps * StretchWarp::steps;
   const auto least = hn::Set(real, count * min_variance);
   const auto all = hn::Set(real, count), one = hn::Set(real, 1.0f);

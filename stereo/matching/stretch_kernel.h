@@ -10,23 +10,24 @@
 
 namespace vernier::stereo::internal {
 
-/// Where the samples of a block lie in the right image, for one stretch and one shear: in whole
-/// sixteenths of a pixel, so that all sums are of whole numbers. Tables are by column of the block
-/// and then by row, `row_stride` rows each.
+/// Sample positions of a block in the right image for one stretch and one shear, in integer
+/// sixteenths of a pixel, so that all sums are integers. Tables are by column of the block, then by
+/// row, with `row_stride` entries per column.
 struct StretchWarp {
-  /// `row_pairs` are in a row of the right image (PairedRows).
+  /// `row_pairs` is the length of a row of the right image in pairs (PairedRows).
   StretchWarp(double stretch, double shear, int width, int rows, int row_pairs);
 
-  static constexpr int steps = 16;  // a pixel
+  static constexpr int steps = 16;  // per pixel
   static int row_stride(int rows) { return (rows + 15) / 16 * 16; }
 
   double stretch, shear;
   int width, rows;
-  std::vector<int> place;               ///< the pixel before a sample, from the right centre
+  std::vector<int> place;               ///< pixel left of a sample, relative to the right centre
   std::vector<std::int16_t> near, far;  ///< weights of that pixel and the next
 
-  /// Instead of sampling the right image the left pixels may be spread over it, which is the same
-  /// sum and takes fewer products where right blocks are narrow. In pairs of right pixels:
+  /// The transposed form: left pixels are distributed over right pixels instead of sampling the
+  /// right image. It gives the same sum with fewer products where right blocks are narrow. In pairs
+  /// of right pixels:
   bool spread = false;
   int pairs = 0;
   int first_offset = 0;   ///< of the first pair's first pixel from the right centre
@@ -50,8 +51,9 @@ class PairedRows {
   std::vector<std::int16_t> values_;
 };
 
-/// Adds to `sums` and `squares` those of a row's samples about each right centre from 0 to n − 1,
-/// in sixteenths. Up to 15 more are written. `row` is of the block.
+/// Adds a row's sums and sums of squares of the samples around each right centre from 0 to n − 1,
+/// in sixteenths, to `sums` and `squares`. Writes up to 15 entries more. `row` is relative to the
+/// block.
 void add_row_sums(const std::int16_t* pairs,
                   const StretchWarp& warp,
                   int row,
@@ -59,13 +61,13 @@ void add_row_sums(const std::int16_t* pairs,
                   float* sums,
                   float* squares);
 
-/// The rows that blocks at a height hold, as add_row_sums leaves them.
+/// The rows of a block window, as add_row_sums leaves them.
 struct WindowRows {
   std::vector<const float*> sums, squares;
 };
 
-/// Sums over all rows about the first n right centres, and one over the root of the centred sum of
-/// squares of `count` samples. Up to 15 more are written.
+/// Sums over all rows around the first n right centres, and the inverse root of the centred sum of
+/// squares of `count` samples. Writes up to 15 entries more.
 void window_sums(const WindowRows& rows, int n, float count, float* sums, float* inverse);
 
 /// A left block's pixels (by column and row, as the warp's tables) as weights of the pairs.
@@ -76,15 +78,15 @@ struct BlockSearch {
   const StretchWarp& warp;
   const PairedRows& right;
   int planes;
-  int top;                      ///< row of the block
+  int top;                      ///< of the block
   const std::int32_t* weights;  ///< of all planes
   float mean;                   ///< of the left block
   int first, n;                 ///< right centres
   const float *sums, *inverse;  ///< of the right image, by right centre
 };
 
-/// (Σ L R − mean Σ R) · inverse for the right centres, into `scores`, where up to 31 more are
-/// written. Returns the largest of the n.
+/// (Σ L R − mean Σ R) · inverse for the right centres, into `scores`; writes up to 31 entries more.
+/// Returns the largest of the n.
 float block_scores(const BlockSearch& search, float* scores);
 
 }  // namespace vernier::stereo::internal

@@ -21,10 +21,10 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr int lanes = 32;  // and more of every row that vectors may read or write
+constexpr int lanes = 32;  // row padding for vector reads and writes
 
-/// Sums over blocks about all right centres of a row of blocks, those of a row of pixels found once
-/// while they are of use.
+/// Block sums around all right centres of a row of blocks; the sums of each pixel row are computed
+/// once and reused.
 class RightSums {
  public:
   RightSums(const PairedRows& right, const StretchWarp& warp, int planes, int width)
@@ -55,7 +55,7 @@ class RightSums {
   const float* inverse() const { return inverse_.data(); }
 
  private:
-  /// Row y of the image as row j of the block: with a shear that is not the same for all j.
+  /// Row y of the image as row j of the block: with a shear it depends on j.
   void hold(int y, int j) {
     const auto slot = static_cast<std::size_t>((y + warp_.rows) % warp_.rows);
     float *const sums = row_sums_.data() + slot * size_, *const squares =
@@ -81,7 +81,7 @@ class RightSums {
   WindowRows window_;
 };
 
-/// The rows of the left image that a row of blocks holds, turned: pixels by column and row.
+/// The left image rows of a row of blocks, transposed: pixels by column and row.
 class LeftStrip {
  public:
   LeftStrip(const FilteredImage& image, int width, int rows)
@@ -110,7 +110,7 @@ class LeftStrip {
     }
   }
 
-  /// Pixels of the block about column x, and its mean and the root of its centred sum of squares.
+  /// Pixels of the block around column x, its mean and the root of its centred sum of squares.
   const std::int16_t* block(int plane, int x) const {
     return values_.data() +
            (static_cast<std::size_t>(plane) * image_.stride() + first(x)) * stride_;
@@ -141,13 +141,13 @@ class LeftStrip {
   std::vector<int> sums_, squares_;
 };
 
-/// How far the vertex of the parabola through three values at −1, 0 and 1 is from 0, at most half.
+/// Vertex of the parabola through three values at −1, 0 and 1, clamped to ± one half.
 float vertex(float before, float at, float after) {
   const float bend = before - 2 * at + after;
   return bend < 0 ? std::clamp(0.5f * (before - after) / bend, -0.5f, 0.5f) : 0;
 }
 
-/// Pixels that a sample is from its block's right centre, at most, and what vectors need.
+/// Maximum distance in pixels of a sample from its block's right centre, plus vector padding.
 int right_margin(const StretchOptions& options) {
   const double most = stretches_of(options).back() * (options.width_px / 2) +
                       std::abs(shears_of(options).back()) * (options.height_px / 2);
@@ -165,7 +165,7 @@ std::vector<StretchWarp> warps_of(const StretchOptions& options, std::size_t row
   return warps;
 }
 
-/// What all blocks of a pair share.
+/// Data common to all blocks of a pair.
 class StretchSearch {
  public:
   StretchSearch(const RectifiedPair& pair, const StretchOptions& options)
@@ -229,7 +229,7 @@ class StretchSearch {
       const float most = score(block, w, mean, first, n, buffers.row(w, n), buffers);
       if (most > best.score) best = {w, most};
     }
-    // Of equal ones the largest disparity is taken.
+    // The largest disparity if tied.
     const float* const row = buffers.row(best.warp, n);
     const auto k = static_cast<int>(std::find(row, row + n, best.score) - row);
     settle(block, first, n, k, best.warp, mean, range, buffers);
@@ -269,8 +269,7 @@ class StretchSearch {
     }
   }
 
-  /// The best place k of the best warp, and what lies between the places and the stretches that
-  /// were tried.
+  /// Interpolates between positions and between stretches at the best position k of the best warp.
   void settle(StretchBlock& block,
               int first,
               int n,
@@ -341,7 +340,7 @@ StretchBlocks block_grid(int width_px,
       grid.blocks.push_back(block);
     }
   }
-  // Points above and to the left of a pixel.
+  // Integral image: points above and to the left of a pixel.
   const auto stride = static_cast<std::size_t>(width_px + 1);
   std::vector<int> before(stride * static_cast<std::size_t>(height_px + 1));
   const auto min_sine = static_cast<float>(std::sin(options.min_angle_rad));

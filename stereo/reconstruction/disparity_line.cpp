@@ -13,11 +13,11 @@ namespace {
 
 using Samples = std::span<const DisparitySample>;
 
-constexpr int max_apart = 3;        // samples in a row that disagree within one line
-constexpr int max_candidates = 32;  // ends of lines that are tried
+constexpr int max_apart = 3;        // consecutive outliers allowed within one line
+constexpr int max_candidates = 32;  // end points of the lines tried
 constexpr int max_line_rounds = 10;
 
-/// A line of two numbers, and the run of samples on it.
+/// A line of two coefficients, and the run of samples on it.
 struct LineCandidate {
   double at_px = 0, value_px = 0, slope = 0;
   std::vector<int> run;
@@ -27,7 +27,7 @@ struct LineCandidate {
   }
 };
 
-/// The longest run of samples on the line without more than a few others in a row.
+/// The longest run of samples on the line, with limited outliers in a row.
 std::vector<int> longest_run(const LineCandidate& line, Samples samples, double max_off_sigma) {
   std::vector<int> best, run;
   for (int i = 0; i < static_cast<int>(samples.size()); ++i) {
@@ -42,7 +42,7 @@ std::vector<int> longest_run(const LineCandidate& line, Samples samples, double 
   return run.size() > best.size() ? run : best;
 }
 
-/// Through pairs of samples, the one with the longest run.
+/// Of the lines through pairs of samples, the one with the longest run.
 LineCandidate consensus(Samples samples, const DisparityLineOptions& options) {
   const std::size_t n = samples.size();
   const std::size_t step = std::max<std::size_t>(1, (n + max_candidates - 1) / max_candidates);
@@ -86,7 +86,7 @@ struct Regression {
     slope = spread > 0 ? products / spread : 0;
   }
 
-  /// Of the mean and the slope by a sample's disparity.
+  /// Derivatives of the mean and the slope by a sample's disparity.
   Eigen::Vector2d gain(const DisparitySample& s) const {
     return {1 / weight / (s.sigma_px * s.sigma_px),
             (s.along_px - centre) / spread / (s.sigma_px * s.sigma_px)};

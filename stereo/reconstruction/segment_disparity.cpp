@@ -27,12 +27,12 @@ using Eigen::Vector2d;
 
 constexpr double patch_width_px = 9,
                  patch_height_px = 7;  // of stereo/matching/disparity_refinement.h
-/// Covariance of a disparity and its edge's place along the row, by the variance of that place:
-/// 0.85 ± 0.07 measured on rendered edges; 1 if the place were found as well as can be.
+/// Covariance of a disparity with its edge's position along the row, relative to the variance of
+/// that position: 0.85 ± 0.07 measured on rendered edges; 1 for an optimal edge detector.
 constexpr double moved_alike = 0.85;
-constexpr double max_moved_alike = 0.95;  // of what leaves the covariance positive
+constexpr double max_moved_alike = 0.95;  // of the limit at which the covariance stays positive
 
-/// One segment with what is known of its points.
+/// A segment with the data of its points.
 struct Edge {
   const EdgeSegment& segment;
   EdgeLine line;
@@ -47,7 +47,7 @@ struct Edge {
     }
   }
 
-  /// From the line's own origin.
+  /// Relative to the line's own origin.
   double from_centroid(double along) const { return line.along(segment.segment.a_px) + along; }
 };
 
@@ -69,12 +69,12 @@ std::vector<DisparitySample> samples_of(const Edge& edge,
   return samples;
 }
 
-/// One end of a part: its place along the segment and in the image.
+/// One end of a part: its position along the segment and in the image.
 struct SegmentEnd {
   double along_px = 0;
   Vector2d place;
   Matrix2d covariance;
-  bool own = true;  ///< the segment's
+  bool own = true;  ///< that of the segment
 };
 
 SegmentEnd end_of(const Edge& edge,
@@ -95,7 +95,8 @@ SegmentEnd end_of(const Edge& edge,
           false};
 }
 
-/// The covariance of both ends' places and disparities (stereo/reconstruction/segment_disparity.h).
+/// The covariance of both ends' positions and disparities
+/// (stereo/reconstruction/segment_disparity.h).
 class EndCovariance {
  public:
   EndCovariance(const Edge& edge,
@@ -113,7 +114,7 @@ class EndCovariance {
         line.covariance_of(a.along_px, b.along_px), line.covariance_of(b.along_px, a.along_px),
         line.covariance_of(b.along_px, b.along_px);
     ends_ = {a.covariance, b.covariance};
-    // An end moves by this where its line moves by 1 across.
+    // Displacement of an end when its line moves by 1 across.
     by_across_ = {a.covariance * n / n.dot(a.covariance * n),
                   b.covariance * n / n.dot(b.covariance * n)};
     alike_ = alike(std::abs(n.x())) * (n.x() < 0 ? -1 : 1);
@@ -136,8 +137,8 @@ class EndCovariance {
   }
 
  private:
-  /// Change of the disparity where the line moves by 1 across; less where the disparity is known
-  /// too well for it.
+  /// Change of the disparity when the line moves by 1 across; less if the disparity is too accurate
+  /// for it.
   double alike(double n_x) const {
     const Matrix2d root = across_.llt().matrixL();
     const Matrix2d inverse = root.inverse();
@@ -153,7 +154,7 @@ class EndCovariance {
   std::array<Vector2d, 2> by_across_;
 };
 
-/// One part of a segment; nothing where its agreeing points are too sparse.
+/// One part of a segment; nullopt if its inliers are too sparse.
 SegmentDisparity part_of(const Edge& edge,
                          const DisparityLine& line,
                          const SegmentDisparityOptions& options) {
@@ -180,7 +181,7 @@ DisparityLineOptions line_options(const Edge& edge, const SegmentDisparityOption
           o.floor_length_px};
 }
 
-/// All parts of one segment, or one that says why there is none.
+/// All parts of one segment, or one entry with the reason for rejection.
 std::vector<SegmentDisparity> parts_of(const std::vector<EdgePoint>& edges,
                                        const EdgeSegment& segment,
                                        const std::vector<EdgeDisparity>& disparities,
@@ -216,20 +217,22 @@ void check(const std::vector<EdgePoint>& edges,
            const SegmentDisparityOptions& o) {
   const std::string place = "segment disparities";
   if (edges.size() != disparities.size()) {
-    throw Error(place, "edges and disparities are not of one number", "give one for every edge");
+    throw Error(place, "edges and disparities differ in number", "give one disparity per edge");
   }
   const auto is_none = [&](int p) { return p < 0 || p >= static_cast<int>(edges.size()); };
   for (const EdgeSegment& s : segments) {
     if (s.points.size() < 2 || std::any_of(s.points.begin(), s.points.end(), is_none)) {
-      throw Error(place, "a segment has fewer than two points, or one that is none of the edges",
-                  "give the edges that the segments are of");
+      throw Error(
+          place,
+          "a segment has fewer than two points, or refers to a point that is not in the edges",
+          "use the edges that the segments were made from");
     }
   }
   if (o.min_points < 3 || !(o.min_share >= 0) || !(o.max_off_sigma > 0) || !(o.reach_px >= 0) ||
       !(o.end_sigma_px > 0) || !(o.unstated_sigma_px > 0) || !(o.floor_px >= 0) ||
       !(o.floor_length_px > 0) || !(o.scale_px > 0)) {
-    throw Error(place, "an option is out of its range",
-                "ask for 3 points or more, and deviations and lengths above 0");
+    throw Error(place, "an option is out of range",
+                "use at least 3 points, and deviations and lengths above 0");
   }
 }
 
@@ -240,15 +243,15 @@ std::string_view describe(SegmentStatus status) {
     case SegmentStatus::placed:
       return "placed";
     case SegmentStatus::along_row:
-      return "it lies along the row, where a disparity says nothing";
+      return "too close to horizontal: disparity not observable";
     case SegmentStatus::unmatched:
       return "too few of its points have a disparity";
     case SegmentStatus::disagree:
-      return "its points' disparities agree on no line";
+      return "the disparities of its points fit no common line";
     case SegmentStatus::behind:
-      return "an end's disparity is not above 0";
+      return "the disparity of an end is not above 0";
     case SegmentStatus::no_ray:
-      return "an end's pixel has no ray under the rig";
+      return "the pixel of an end cannot be unprojected";
   }
   return "";
 }

@@ -14,43 +14,44 @@
 namespace vernier::stereo::internal {
 
 struct SegmentDisparityOptions {
-  double min_angle_rad = 0.0873;   ///< segments nearer to the row (5°) are refused
-  int min_points = 6;              ///< matched points that agree on one line
-  double min_share = 0.5;          ///< of them among a part's edge points
-  double max_off_sigma = 3;        ///< farther from the line a point disagrees
-  double reach_px = 8;             ///< beyond its agreeing points no part goes on further …
-  double end_sigma_px = 3;         ///< … and an end that is put there is known so along the line
-  double unstated_sigma_px = 0.5;  ///< of disparities whose matcher states none
-  double floor_px = 0.2;           ///< part of the stated σ that is no noise but the scene's …
-  double floor_length_px = 30;     ///< … and shared along an edge as exp(−distance / this)
-  double scale_px = 1;             ///< of canny_edges
+  double min_angle_rad = 0.0873;  ///< segments closer to horizontal (5°) are rejected
+  int min_points = 6;             ///< minimum number of matched points on one line
+  double min_share = 0.5;         ///< minimum fraction of them among a part's edge points
+  double max_off_sigma = 3;       ///< points farther from the line are outliers
+  double reach_px = 8;            ///< maximum extension of a part beyond its inliers …
+  double end_sigma_px = 3;  ///< … and the standard deviation along the line of an end placed there
+  double unstated_sigma_px = 0.5;  ///< used if the matcher gives no standard deviation
+  double floor_px = 0.2;           ///< scene-dependent part of the matcher's σ …
+  double floor_length_px = 30;     ///< … correlated along an edge as exp(−distance / this)
+  double scale_px = 1;             ///< scale of canny_edges
 };
 
-/// What became of a segment.
+/// Why a segment has a disparity or not.
 enum class SegmentStatus {
   placed,
-  along_row,  ///< too near to the row: a disparity of it says nothing
+  along_row,  ///< too close to horizontal: its disparity is not observable
   unmatched,  ///< too few of its points have a disparity
-  disagree,   ///< the points' disparities are on no line, by their σ
+  disagree,   ///< the points' disparities fit no line within their σ
   behind,     ///< an end's disparity is not above 0
-  no_ray,     ///< an end's pixel has no ray under the rig
+  no_ray,     ///< an end's pixel cannot be unprojected
 };
 
-/// In a few words: "its points' disparities agree on no line".
+/// A description in a few words: "the disparities of its points fit no common line".
 std::string_view describe(SegmentStatus status);
 
 /// A straight edge of the left image, or a part of one, with its disparity.
 struct SegmentDisparity {
   SegmentStatus status = SegmentStatus::placed;
-  int segment = 0;                       ///< its place in the list of segments
-  bool is_part = false;                  ///< of a segment that was split or drawn in
+  int segment = 0;                       ///< index into the segments
+  bool is_part = false;                  ///< of a segment that was split or shortened
   ImageSegment left_px{{0, 0}, {0, 0}};  ///< rectified
   double a_disparity_px = 0, b_disparity_px = 0;
-  /// Of the image's and the matcher's errors, in the order a_u a_v b_u b_v a_disparity b_disparity.
+  /// Covariance from image and matcher errors, in the order a_u a_v b_u b_v a_disparity
+  /// b_disparity.
   Eigen::Matrix<double, 6, 6> covariance_px2 = Eigen::Matrix<double, 6, 6>::Zero();
   int edge_points = 0;      ///< of the part
-  std::vector<int> points;  ///< those that agree on the line, by their places in the list of edges
-  double rms_px = 0;        ///< of their disparities from the line
+  std::vector<int> points;  ///< inliers, as indices into the edges
+  double rms_px = 0;        ///< RMS residual of their disparities
 
   /// The same edge in the right image.
   ImageSegment right_px() const {
@@ -64,24 +65,24 @@ struct SegmentDisparity {
 ///
 ///     d(s) = d_0 + d_1 s
 ///
-/// The line that most matched points in a row are on, within `max_off_sigma`, is found over pairs
-/// of them; then d_0 and d_1 by least squares of weights 1 / σ². What is left on either side is
-/// tried again, so that a segment over two surfaces is split. With H the regression its covariance
-/// is
+/// The line with the most consecutive matched points within `max_off_sigma` is found over pairs of
+/// points; then d_0 and d_1 follow by least squares with weights 1 / σ². The points left on either
+/// side are tried again, so that a segment across two surfaces is split. With H the regression its
+/// covariance is
 ///
 ///     H C Hᵀ max(1, Σ r²/σ² / tr((I − P) C W)),
 ///     C_ij = n_i n_j max(0, 1 − |s_i − s_j| / l) + f² exp(−|s_i − s_j| / L),   n² = σ² − f²
 ///
-/// n is the noise, which points share by the overlap l of their patches of 9 x 7 pixels, f the
-/// floor, which they share with the rest of the edge (docs/segments3d.md has the measurements). The
-/// left image's noise moves an edge and its disparity alike: the covariance of both is 0.85 times
-/// the variance of the edge's place. An end keeps its covariance (stereo/edges/edge_segments.h),
-/// both ends' places across are correlated by their common line, and an end that slides along the
-/// edge takes its disparity with it.
+/// n is the noise, correlated between points by the overlap l of their patches of 9 x 7 pixels; f
+/// is the floor, correlated along the rest of the edge (measurements: docs/segments3d.md). The left
+/// image's noise moves an edge and its disparity together: the covariance of both is 0.85 times the
+/// variance of the edge position. An end keeps its covariance (stereo/edges/edge_segments.h), the
+/// positions of both ends across the edge are correlated by their common line, and an end that
+/// slides along the edge takes its disparity with it.
 ///
-/// In the order of the segments; refused ones are listed once, with the reason. Throws Error where
-/// edges and disparities differ in number, a segment has a point that is none of them, and on
-/// options out of range.
+/// Results are in the order of the segments; a rejected segment has one entry, with the reason.
+/// Throws Error if edges and disparities differ in number, a segment refers to a point that does
+/// not exist, and for options out of range.
 std::vector<SegmentDisparity> segment_disparities(const std::vector<EdgePoint>& edges,
                                                   const std::vector<EdgeSegment>& segments,
                                                   const std::vector<EdgeDisparity>& disparities,

@@ -26,10 +26,10 @@ using Eigen::Vector3d;
 
 void check(const SpaceSegmentOptions& o) {
   if (o.max_depth_m > 0 && o.max_relative > 0) return;
-  throw Error("space segments", "an option is not above 0", "give a depth and a share above 0");
+  throw Error("space segments", "an option is not above 0", "use a depth and a fraction above 0");
 }
 
-/// The part that needs no more than the rectified geometry.
+/// The part that needs only the rectified geometry.
 MeasuredSegment placed(const SegmentDisparity& s,
                        const RectifiedGeometry& g,
                        const SpaceSegmentOptions& options) {
@@ -54,7 +54,7 @@ MeasuredSegment placed(const SegmentDisparity& s,
   return result;
 }
 
-/// Where the raw images have a rectified segment.
+/// Raw positions of a rectified segment.
 std::optional<StereoSegment> raw_segment(const SegmentDisparity& s,
                                          const RawPixels& left,
                                          const RawPixels& right) {
@@ -101,8 +101,8 @@ std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> se
   check(options);
   const Rig& rig = estimate.rig;
   if (estimate.covariance && estimate.covariance->matrix.rows() != parameter_count(rig)) {
-    throw Error("space segments", "the covariance is not of the rig's parameters",
-                "give a rig with its own covariance");
+    throw Error("space segments", "the covariance does not have the size of the rig's parameters",
+                "use a rig with its own covariance");
   }
   const RawPixels left(rig, geometry, 0), right(rig, geometry, 1);
   std::vector<MeasuredSegment> all(segments.size());
@@ -133,8 +133,8 @@ Eigen::MatrixXd calibration_covariance_m2(std::span<const MeasuredSegment> segme
     if (segments[i].by_rig.cols() != rig_covariance.rows() ||
         rig_covariance.rows() != rig_covariance.cols()) {
       throw Error("space segments",
-                  "a segment's derivatives are not by the parameters of the covariance",
-                  "give segments placed with the rig whose covariance it is");
+                  "a segment's derivatives and the covariance differ in the number of parameters",
+                  "use segments reconstructed with the rig of the covariance");
     }
     J.middleRows<6>(6 * static_cast<Eigen::Index>(i)) = segments[i].by_rig;
   }

@@ -14,55 +14,57 @@
 namespace vernier::stereo::internal {
 
 struct SpaceSegmentOptions {
-  double max_depth_m = 30;    ///< beyond it a segment is marked unreliable (stereo/segment.h)
-  double max_relative = 0.1;  ///< σ_z / z of an end above which its covariance is doubtful
+  double max_depth_m = 30;  ///< segments beyond are marked unreliable (stereo/segment.h)
+  /// Σ_z / z of an end above which the linear covariance is not reliable.
+  double max_relative = 0.1;
 };
 
-/// A segment in space with what is known of it: both end points, a over b, in metres in the left
-/// camera's frame (not the rectified one, which is R_rectified_left times it).
+/// A segment in space with its uncertainty: both end points, a then b, in metres in the left camera
+/// frame (not the rectified one, which is R_rectified_left times it).
 struct MeasuredSegment {
-  SegmentStatus status = SegmentStatus::placed;  ///< else nothing of the rest is known
+  SegmentStatus status = SegmentStatus::placed;  ///< if not placed, the other fields are not set
   SpaceSegment segment;                          ///< its depth_sigma_m is of the independent part
-  /// Of the image's and the matcher's own errors: new for every segment.
+  /// Covariance from image and matcher errors, independent between segments.
   Eigen::Matrix<double, 6, 6> independent_m2 = Eigen::Matrix<double, 6, 6>::Zero();
   /// ∂ends / ∂rig in the tangent and order of calib/rig.h; no columns without a rig.
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
-  /// by_rig C by_rigᵀ, of the rig's errors, which all segments share; 0 without a covariance.
+  /// by_rig C by_rigᵀ, from the rig's errors, which are common to all segments; 0 without a
+  /// covariance.
   Eigen::Matrix<double, 6, 6> calibration_m2 = Eigen::Matrix<double, 6, 6>::Zero();
-  /// Largest σ_z / z of both ends, both parts together.
+  /// Larger σ_z / z of the two ends, from both covariances.
   double relative_sigma = 0;
-  /// σ_z / z is so small that a linear covariance tells the distribution.
+  /// Whether σ_z / z is small enough for the linear covariance to be reliable.
   bool linear = true;
 
   Eigen::Matrix<double, 6, 6> covariance_m2() const { return independent_m2 + calibration_m2; }
 };
 
-/// Puts segments into space, one for each; those refused before stay so, and an end may turn out
-/// to be `behind` the rig. In the rectified left camera's frame an end is
+/// Reconstructs segments, one result per input; rejected ones stay rejected, and an end may turn
+/// out to be `behind` the rig. In the rectified left camera frame an end is
 ///
 ///     p = f B / d ((u − c_x) / f, (v − c_y) / f, 1),   ∂p/∂u = z/f e_x,  ∂p/∂v = z/f e_y,
 ///     ∂p/∂d = −p / d
 ///
-/// so that independent = J C Jᵀ with C of the places and disparities
-/// (stereo/reconstruction/segment_disparity.h), turned into the left camera's frame.
+/// so that independent = J C Jᵀ with C the covariance of positions and disparities
+/// (stereo/reconstruction/segment_disparity.h), rotated to the left camera frame.
 std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> segments,
                                             const RectifiedGeometry& geometry,
                                             const SpaceSegmentOptions& options = {});
 
-/// The same with what the rig does, whose `geometry` it is. The raw images stay: the left ends'
-/// raw pixels, and the raw pixels of the right line. Another rig reads another line in space from
-/// them, the intersection of stereo/reconstruction/triangulate.h, whose derivatives by_rig are: all
-/// that rectification and triangulation do with the rig's errors, the vertical ones at slanted
-/// edges included. A repair of the vertical field is not in it. Throws Error where the estimate's
-/// covariance is not of its rig.
+/// The same with derivatives by the rig to which `geometry` belongs. The raw images are held fixed:
+/// the raw pixels of the left ends and of the right line. With another rig they give another line
+/// in space, the intersection of stereo/reconstruction/triangulate.h, and by_rig holds its
+/// derivatives: the full effect of rig errors through rectification and triangulation, including
+/// vertical errors at slanted edges. A correction of the vertical field is not included. Throws
+/// Error if the estimate's covariance does not match its rig.
 std::vector<MeasuredSegment> space_segments(std::span<const SegmentDisparity> segments,
                                             const RectifiedGeometry& geometry,
                                             const RigEstimate& estimate,
                                             const SpaceSegmentOptions& options = {});
 
-/// J C Jᵀ over the by_rig of any number of segments: 6 rows a segment. What they have in common,
-/// so that a length or an angle between two of them has the variance that it has. Throws Error on
-/// segments without by_rig or of another rig.
+/// J C Jᵀ over the by_rig of any number of segments, 6 rows per segment: the joint covariance, as
+/// needed for a length or an angle between two of them. Throws Error for segments without by_rig or
+/// with that of another rig.
 Eigen::MatrixXd calibration_covariance_m2(std::span<const MeasuredSegment> segments,
                                           const Eigen::MatrixXd& rig_covariance);
 

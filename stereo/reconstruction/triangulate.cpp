@@ -23,7 +23,7 @@ namespace {
 void require_pair(const Rig& rig) {
   if (rig.cameras.size() != 2) {
     throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
+                "use a rig of two cameras");
   }
 }
 
@@ -44,7 +44,7 @@ SpaceSegment triangulate(const Rig& rig,
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
   const Pose& T_right_left = rig.T_camera_first[1];
   SpaceSegment result;
-  // A told rig may be so wrong that a pixel has no ray; any direction then stands for it.
+  // An erroneous rig may be unable to unproject a pixel; any direction is used then.
   const auto ray_of = [&](const Camera& camera, const Eigen::Vector2d& pixel) -> Eigen::Vector3d {
     if (const auto ray = try_unproject(camera, pixel)) return *ray;
     result.reliable = false;

@@ -14,21 +14,22 @@ namespace vernier::stereo::internal {
 
 struct TriangulationOptions {
   double endpoint_sigma_px = 0.15;  ///< of each end point across its line, for depth_sigma_m
-  double max_depth_m = 30;          ///< an end at or beyond this, or behind the rig, is unreliable
+  double max_depth_m = 30;  ///< an end at or beyond this depth, or behind the rig, is unreliable
 };
 
-/// The edge in space that a matched pair of image lines is of.
+/// Triangulates the edge in space from a matched pair of image lines.
 ///
 /// The right line's end points span a plane through the right camera with normal n (right frame).
+/// The point on the left ray r at depth λ lies in this plane if n·(R λ r + T) = 0, so
 /// The point on the left ray r at depth λ lies in it where n·(R λ r + T) = 0, so
 ///
 ///     λ = -n·T / n·(R r)
 ///
 /// for either end of the left line: exact for any pose of the rig and any distortion, since end
-/// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are put at that
-/// depth and the segment marked unreliable; so it is where a pixel has no ray under this rig.
-/// Hartley and Zisserman, "Multiple View Geometry" (2nd ed., 2004), section 15.4 has lines as
-/// planes through the cameras. Throws Error unless the rig is a pair.
+/// points are undistorted one by one. Ends beyond `max_depth_m` (or with λ <= 0) are placed at that
+/// depth and the segment is marked unreliable, as it is if a pixel cannot be unprojected with this
+/// rig. Lines as planes through the cameras: Hartley and Zisserman, "Multiple View Geometry" (2nd
+/// ed., 2004), section 15.4. Throws Error unless the rig has two cameras.
 SpaceSegment triangulate(const Rig& rig,
                          const StereoSegment& segment,
                          const TriangulationOptions& options = {});
@@ -37,18 +38,18 @@ std::vector<SpaceSegment> triangulate(const Rig& rig,
                                       std::span<const StereoSegment> segments,
                                       const TriangulationOptions& options = {});
 
-/// The ends of a matched pair of image lines in space (metres, the rig's frame), a over b, and
+/// The ends of a matched pair of image lines in space (metres, the rig's frame), a then b, and
 /// their derivatives by the rig's parameters in the tangent and order of calib/rig.h.
 struct SegmentTriangulation {
   Eigen::Matrix<double, 6, 1> ends_m;
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
 };
 
-/// The same intersection with its derivatives. The left ends and the right line stay where they are
-/// in their raw images; with w = R λ r + T the end in the right camera's frame,
+/// The same intersection with its derivatives. The left ends and the right line are held fixed in
+/// the raw images; with w = R λ r + T the end in the right camera frame,
 ///
 ///     δλ = −(δn·w + n·δT + λ n·δ(R r)) / n·(R r)
-///
+/// Returns nullopt if a pixel cannot be unprojected or an end is not in front of the rig.
 /// Nothing where a pixel has no ray or an end is not in front of the rig.
 std::optional<SegmentTriangulation> triangulate_with_jacobian(const Rig& rig,
                                                               const StereoSegment& segment);

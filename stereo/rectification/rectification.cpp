@@ -17,7 +17,7 @@ namespace vernier::stereo {
 Rectification rectification(const Rig& rig) {
   if (rig.cameras.size() != 2) {
     throw Error("rectification", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   const Pose& T = rig.T_camera_first[1];
   const Eigen::Vector3d baseline = -(T.R.transpose() * T.t);  // right centre, left frame

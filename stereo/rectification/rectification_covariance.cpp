@@ -25,7 +25,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using ByPose = Eigen::Matrix<double, 3, 6>;
 
-/// Derivative of the unit vector of a vector with a derivative.
+/// Derivative of v / |v| for a vector v with a given derivative.
 ByPose of_unit(const Vector3d& vector, const ByPose& by_pose) {
   const Vector3d unit = vector.normalized();
   return (Matrix3d::Identity() - unit * unit.transpose()) * by_pose / vector.norm();
@@ -51,9 +51,9 @@ RectificationUncertainty::RectificationUncertainty(const Rig& rig,
   const Eigen::Index n = parameter_count(rig);
   if (rig.cameras.size() != 2 || covariance.rows() != n || covariance.cols() != n) {
     throw Error("rectification",
-                fmt::format("a rig of {} cameras with {} parameters, a covariance of {} x {}",
+                fmt::format("the rig has {} cameras and {} parameters, the covariance is {} x {}",
                             rig.cameras.size(), n, covariance.rows(), covariance.cols()),
-                "give a pair and its own covariance");
+                "use a rig of two cameras with its own covariance");
   }
   // As in stereo/rectification/rectification.cpp: x along b = −Rᵀ t, y along c = (e_z + Rᵀ e_z) ×
   // x, z = x × y.

@@ -11,11 +11,11 @@ namespace vernier::stereo::internal {
 
 /// CameraInfo of every camera of a rig.
 ///
-/// A pair's is that of its rectification (stereo/rectification.h): one K' for both, its focal
-/// length the mean of theirs, its centre such that the images' centres stay in the middle; the
-/// right one's P has the baseline, P03 = -f' |T|. From R, P of both the pose is recovered
-/// (read_ros_camera_info). A camera by itself, and each of three or more, has R = I, P = [K | 0]:
-/// of three or more the poses are lost.
+/// For a pair it is that of the rectification (stereo/rectification.h): one K' for both, with the
+/// mean of both focal lengths and a principal point that keeps the image centres in the middle; P
+/// of the right camera has the baseline, P03 = -f' |T|. The pose can be recovered from R and P of
+/// both (read_ros_camera_info). For a single camera and for three or more, R = I and P = [K | 0]:
+/// the poses of three or more are lost.
 std::vector<vernier::internal::RosCameraInfo> rectified_camera_info(const Rig& rig);
 
 }  // namespace vernier::stereo::internal

@@ -22,12 +22,12 @@
 namespace vernier::stereo {
 namespace {
 
-constexpr int blank_columns = 40, blank_rows = 30;  // at which blank pixels are counted
+constexpr int blank_columns = 40, blank_rows = 30;  // grid on which blank pixels are counted
 constexpr int bisections = 16;                      // of the focal length, to 1e-5 of it
-constexpr double nearly_mean = 0.97;                // of the mean focal length
+constexpr double nearly_mean = 0.97;                // relative to the mean focal length
 constexpr int border_steps = 40;                    // along each side of an image
-constexpr double border_margin = 0.98;              // the border bends between them
-constexpr double same_ray = 1e-6;                   // of rays that are one
+constexpr double border_margin = 0.98;  // allows for the bend of the border between them
+constexpr double same_ray = 1e-6;       // tolerance of identical rays
 
 void check(const RectifiedGeometryOptions& o) {
   const bool size = (o.size_px.array() == 0).all() || (o.size_px.array() > 0).all();
@@ -36,14 +36,13 @@ void check(const RectifiedGeometryOptions& o) {
     return;
   }
   throw Error("rectification",
-              fmt::format("an image of {}x{} px, a focal length of {} px, a share of blank pixels "
-                          "of {} and zooms from {} to {}",
+              fmt::format("invalid options: size {}x{} px, f {} px, max_blank {}, zoom {} to {}",
                           o.size_px[0], o.size_px[1], o.f_px, o.max_blank, o.min_zoom, o.max_zoom),
-              "give sizes and focal lengths above 0, or 0 to have them chosen");
+              "use sizes and focal lengths above 0, or 0 for automatic");
 }
 
-/// Where the middle of the image goes on the rectified camera's plane z = 1; its own optical axis
-/// where the model cannot be inverted in the middle.
+/// Position of the image centre on the rectified camera's plane z = 1; its optical axis if the
+/// model cannot be inverted there.
 Eigen::Vector2d rectified_middle(const Camera& camera, const Eigen::Matrix3d& R_rectified_camera) {
   const Eigen::Vector2d middle = 0.5 * (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
   const Eigen::Vector3d ray =
@@ -55,7 +54,7 @@ const Eigen::Matrix3d& turn_of(const RectifiedGeometry& geometry, int camera) {
   return camera == 0 ? geometry.turn.R_rectified_left : geometry.turn.R_rectified_right;
 }
 
-/// At this focal length; `middle` of the image is where both cameras' middles go on average.
+/// At this focal length; `middle` is where the mean of both cameras' image centres goes.
 RectifiedGeometry at_focal_length(const Rig& rig,
                                   RectifiedGeometry geometry,
                                   const std::array<Eigen::Vector2d, 2>& middles_px,
@@ -69,7 +68,7 @@ RectifiedGeometry at_focal_length(const Rig& rig,
   return geometry;
 }
 
-/// Share of pixels without a source, of the image that has more.
+/// Fraction of pixels without a source, the larger of both images.
 double blank_share(const Rig& rig, const RectifiedGeometry& geometry) {
   int most = 0;
   for (int camera = 0; camera < 2; ++camera) {
@@ -87,8 +86,8 @@ double blank_share(const Rig& rig, const RectifiedGeometry& geometry) {
   return static_cast<double>(most) / (blank_columns * blank_rows);
 }
 
-/// Least norm of the rays (x / z, y / z) of a camera's outermost pixels; 0 where one has none or
-/// the optical axis is not in the image.
+/// Smallest norm of the rays (x / z, y / z) of a camera's border pixels; 0 if one has none or the
+/// optical axis is not in the image.
 double min_border_radius(const Camera& camera) {
   const Eigen::Vector2d last = (camera.size_px - Eigen::Vector2i::Ones()).cast<double>();
   if (!in_image(camera, {camera.ox_px(), camera.oy_px()})) return 0;
@@ -121,7 +120,7 @@ std::optional<Eigen::Vector2d> RawPixels::at(const Eigen::Vector2d& rectified_px
   if (!(ray.z() > 0)) return std::nullopt;
   const Eigen::Vector2d pixel = project(camera_, ray);
   if (ray.head<2>().norm() < sure_radius_ * ray.z()) return pixel;
-  // Beyond the fold of a distortion the pixel is another ray's.
+  // Beyond the fold of a distortion the pixel belongs to another ray.
   const auto back = try_unproject(camera_, pixel);
   if (!back) return std::nullopt;
   const Eigen::Vector2d apart = back->head<2>() - ray.head<2>() / ray.z();

@@ -27,11 +27,11 @@ void check(const Camera& camera, const GreyLevels& image) {
     return;
   }
   throw Error("rectification",
-              fmt::format("the image of camera \"{}\" is {}x{} px with {} values, the camera takes "
+              fmt::format("the image of camera \"{}\" is {}x{} px with {} values, the camera has "
                           "{}x{} px",
                           camera.name, image.width_px, image.height_px, image.values.size(),
                           camera.size_px[0], camera.size_px[1]),
-              "give the images that the rig took");
+              "use the images of this rig");
 }
 
 void rectify(const Rig& rig,
@@ -73,7 +73,7 @@ RectifiedImages rectified_images(const Rig& rig,
                                  int threads) {
   if (rig.cameras.size() != 2) {
     throw Error("rectification", fmt::format("the rig has {} cameras", rig.cameras.size()),
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   check(rig.cameras[0], left);
   check(rig.cameras[1], right);

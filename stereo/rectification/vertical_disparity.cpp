@@ -54,7 +54,7 @@ Eigen::RowVectorXd through_ray(const Camera& camera,
   return -row.head<2>() * inverse * J.camera;
 }
 
-/// The part of J C Jᵀ that no column of X can explain, as its trace: tr(C JᵀJ) − tr(C (QᵀJ)ᵀ QᵀJ)
+/// The part of J C Jᵀ outside the column space of X, as its trace: tr(C JᵀJ) − tr(C (QᵀJ)ᵀ QᵀJ)
 /// with Q an orthonormal basis of X.
 double unexplained(const Eigen::MatrixXd& J, const Eigen::MatrixXd& C, const Eigen::MatrixXd& X) {
   const Eigen::MatrixXd Q = orthonormal_basis(X);
@@ -72,18 +72,18 @@ void check_grid(const Rig& rig, int columns, int rows, double distance_m) {
   const std::string place = "vertical disparity";
   if (rig.cameras.size() != 2) {
     throw Error(place, fmt::format("the rig has {} cameras", rig.cameras.size()),
-                "give a rig of two");
+                "use a rig of two cameras");
   }
   if (columns < 2 || rows < 2) {
-    throw Error(place, fmt::format("a grid of {}x{}", columns, rows), "give at least 2x2");
+    throw Error(place, fmt::format("the grid is {}x{}", columns, rows), "use at least 2x2");
   }
   if (!(distance_m > 0)) {
-    throw Error(place, fmt::format("a distance of {} m", distance_m),
-                "give distances above 0, or inf");
+    throw Error(place, fmt::format("the distance is {} m", distance_m),
+                "use a distance above 0, or inf");
   }
 }
 
-/// Root mean variances from the derivatives J of the seen points at (x, y).
+/// Root mean variances from the derivatives J of the visible points at (x, y).
 void summarise(const Eigen::MatrixXd& J,
                const Eigen::MatrixXd& C,
                const Eigen::MatrixXd& affine,
@@ -192,7 +192,8 @@ std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampl
                                                          std::span<const PixelPair> pairs,
                                                          double rectified_f_px,
                                                          const SamplingOptions& options) {
-  if (options.samples < 2) throw Error("vertical disparity", "fewer than 2 samples", "give more");
+  if (options.samples < 2)
+    throw Error("vertical disparity", "fewer than 2 samples", "use at least 2");
   std::vector<double> sum(pairs.size(), 0), squares(pairs.size(), 0);
   std::vector<int> count(pairs.size(), 0);
   for (int i = 0; i < options.samples; ++i) {
@@ -207,7 +208,7 @@ std::vector<SampledDisparity> sampled_vertical_disparity(const RigSampler& sampl
   }
   std::vector<SampledDisparity> result;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double mean = sum[k] / count[k];  // 0/0, NaN, where no draw is physical
+    const double mean = sum[k] / count[k];  // 0/0, NaN, if no draw is physical
     const double spread = squares[k] - count[k] * mean * mean;
     result.push_back({mean, std::sqrt((spread < 0 ? 0 : spread) / (count[k] - 1)),
                       1 - static_cast<double>(count[k]) / options.samples});

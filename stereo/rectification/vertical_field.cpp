@@ -25,16 +25,16 @@
 namespace vernier::stereo::internal {
 namespace {
 
-constexpr double corners_a_cell = 2;  // of the parts of the image that corners are spread over
-constexpr int border_px = 5;          // of corners, at half size
-constexpr int half_px = 4;            // of patches searched, at half size
-constexpr int aligned_half_px = 5;    // of patches aligned, at full size
-constexpr double smoothing_px = 0.8;  // against the aliasing of sharp images, which draws
-                                      // alignments towards whole pixels: 0.05 px became 0.02
+constexpr double corners_a_cell = 2;  // per image cell, for an even distribution
+constexpr int border_px = 5;          // for corners, at half size
+constexpr int half_px = 4;            // of search patches, at half size
+constexpr int aligned_half_px = 5;    // of aligned patches, at full size
+constexpr double smoothing_px = 0.8;  // against aliasing of sharp images, which pulls alignments
+                                      // to integer pixels: 0.05 px, 0.02 with it
 constexpr double min_found = 0.7;     // ZNCC at half size
 constexpr double min_margin = 0.05;
 constexpr double max_shift_px = 2;  // of the alignment, from twice the half-size peak
-constexpr int min_side_px = 48;     // of an image; one that is smaller has no matches
+constexpr int min_side_px = 48;     // of an image; smaller images have no matches
 
 void check(const RectifiedPair& pair,
            const DisparityRange& range,
@@ -45,7 +45,7 @@ void check(const RectifiedPair& pair,
     throw Error(place,
                 fmt::format("the left image is {}x{} px, the right one {}x{} px", l.width_px,
                             l.height_px, r.width_px, r.height_px),
-                "give a rectified pair");
+                "use a rectified pair");
   }
   for (const GreyLevels* image : {&l, &r}) {
     const auto pixels = static_cast<std::size_t>(std::max(0, image->width_px)) *
@@ -54,20 +54,22 @@ void check(const RectifiedPair& pair,
     throw Error(place,
                 fmt::format("an image of {}x{} px has {} values", image->width_px, image->height_px,
                             image->values.size()),
-                "give a value a pixel");
+                "give one value per pixel");
   }
   if (range.min_px > range.max_px) {
-    throw Error(place, fmt::format("no disparity is from {} to {} px", range.min_px, range.max_px),
-                "give the smaller one first");
+    throw Error(place,
+                fmt::format("the disparity range {} to {} px is empty", range.min_px, range.max_px),
+                "give the smaller value first");
   }
   if (options.band_px < 1 || options.band_px > 10 || options.corners < 1) {
-    throw Error(place,
-                fmt::format("a band of {} rows, {} corners", options.band_px, options.corners),
-                "give 1 to 10 rows and some corners");
+    throw Error(
+        place,
+        fmt::format("the band has {} rows, with {} corners", options.band_px, options.corners),
+        "use 1 to 10 rows and at least one corner");
   }
 }
 
-/// At half its size: pixel (x, y) is the mean of four and lies at (2x + 0.5, 2y + 0.5).
+/// Reduces to half size: pixel (x, y) is the mean of four and lies at (2x + 0.5, 2y + 0.5).
 cv::Mat halved(const cv::Mat& image) {
   cv::Mat half;
   cv::resize(image(cv::Rect(0, 0, image.cols / 2 * 2, image.rows / 2 * 2)), half, {}, 0.5, 0.5,
@@ -86,7 +88,7 @@ cv::Point pixel_of(const ImageCorner& corner) {
           static_cast<int>(std::lround(corner.pixel_px.y()))};
 }
 
-/// Both images at full size, smoothed, and a search in each at half its size.
+/// Both images at full size, smoothed, and a search structure for each at half size.
 struct FieldSearch {
   cv::Mat half_left, half_right, left, right;
   PatchSearch in_left, in_right;
@@ -103,8 +105,8 @@ struct FieldSearch {
         max_x(static_cast<int>(std::ceil(0.5 * range.max_px)) + 1),
         rows((band_px + 1) / 2) {}
 
-  /// The half-size place of a half-size left pixel in the right image, if it stands out and the
-  /// way back leads to the pixel.
+  /// Half-size position in the right image of a half-size left pixel, if unambiguous and confirmed
+  /// by the reverse search.
   std::optional<Eigen::Vector2d> view_label(cv::Point p) {
     const auto there =
         in_right.find(half_left, p, {p.x - max_x, p.x - min_x, p.y - rows, p.y + rows});
@@ -128,7 +130,7 @@ std::vector<VerticalOffset> row_offsets(FieldSearch& search,
     const cv::Point p = pixel_of(corner);
     const auto place = search.view_label(p);
     if (!place) continue;
-    // A whole left pixel half a pixel beside the patch's centre: its values need no interpolation.
+    // The integer left pixel half a pixel from the patch centre needs no interpolation.
     const Eigen::Vector2d left_px(2 * p.x + 1, 2 * p.y + 1);
     const Eigen::Vector2d right_px = 2 * *place + Eigen::Vector2d(1, 1);
     const auto aligned = align_patch(search.left, search.right, left_px, right_px, {1, 0},
@@ -142,11 +144,12 @@ std::vector<VerticalOffset> row_offsets(FieldSearch& search,
   return offsets;
 }
 
-/// Part of a row whose rows in the right image are the same four.
+/// Part of a row that uses the same four rows of the right image.
 struct Run {
   int first = 0, last = 0;  ///< columns, the last one not included
   std::array<const float*, 4> rows{};
-  float beyond = 0, slope = 0;  ///< place beyond the second row: at the first column, and a column
+  float beyond = 0,
+        slope = 0;  ///< position beyond the second row: at the first column, and per column
 };
 
 /// Cubic convolution along the column.
@@ -166,7 +169,7 @@ std::string tilt(double px, double sd, const char* far, const char* near) {
                      px >= 0 ? "lower" : "higher", sd, far, near);
 }
 
-/// Whether the pixels of a patch at half size have a source, asked at nine of them.
+/// Whether the pixels of a half-size patch have a source, tested at nine of them.
 bool is_valid(const ValidPixels& valid, cv::Point half_size) {
   for (int j = -1; j <= 1; ++j) {
     for (int i = -1; i <= 1; ++i) {
@@ -179,7 +182,7 @@ bool is_valid(const ValidPixels& valid, cv::Point half_size) {
   return true;
 }
 
-/// `left_valid` may be nothing.
+/// `left_valid` may be null.
 VerticalField found_field(const RectifiedPair& pair,
                           const ValidPixels* left_valid,
                           const DisparityRange& range,
@@ -218,40 +221,43 @@ std::string describe(const VerticalField& field) {
   const Eigen::Vector3d sd = field.covariance_px2.diagonal().cwiseSqrt();
   if (!field.known && !field.unrectified) {
     return fmt::format(
-        "too few corners match, or too near each other, to tell whether one image lies lower ({} "
-        "of {})",
+        "too few corners match, or they are too close together, to estimate a vertical offset ({} "
+        "of "
+        "{})",
         field.matched, field.corners);
   }
   if (!field.known) {
     return fmt::format(
-        "the images are not rectified, or not of one scene, or left and right are exchanged or "
-        "disparities beyond the range: {} of {} corners have a partner within {} rows, and {} of "
-        "these agree on a vertical field",
+        "the images are not rectified, not of one scene, swapped, or their disparities exceed the "
+        "range: {} of {} corners have a partner within {} rows, and {} of these agree on a "
+        "vertical "
+        "field",
         field.matched, field.corners, field.band_px, field.used);
   }
   const std::string of = fmt::format("from {} of {} matched corners", field.used, field.matched);
   if (!field.significant) {
     return fmt::format(
-        "the right image lies level with the left one: {:+.2f} px (± {:.2f}) in the "
-        "middle, nowhere more than {:.2f} px, {}",
+        "no significant vertical offset of the right image: {:+.2f} px (± {:.2f}) at the centre, "
+        "at "
+        "most {:.2f} px, {}",
         p[0], sd[0], field.largest_px(), of);
   }
-  return fmt::format(
-      "the right image lies {:.2f} px {} (± {:.2f}) in the middle, {}, {}, {}{}", std::abs(p[0]),
-      p[0] >= 0 ? "lower" : "higher", sd[0], tilt(p[1], sd[1], "right", "left"),
-      tilt(p[2], sd[2], "lower", "upper"), of,
-      field.unrectified ? fmt::format("; that leaves the {} rows that were searched, so the images "
-                                      "are hardly rectified",
-                                      field.band_px)
-                        : "");
+  return fmt::format("the right image is {:.2f} px {} (± {:.2f}) at the centre, {}, {}, {}{}",
+                     std::abs(p[0]), p[0] >= 0 ? "lower" : "higher", sd[0],
+                     tilt(p[1], sd[1], "right", "left"), tilt(p[2], sd[2], "lower", "upper"), of,
+                     field.unrectified
+                         ? fmt::format("; this exceeds the search band of {} rows, so the images "
+                                       "are probably not rectified",
+                                       field.band_px)
+                         : "");
 }
 
 GreyLevels corrected_right(const GreyLevels& right, const VerticalField& field) {
   if (right.width_px != field.width_px || right.height_px != field.height_px) {
     throw Error("vertical field",
-                fmt::format("it is of {}x{} px, the image is {}x{} px", field.width_px,
+                fmt::format("the field is for {}x{} px, the image is {}x{} px", field.width_px,
                             field.height_px, right.width_px, right.height_px),
-                "give the image it was found in");
+                "use an image of the pair it was estimated from");
   }
   if (!field.significant) return right;
   GreyLevels repaired = right;

@@ -24,27 +24,28 @@ using Eigen::Matrix3d;
 using Eigen::RowVector3d;
 using Eigen::Vector3d;
 
-constexpr int triples = 150;       // half the matches wrong: none is all right with 2e-9
-constexpr double near_px = 0.4;    // of a triple's field; a match beyond costs no more
+// With half the matches wrong, all triples are bad with probability 2e-9.
+constexpr int triples = 150;
+constexpr double near_px = 0.4;    // residual at which the cost of a match saturates
 constexpr double tukey = 4.685;    // 95 % efficient for normal errors
-constexpr double floor_px = 0.05;  // added to what alignments say of themselves
-constexpr double min_scale = 0.3;  // which equal matches would bring to 0
+constexpr double floor_px = 0.05;  // added to the standard deviations of alignments
+constexpr double min_scale = 0.3;  // minimum; exactly equal matches would give 0
 constexpr int max_fit_rounds = 50;
 constexpr double converged_px = 1e-6;
-constexpr int min_fitted = 12;      // matches: four a coefficient …
-constexpr int min_used = 20;        // … that must agree: among fewer a wrong one bends the field
-constexpr double min_share = 0.35;  // of the matches, that agree
+constexpr int min_fitted = 12;         // matches: four per coefficient …
+constexpr int min_used = 20;           // consistent ones: with fewer, an outlier bends the field
+constexpr double min_share = 0.35;     // of the matches, consistent ones
 constexpr double max_residual_px = 1;  // of these
 constexpr double widest_sd_px = 0.5;   // of dy anywhere in the image
 constexpr int plenty = 40;             // corners of which …
-constexpr double hardly_any = 0.1;     // … no more match where the images do not belong together
+constexpr double hardly_any = 0.1;     // … at most this fraction matches in unrelated images
 constexpr double chi2_3_999 = 16.266;  // 99.9 % of χ² with three degrees of freedom
 
 struct Problem {
   Eigen::Matrix<double, Eigen::Dynamic, 3> X;
   Eigen::VectorXd dy, inverse_sigma;
 
-  /// Residuals in their own standard deviations.
+  /// Residuals relative to their standard deviations.
   Eigen::VectorXd scaled_residuals(const Vector3d& p) const {
     return (dy - X * p).cwiseProduct(inverse_sigma);
   }
@@ -75,7 +76,7 @@ double median(const Eigen::VectorXd& values) {
   return quantile(std::vector<double>(values.begin(), values.end()), 0.5, QuantileKind::upper);
 }
 
-/// The field through three matches that most others are near.
+/// The field through three matches that is consistent with most others.
 Vector3d best_triple(const Problem& problem) {
   Vector3d best(median(problem.dy), 0, 0);
   const auto cost_of = [&](const Vector3d& p) {
@@ -92,7 +93,7 @@ Vector3d best_triple(const Problem& problem) {
       X.row(k) = problem.X.row(pick);
       dy[k] = problem.dy[pick];
     }
-    if (!(std::abs(X.determinant()) > 1e-2)) continue;  // the same one twice, or too near a line
+    if (!(std::abs(X.determinant()) > 1e-2)) continue;  // duplicate or nearly collinear
     const Vector3d p = X.inverse() * dy;
     const double cost = cost_of(p);
     if (cost < least) {
@@ -140,8 +141,8 @@ Fit reweighted(const Problem& problem, const Vector3d& start) {
   return fit;
 }
 
-/// A⁻¹ B A⁻¹ with A = Σ ψ'(r) xxᵀ / σ², B = Σ (ψ(r) / (1 − h))² xxᵀ / σ²: h, the leverage, makes up
-/// for a residual's being smaller than its error (MacKinnon and White 1985).
+/// A⁻¹ B A⁻¹ with A = Σ ψ'(r) xxᵀ / σ², B = Σ (ψ(r) / (1 − h))² xxᵀ / σ²; the leverage h corrects
+/// for residuals being smaller than errors (MacKinnon and White 1985).
 Matrix3d covariance_of(const Problem& problem, const Fit& fit) {
   const Eigen::VectorXd r = problem.scaled_residuals(fit.p);
   const Eigen::VectorXd weight = tukey_weights(r, fit.scale);
@@ -169,7 +170,7 @@ std::array<RowVector3d, 4> image_corners(const VerticalField& field) {
   return rows;
 }
 
-/// What the numbers amount to.
+/// Sets the flags from the estimates.
 void judge(VerticalField& field, const VerticalFieldOptions& options) {
   double widest = 0;
   for (const RowVector3d& x : image_corners(field)) {

@@ -1026,11 +1026,11 @@ class Simulation(Case):
         self.assertEqual(drawn['rig']['told'][0]['parameters']['f_px'], third['left.f_px'])
 
     def test_simulate_refuses_places_and_options_that_make_no_sense(self):
-        for pose, why in (('-3,7.5,0', 'lies outside the world'),
-                          ('10,99,0', 'lies outside the world'),
+        for pose, why in (('-3,7.5,0', 'is outside the world'),
+                          ('10,99,0', 'is outside the world'),
                           ('0.05,7.5,0', 'has a surface nearer than 0.12 m')):
             self.complains('simulate', f'--pose={pose}', of=why)
-        self.complains('simulate', '--pose', '10,7.5,0', '--height-m', '3', of='lies 3 m high')
+        self.complains('simulate', '--pose', '10,7.5,0', '--height-m', '3', of='at a height of 3 m')
         self.complains('simulate', '--pose', '10,7.5,0', '--height-m', '2.45',
                        of='less than 0.2 m above the camera')
         for sources, why in ((('stereo_mismatch=0', 'stereo_mismatch_px=5'), 'has no effect'),

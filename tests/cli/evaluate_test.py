@@ -140,7 +140,7 @@ class Evaluate(unittest.TestCase):
         (self.folder / 'slow.py').write_text('import time\ntime.sleep(60)\n')
         self.complains('--matcher', '', '--time-limit-s', '0.3', '--command',
                        f'{sys.executable} slow.py {{output}} {{left}} {{right}}',
-                       of='did not end within')
+                       of='exceeded the time limit')
 
     def test_under_calibration_error(self):
         more = ('--matcher', 'edge,sgbm', '--psi-c', '1,10', '--draws', '2', '--rows-moved-px', '2',

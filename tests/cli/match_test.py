@@ -107,13 +107,13 @@ class Match(Case):
         def larger(rig):
             rig['cameras'][1]['size_px'] = [640, 480]
         self.complains(*self.arguments(change=larger), '-q',
-                       of='right1.pgm: its size 320x240 is not that of the camera "right"')
+                       of='right1.pgm: the size 320x240 differs from that of camera "right"')
 
     def test_images_without_a_partner(self):
         self.pairs(2)
         (self.folder / 'right2.pgm').unlink()
         self.complains(*self.arguments(), '-q',
-                       of='left2.pgm: no right image has its number 2 (2 images against 1)')
+                       of='left2.pgm: no right image has the number 2 (2 images here, 1 on the other side)')
 
     def test_blank_images(self):
         self.image('left1.pgm', 0, grey=100)
@@ -166,7 +166,7 @@ class Match(Case):
             n = len(names)
             rig['covariance']['matrix'] = [[1e-6 * (i == j) for j in range(n)] for i in range(n)]
         self.complains(*self.arguments(change=third), '-q',
-                       of='it is a rig of 3 cameras; corners are matched between two')
+                       of='the rig has 3 cameras instead of 2')
 
     def test_outputs_never_replace_inputs(self):
         self.pairs()

@@ -190,7 +190,7 @@ class Made(Case):
         for files, words in ((dict(right='small'), 'small.pgm: the left image is 200x120'),
                              (dict(left='blank', right='right'), 'no edges'),
                              (dict(left='right', right='left'), 'seem exchanged'),
-                             (dict(most=400), 'reach beyond the images\' width'),
+                             (dict(most=400), 'exceeds the image width'),
                              (dict(right='left'), 'same image'),
                              (dict(rectified=False), "the images' rig is not given")):
             self.complains(*self.arguments(**files), '-q', of=words, leaves=out)
@@ -201,7 +201,7 @@ class Made(Case):
                                (('--matcher', 'best'), '"best" is no matcher'),
                                (('--f-px', 'nan'), '--f-px'),
                                (('--epipolar-reject-deg', 90), '--epipolar-reject-deg'),
-                               (('--min-disparity', 30), 'no disparity is between'),
+                               (('--min-disparity', 30), 'the disparity range'),
                                (('--rig', 'nominal'), 'two pinhole cameras side by side')):
             self.complains(*self.arguments(), '-q', *options, of=words, leaves=out)
 

@@ -94,8 +94,7 @@ TEST(MakeLocaliser, UnknownMethodNamesTheKnown) {
     make_localiser("sift", map);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "localiser \"sift\": there is no such method; use pgh or pgh_baseline");
+    EXPECT_STREQ(error.what(), "localiser \"sift\": unknown method; use pgh or pgh_baseline");
   }
 }
 

@@ -105,12 +105,13 @@ TEST(StandingFault, NamesWhyACameraCannotBeThere) {
   EXPECT_EQ(fault(2, 1, 1.2), "");
   EXPECT_EQ(fault(0.5, 3.5, 1.2), "");  // behind the screen
   EXPECT_EQ(fault(5.5, 2.5, 1.2), "");  // behind the cupboard
-  EXPECT_EQ(fault(4.5, 2.5, 1.2), "is closed off from the route, as inside a wall or a cupboard");
+  EXPECT_EQ(fault(4.5, 2.5, 1.2),
+            "is not reachable from the route, as inside a wall or a cupboard");
   EXPECT_NE(fault(2.3, 2.8, 1.2).find("has a surface nearer than 0.12 m"), std::string::npos);
   EXPECT_NE(fault(0.05, 2, 1.2).find("has a surface nearer than 0.12 m"), std::string::npos);
   EXPECT_NE(fault(2, 1, 2.4).find("less than 0.2 m above the camera"), std::string::npos);
-  EXPECT_EQ(fault(7, 1, 1.2), "lies outside the world, which reaches from (0, 0) to (6, 4) m");
-  EXPECT_EQ(fault(2, 1, 3), "lies 3 m high in a world from 0 to 2.5 m");
+  EXPECT_EQ(fault(7, 1, 1.2), "is outside the world, which extends from (0, 0) to (6, 4) m");
+  EXPECT_EQ(fault(2, 1, 3), "is at a height of 3 m, outside the world's 0 to 2.5 m");
   EXPECT_NE(fault(std::nan(""), 1, 1.2), "");
 }
 

@@ -183,12 +183,12 @@ const Fault kFaults[] = {
      "5: unknown key 'segmens' in [[template]]; did you mean 'segments'?"},
     {"[loose]\npolygons = []\n", "4: unknown key 'polygons' in [loose]; did you mean 'corners'?"},
     {"[[template]]\nsegments = []\n", "3: template 0 has no 'name'; add it"},
-    {"[[template]]\nname = \"\"\n", "4: template 0 has an empty name; name it"},
+    {"[[template]]\nname = \"\"\n", "4: template 0 has an empty name; add a name"},
     {"[[template]]\nname = 3\n", "4: template 0 name is not a string; put it in quotes"},
     {"[[template]]\nname = \"a\"\n[[template]]\nname = \"a\"\n",
      "5: template 'a' is already defined in line 3; rename one of the two"},
     {"[[template]]\nname = \"a\"\nsegments = [\n  [0, 0, 0, 1, 0, 0],\n  [1, 2, 3, 1, 2, 3],\n]\n",
-     "7: template 'a' segment 1 has no length; move one end or remove it"},
+     "7: template 'a' segment 1 has zero length; move one end or remove it"},
     {"[[segment]]\nsegment = [0, 0, 0, 0.0005, 0, 0]\n",
      "4: loose segment 0 is shorter than 1 mm; move one end or remove it"},
     {"[[segment]]\nsegment = [0, 0, 0, 1, 0]\n", "4: loose segment 0 has 5 numbers; it takes 6"},
@@ -204,15 +204,15 @@ const Fault kFaults[] = {
     {"loose = 1\n", "3: [loose] is not a table; write it as a table of keys"},
     {"[loose]\nsegments = 1\n", "4: loose segments is not a list; write it as [ … ]"},
     {"[[surface]]\npolygon = [[0,0,0], [1,0,0], [1,1,0.1], [0,1,0]]\n",
-     "4: loose surface 0 is not planar to 1 mm; cut it into triangles"},
+     "4: loose surface 0 is not planar to 1 mm; split it into triangles"},
     {"[[surface]]\npolygon = [[0,0,0], [1,0,0]]\n",
-     "4: loose surface 0 has fewer than three points; give three or more"},
+     "4: loose surface 0 has fewer than three points; use at least three"},
     {"[[template]]\nname = \"door\"\n[[instance]]\ntemplate = \"dor\"\nat_m = [0,0,0]\n",
-     "6: instance 0 names the unknown template 'dor'; did you mean 'door'?"},
+     "6: instance 0 refers to the unknown template 'dor'; did you mean 'door'?"},
     {"[[instance]]\ntemplate = \"dor\"\nat_m = [0,0,0]\n",
-     "4: instance 0 names the unknown template 'dor'; define it in a [[template]]"},
+     "4: instance 0 refers to the unknown template 'dor'; define it in a [[template]]"},
     {"[[instance]]\ntemplate = \"dor\"\n", "3: instance 0 has no 'at_m'; add it"},
-    {"[[route]]\npoints_m = [[0, 0]]\n", "4: route 0 has fewer than two points; give two or more"},
+    {"[[route]]\npoints_m = [[0, 0]]\n", "4: route 0 has fewer than two points; use at least two"},
     {"[[route]]\npoints_m = [[0, 0], [1, 1, 1]]\n", "4: route 0 point has 3 numbers; it takes 2"},
 };
 
@@ -220,14 +220,14 @@ INSTANTIATE_TEST_SUITE_P(All, WorldFileFault, testing::ValuesIn(kFaults));
 
 TEST(WorldFile, NamesAMissingOrWrongHeader) {
   EXPECT_EQ(message_of(""),
-            "w.world.toml:1: the file names no format; begin it with format = \"vernier/world\"");
+            "w.world.toml:1: the file has no format; add format = \"vernier/world\"");
   EXPECT_EQ(message_of("format = \"vernier/rig\"\n"),
-            "w.world.toml:1: this is 'vernier/rig', not a world; give a file of format "
+            "w.world.toml:1: the format is 'vernier/rig'; use a file of format "
             "vernier/world");
   EXPECT_EQ(message_of("format = \"vernier/world\"\n"),
-            "w.world.toml:1: the file has no version; write version = 1");
+            "w.world.toml:1: the file has no version; add version = 1");
   EXPECT_EQ(message_of("format = \"vernier/world\"\nversion = 2\n"),
-            "w.world.toml:2: version 2 is not known here; this program reads version 1");
+            "w.world.toml:2: version 2 is not supported; supported: 1");
 }
 
 TEST(WorldFile, NamesTheLineOfASyntaxError) {

@@ -82,13 +82,13 @@ TEST(World, ExtentBoundsAllSegments) {
 TEST(World, RefusesAnUnknownTemplate) {
   WorldDescription world = one_door();
   world.instances.push_back({"dor", {0, 0, 0}, 0});
-  EXPECT_EQ(message_of(world), "instance 1: there is no template 'dor'; define it or name another");
+  EXPECT_EQ(message_of(world), "instance 1: unknown template 'dor'; define it or use another");
 }
 
 TEST(World, RefusesTwoTemplatesOfOneName) {
   WorldDescription world = one_door();
   world.templates.push_back(world.templates[0]);
-  EXPECT_EQ(message_of(world), "template 1: the name 'door' is taken; rename one of the two");
+  EXPECT_EQ(message_of(world), "template 1: duplicate name 'door'; rename one of the two");
 }
 
 TEST(World, RefusesAShortSegment) {
@@ -105,11 +105,11 @@ TEST(World, RefusesBadSurfaces) {
   auto& polygon = world.templates[0].features.surfaces_m[0];
   polygon[2].y() = 0.01;
   EXPECT_EQ(message_of(world),
-            "template 'door' surface 0: is not planar to 1 mm; cut it into triangles");
+            "template 'door' surface 0: is not planar to 1 mm; split it into triangles");
   polygon[2].y() = 0.0005;
   EXPECT_EQ(message_of(world), "");
   polygon = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-  EXPECT_NE(message_of(world).find("encloses no area"), std::string::npos);
+  EXPECT_NE(message_of(world).find("has no area"), std::string::npos);
   polygon = {{0, 0, 0}, {1, 0, 0}};
   EXPECT_NE(message_of(world).find("fewer than three points"), std::string::npos);
 }
@@ -125,7 +125,7 @@ TEST(World, RefusesNumbersThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   WorldDescription world = one_door();
   world.loose.segments_m[0].second.x() = nan;
-  EXPECT_EQ(message_of(world), "loose segment 0: is not finite; give six finite numbers");
+  EXPECT_EQ(message_of(world), "loose segment 0: is not finite; use six finite numbers");
   world = one_door();
   world.loose.corners_m = {{0, nan, 0}};
   EXPECT_NE(message_of(world).find("loose corner 0"), std::string::npos);

@@ -152,14 +152,14 @@ TEST(EpipolarBand, RefusesWhatIsNoPair) {
   Rig rig = test::stereo_rig();
   const Eigen::MatrixXd C = covariance_of(rig);
   EXPECT_EQ(test::error_message([&] { EpipolarBand(rig, C.topLeftCorner(3, 3)); }),
-            "rig: its covariance is not of its parameters; give both of one rig");
+            "rig: the covariance does not have the size of its parameters; use both of one rig");
   EXPECT_EQ(test::error_message([&] { EpipolarBand(rig, C, {.nearest_m = 0}); }),
-            "epipolar band: the nearest depth is not above 0 or the corners' sigma below it; give "
-            "metres and pixels");
+            "epipolar band: nearest_m is not above 0 or corner_sigma_px is negative; use metres "
+            "and pixels");
   rig.cameras.push_back(rig.cameras[1]);
   rig.T_camera_first.push_back(rig.T_camera_first[1]);
   EXPECT_EQ(test::error_message([&] { EpipolarBand(rig, C); }),
-            "rig: it has 3 cameras, a pair has 2; give the rig of the two cameras that took the "
+            "rig: it has 3 cameras instead of 2; use the rig of the two cameras that took the "
             "images");
 }
 

@@ -155,10 +155,10 @@ TEST(CornerMatching, FindsHardlyAnythingWithTheImagesExchanged) {
 
 TEST(CornerMatching, RefusesSenselessOptions) {
   EXPECT_EQ(test::error_message([] { matched({.gate_probability = 1}); }),
-            "matching: the gate's probability is not between 0 and 1; give 0.997, say");
-  EXPECT_EQ(test::error_message([] { matched({.patch_half_px = 0}); }),
-            "matching: a patch has no pixels, or no neighbours are to be asked; give whole numbers "
-            "above 1");
+            "matching: gate_probability is not between 0 and 1; use e.g. 0.997");
+  EXPECT_EQ(
+      test::error_message([] { matched({.patch_half_px = 0}); }),
+      "matching: the patch size or the number of neighbours is not positive; use integers above 1");
 }
 
 TEST(MatchSupport, TakesOutTheOneThatDisagrees) {

@@ -223,16 +223,16 @@ TEST(StereoTruthOfFiles, IsRefusedWithTheFileNamed) {
   const auto error_output = [&](int w, int h) {
     return test::error_message([&] { read_stereo_truth(scene, w, h); });
   };
-  EXPECT_NE(error_output(5, 3).find("left.pfm: its size 4x3 is not that of the images, 5x3"),
+  EXPECT_NE(error_output(5, 3).find("left.pfm: the size 4x3 differs from that of the images, 5x3"),
             std::string::npos);
   scene.right_truth = folder.path() / "right.pfm";
   write_disparity(scene.right_truth, {3, 4, map.values});
-  EXPECT_NE(error_output(4, 3).find("right.pfm: its size 3x4"), std::string::npos);
+  EXPECT_NE(error_output(4, 3).find("right.pfm: the size 3x4"), std::string::npos);
   write_disparity(scene.right_truth, {4, 3, std::vector<float>(12, unknown)});
-  EXPECT_NE(error_output(4, 3).find("right.pfm: holds no known disparity"), std::string::npos);
+  EXPECT_NE(error_output(4, 3).find("right.pfm: has no known disparity"), std::string::npos);
   EXPECT_NE(test::error_message([&] {
               truth_at(stereo_truth(map), {test::edge_at(4, 0)});
-            }).find("4x3 pixels large, and an edge is at (4, 0)"),
+            }).find("4x3 pixels, but an edge is at (4, 0)"),
             std::string::npos);
 }
 

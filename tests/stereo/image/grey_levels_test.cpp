@@ -52,7 +52,7 @@ TEST_F(GreyLevelsOfFile, AreThoseOfAnEightBitImageWithoutRemark) {
 TEST_F(GreyLevelsOfFile, WeighColoursAsBt601Says) {
   const cv::Mat pixels = ramp<uchar>(3);
   const GreyLevels grey = read(save("colour.png", pixels));
-  EXPECT_EQ(remark_, "colour image, weighed to grey");
+  EXPECT_EQ(remark_, "colour image, converted to grey");
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 7; ++x) {
       const auto bgr = pixels.at<cv::Vec3b>(y, x);
@@ -74,7 +74,7 @@ TEST_F(GreyLevelsOfFile, ScaleDeepImagesByTheirWholeRange) {
   EXPECT_NE(remark_.find("scaled by 1/257; its largest value is only 1"), std::string::npos);
   EXPECT_NEAR(grey(3, 2), pixels.at<ushort>(2, 3) / 257.0, 1e-4);
   read(save("colours.png", ramp<ushort>(3)));
-  EXPECT_EQ(remark_, "16-bit colour image, weighed to grey, scaled by 1/257");
+  EXPECT_EQ(remark_, "16-bit colour image, converted to grey, scaled by 1/257");
 }
 
 TEST_F(GreyLevelsOfFile, TakeTheRangeOfNetpbmFromItsHead) {
@@ -102,7 +102,7 @@ TEST_F(GreyLevelsOfFile, RefuseWhatIsNoImage) {
   std::filesystem::resize_file(whole, std::filesystem::file_size(whole) - 9);
   EXPECT_NE(message(whole).find("is cut off"), std::string::npos);
   const auto real = save("real.tiff", cv::Mat(3, 3, CV_32F, cv::Scalar(0.5)));
-  EXPECT_NE(message(real).find("neither of 8 nor of 16 bits"), std::string::npos);
+  EXPECT_NE(message(real).find("neither unsigned 8-bit nor unsigned 16-bit"), std::string::npos);
 }
 
 }  // namespace

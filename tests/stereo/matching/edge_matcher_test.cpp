@@ -241,7 +241,7 @@ TEST(EdgeMatcher, NamesWhatItCannotTake) {
   pair.right = pair.left;
   EXPECT_NE(test::error_message([&] {
               match_edges(pair, {}, {5, 4});
-            }).find("between 5 and 4"),
+            }).find("range 5 to 4"),
             std::string::npos);
   EXPECT_NE(test::error_message([&] {
               match_edges(pair, {}, {0, 60});
@@ -336,8 +336,7 @@ TEST_F(Evaluation, MoreCurvePointsThanMatches) {
 TEST_F(Evaluation, NeedsOneOfEach) {
   truth.pop_back();
   EXPECT_EQ(test::error_message([&] { evaluate(edges, found, truth, 100); }),
-            "evaluation: edges, disparities and truth are not of one number; give one of each for "
-            "every edge");
+            "evaluation: edges, disparities and truth differ in number; give one of each per edge");
 }
 
 }  // namespace

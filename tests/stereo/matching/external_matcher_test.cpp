@@ -192,32 +192,33 @@ TEST_F(ExternalMatcher, IsRefusedWithoutItsPlaceholders) {
   expect_complaint("prog {left} {output}", "has no {right}");
   expect_complaint("prog {left} {right}", "has no {output}");
   expect_complaint("prog {left} {right} {output.tiff}", "has no {output}");
-  expect_complaint("prog {left} {right} {output} {output.png}", "two kinds");
-  expect_complaint("prog {left} {right} {output} 'x", "a quote ' that is not closed");
-  expect_complaint("", "its command is empty");
-  expect_complaint(" \t", "its command is empty");
+  expect_complaint("prog {left} {right} {output} {output.png}", "two formats");
+  expect_complaint("prog {left} {right} {output} 'x", "unclosed quote '");
+  expect_complaint("", "the command is empty");
+  expect_complaint(" \t", "the command is empty");
   EXPECT_EQ(test::error_message([] { external_matcher("a\nb\tc"); }),
-            "matcher 'a b c': has no {left}; write it where the image belongs");
+            "matcher 'a b c': has no {left}; add it where the program expects the image");
   EXPECT_NE(test::error_message([] { external_matcher("prog"); }).find("has no {left}"),
             std::string::npos);
 }
 
 TEST_F(ExternalMatcher, TellsWhatWentWrongInTheProgram) {
   const std::string names = " {left} {right} {output}";
-  expect_complaint("no_such_program_here" + names, "'no_such_program_here' is not found");
+  expect_complaint("no_such_program_here" + names, "'no_such_program_here' not found");
   expect_complaint(folder_.write("text", "hello").string() + names, "cannot be run: Permission");
   expect_complaint(
       script("fails", "echo one >&2; echo 'two\ttabs' >&2; echo >&2; exit 3\n") + names,
-      "ended with status 3: two tabs; try the command by hand");
-  expect_complaint(script("silent", "exit 1\n") + names, "ended with status 1: no output");
+      "exited with status 3: two tabs; try the command in a shell");
+  expect_complaint(script("silent", "exit 1\n") + names, "exited with status 1: no output");
   expect_complaint(script("says", "echo to standard output; exit 1\n") + names,
-                   "ended with status 1: to standard output");
+                   "exited with status 1: to standard output");
   expect_complaint(script("long", "printf 'x%.0s' $(seq 5000) >&2; exit 1\n") + names,
                    "status 1: xxx");
   EXPECT_LT(error_output(folder_.path().string() + "/long" + names).size(), 1000u);
-  expect_complaint(script("killed", "kill -9 $$\n") + names, "ended by signal 9");
-  expect_complaint(script("idle", "exit 0\n") + names, "ended well but wrote no map");
-  expect_complaint(script("folder", "mkdir \"$3\"\n") + names, "ended well but wrote no map");
+  expect_complaint(script("killed", "kill -9 $$\n") + names, "terminated by signal 9");
+  expect_complaint(script("idle", "exit 0\n") + names, "exited with status 0 but wrote no file");
+  expect_complaint(script("folder", "mkdir \"$3\"\n") + names,
+                   "exited with status 0 but wrote no file");
   expect_complaint(script("text", "echo hello >\"$3\"\n") + names,
                    ": output.pfm: is neither PFM, PNG, PGM nor .npy; give");
   expect_complaint(script("cut", "printf 'Pf 4 3 -1\\nabc' >\"$3\"\n") + names,
@@ -233,7 +234,8 @@ TEST_F(ExternalMatcher, IsStoppedWithAllThatItStartedAfterTheLimit) {
   const std::string pid_file = (folder_.path() / "pid").string();
   const std::string program = script("slow", "sleep 600 &\necho $! >'" + pid_file + "'\nwait\n") +
                               " {left} {right} {output}";
-  expect_complaint(program, "did not end within 0.3 s and was stopped", {.time_limit_s = 0.3});
+  expect_complaint(program, "exceeded the time limit of 0.3 s and was stopped",
+                   {.time_limit_s = 0.3});
   int pid = 0;
   std::ifstream(pid_file) >> pid;
   ASSERT_GT(pid, 0);

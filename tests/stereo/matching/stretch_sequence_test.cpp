@@ -106,7 +106,7 @@ TEST_F(StretchSequence, RefusesAnotherSize) {
   const RectifiedPair small = test::leaf_pair({.width_px = 100, .height_px = 60}, 313);
   EXPECT_NE(test::error_message([&] {
               match_by_stretch(small, {}, {0, 40}, {}, &last);
-            }).find("another size"),
+            }).find("another image size"),
             std::string::npos);
 }
 

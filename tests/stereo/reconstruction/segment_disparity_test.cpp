@@ -125,18 +125,19 @@ TEST_F(OneEdge, RefusalsSayWhy) {
       30, [](int) { return 20.0; }, 15);  // 3.8° from the row
   EXPECT_EQ(parts().at(0).status, SegmentStatus::along_row);
   EXPECT_NE(parts({.min_angle_rad = 0.05}).at(0).status, SegmentStatus::along_row);
-  EXPECT_NE(std::string(describe(SegmentStatus::disagree)).find("no line"), std::string::npos);
+  EXPECT_NE(std::string(describe(SegmentStatus::disagree)).find("no common line"),
+            std::string::npos);
 }
 
 TEST_F(OneEdge, BadInputIsNamed) {
   make(30, [](int) { return 20.0; });
   found.pop_back();
-  EXPECT_NE(test::error_message([&] { parts(); }).find("one number"), std::string::npos);
+  EXPECT_NE(test::error_message([&] { parts(); }).find("differ in number"), std::string::npos);
   found.push_back({});
   segment.points.push_back(30);
-  EXPECT_NE(test::error_message([&] { parts(); }).find("none of the edges"), std::string::npos);
+  EXPECT_NE(test::error_message([&] { parts(); }).find("not in the edges"), std::string::npos);
   segment.points.pop_back();
-  EXPECT_NE(test::error_message([&] { parts({.min_points = 2}); }).find("out of its range"),
+  EXPECT_NE(test::error_message([&] { parts({.min_points = 2}); }).find("out of range"),
             std::string::npos);
 }
 

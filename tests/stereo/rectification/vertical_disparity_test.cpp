@@ -115,8 +115,8 @@ TEST(VerticalDisparity, BadInputIsNamed) {
   Rig one = rig;
   one.cameras.pop_back();
   EXPECT_PRED2(says, error_output(one, 9, 1), "the rig has 1 cameras");
-  EXPECT_PRED2(says, error_output(rig, 0, 1), "a grid of 0x9");
-  EXPECT_PRED2(says, error_output(rig, 9, 0), "a distance of 0 m");
+  EXPECT_PRED2(says, error_output(rig, 0, 1), "the grid is 0x9");
+  EXPECT_PRED2(says, error_output(rig, 9, 0), "the distance is 0 m");
 }
 
 }  // namespace

@@ -160,10 +160,10 @@ TEST(VerticalField, FitStatesItsErrorAndIsNotLedAstray) {
 
 TEST(VerticalField, SaysWhatItFound) {
   VerticalField field = vertical_field(photographed(pair_rig(2)), {0, 64});
-  EXPECT_NE(describe(field).find("the right image lies 2.0"), std::string::npos);
+  EXPECT_NE(describe(field).find("the right image is 2.0"), std::string::npos);
   EXPECT_NE(describe(field).find("px lower"), std::string::npos);
   field = vertical_field(photographed(pair_rig()), {0, 64});
-  EXPECT_NE(describe(field).find("lies level"), std::string::npos);
+  EXPECT_NE(describe(field).find("no significant vertical offset"), std::string::npos);
 }
 
 TEST(VerticalField, ImagesThatAreNotRectifiedAreSaidToBe) {
@@ -222,7 +222,7 @@ TEST(VerticalField, BadInputIsNamed) {
   };
   EXPECT_NE(error_output({image, other}).find("64x64 px, the right one 64x60"), std::string::npos);
   EXPECT_NE(error_output({image, broken}).find("5 values"), std::string::npos);
-  EXPECT_NE(error_output({image, image}, {5, 4}).find("from 5 to 4"), std::string::npos);
+  EXPECT_NE(error_output({image, image}, {5, 4}).find("range 5 to 4"), std::string::npos);
   EXPECT_NE(error_output({image, image}, {0, 9}, {.band_px = 0}).find("0 rows"), std::string::npos);
   EXPECT_NE(error_output({image, image}, {0, 9}, {.corners = 0}).find("0 corners"),
             std::string::npos);

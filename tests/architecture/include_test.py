@@ -9,8 +9,8 @@ Fails on an include of a room that is not among those a room may include, on an 
 (an include of a room further down the file), on a file that belongs to no room, on a permission
 that nothing uses, on a public header that includes an internal one, and on a file that uses a name
 of the project without including the header that declares it; and where docs/architecture.md does
-not show the rooms as rooms.toml has them, or names a file that is not there or lacks a name beside it. --graph
-prints the arrows, --update writes the rooms into that page.
+not show the rooms as rooms.toml has them, or names a file that is not there or lacks a name beside
+it. --graph prints the arrows, --update writes the rooms into that page.
 """
 import argparse
 import re

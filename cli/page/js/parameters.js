@@ -21,8 +21,8 @@ const KIND_MEANING = {
   clustered: "They come from how much whole frames disagree (a sandwich covariance clustered by"
     + " frame), so model and target errors that change from frame to frame are in them.",
   jackknife: "They come from how much whole frames disagree, corrected for few frames and shrunk"
-    + " towards the shape of the bound (a small-sample, jackknife-type covariance), so model and target"
-    + " errors that change from frame to frame are in them.",
+    + " towards the shape of the bound (a small-sample, jackknife-type covariance), so model and"
+    + " target errors that change from frame to frame are in them.",
   prior: "They are assumed, not measured.",
   combined: "They combine a prior with measurements.",
 };

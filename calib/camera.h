@@ -3,9 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -42,6 +44,12 @@ struct Camera {
 
 /// Number of parameters before the distortion in every model: f, ax, ox, oy.
 inline constexpr int core_parameter_count = 4;
+
+/// How many distortion coefficients any model has at most: the size of arrays that hold them.
+inline constexpr int max_distortion_count =
+    []<class... Models>(std::type_identity<std::variant<Models...>>) {
+      return std::max({static_cast<int>(Models::distortion_names.size())...});
+    }(std::type_identity<CameraModel>{});
 
 /// The model called `name` (radial1, pinhole, opencv4, opencv5, opencv8, fisheye4). Throws Error
 /// for any other name, listing these.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <variant>
 
 #include "calib/camera.h"
@@ -22,6 +23,23 @@ namespace {
 constexpr std::array<const char*, 14> opencv_order{"k1", "k2", "p1", "p2", "k3", "k4", "k5",
                                                    "k6", "s1", "s2", "s3", "s4", "tx", "ty"};
 constexpr std::array<const char*, 4> fisheye_order{"k1", "k2", "k3", "k4"};
+
+/// Whether the model's coefficients stand at the places of OpenCV's, as is relied on below.
+template <class Model>
+constexpr bool has_opencv_order() {
+  constexpr auto& names = Model::distortion_names;
+  const auto same = [](std::string_view a, const char* b) { return a == b; };
+  if (std::is_same_v<Model, Fisheye4>) {
+    return std::equal(names.begin(), names.end(), fisheye_order.begin(), fisheye_order.end(), same);
+  }
+  return names.size() <= opencv_order.size() &&
+         std::equal(names.begin(), names.end(), opencv_order.begin(), same);
+}
+static_assert(
+    []<class... Models>(std::type_identity<std::variant<Models...>>) {
+      return (has_opencv_order<Models>() && ...);
+    }(std::type_identity<CameraModel>{}),
+    "a model in another order needs a case of its own");
 
 const char* coefficient_name(bool fisheye, std::size_t i) {
   return fisheye ? fisheye_order.at(i) : opencv_order.at(i);

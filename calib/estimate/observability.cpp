@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -32,6 +33,7 @@ struct Move {
 
 /// Power of the coordinates' scale in each of k1 k2 p1 p2 k3 k4 k5 k6.
 constexpr int scale_powers[] = {2, 4, 1, 1, 6, 2, 4, 6};
+static_assert(std::size(scale_powers) >= max_distortion_count);
 
 /// The parameter changes that multiply the rays of a camera by a matrix, and that matrix.
 std::vector<std::pair<Eigen::VectorXd, Eigen::Matrix3d>> ray_moves(const Camera& camera) {

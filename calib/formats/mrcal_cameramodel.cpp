@@ -83,6 +83,16 @@ std::size_t coefficient_count(const PythonLiteral& value, const std::string& fil
               "smaller one");
 }
 
+/// mrcal's name for a camera's coefficients. Throws Error where it has no model with so many.
+std::string lens_name(const Camera& camera, std::size_t coefficients) {
+  for (const LensModel& model : lens_models) {
+    if (model.coefficients == coefficients) return model.name;
+  }
+  throw Error(fmt::format("camera \"{}\"", camera.name),
+              fmt::format("mrcal has no lens model like {}", model_name(camera.model)),
+              "calibrate with opencv8, or choose another format");
+}
+
 Eigen::Vector2i image_size(const PythonLiteral& model, const std::string& file) {
   const PythonLiteral& value = required(model.find("imagersize"), "imagersize", file);
   const std::vector<double> size = numbers(value, 2, "imagersize", file);
@@ -162,9 +172,7 @@ std::vector<ExportedFile> mrcal_cameramodels(const Rig& rig) {
     const Eigen::Vector3d& t = rig.T_camera_first[i].t;
     const std::string rt =
         fmt::format("{}, {}, {}, {}, {}, {}", r[0], r[1], r[2], t[0], t[1], t[2]);
-    const std::string lens = in.coefficients.empty()
-                                 ? "LENSMODEL_PINHOLE"
-                                 : fmt::format("LENSMODEL_OPENCV{}", in.coefficients.size());
+    const std::string lens = lens_name(camera, in.coefficients.size());
     files.push_back(
         {file_stem(camera) + ".cameramodel",
          fmt::format("{{\n    'lensmodel':  '{}',\n\n"

@@ -141,11 +141,14 @@ MrcalLens mrcal_lens(const Rig& rig) {
   MrcalLens largest;
   for (const Camera& camera : rig.cameras) {
     const std::string model(model_name(camera.model));
-    MrcalLens lens{"LENSMODEL_OPENCV4", parameter_count(OpenCv4{})};  // radial1 too
+    MrcalLens lens;
     if (model == "pinhole") lens = {"LENSMODEL_PINHOLE", parameter_count(Pinhole{})};
+    if (model == "radial1" || model == "opencv4") {
+      lens = {"LENSMODEL_OPENCV4", parameter_count(OpenCv4{})};
+    }
     if (model == "opencv5") lens = {"LENSMODEL_OPENCV5", parameter_count(OpenCv5{})};
     if (model == "opencv8") lens = {"LENSMODEL_OPENCV8", parameter_count(OpenCv8{})};
-    if (model == "fisheye4") {
+    if (lens.name.empty()) {
       throw Error("model " + model, "mrcal has no such lens model",
                   "check pinhole, radial1, opencv4, opencv5 or opencv8");
     }

@@ -51,7 +51,7 @@ struct MrcalLens {
   int parameters = 0;
 };
 
-/// Throws Error for fisheye4, which mrcal does not support.
+/// Throws Error for a model that mrcal does not have, such as fisheye4.
 MrcalLens mrcal_lens(const Rig& rig);
 
 }  // namespace vernier::internal

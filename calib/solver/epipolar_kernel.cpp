@@ -62,7 +62,7 @@ Side side_of(const EpipolarView& view, int c) {
   side.constants.ax = view.ax[c];
   side.constants.ox = view.ox_px[c];
   side.constants.oy = view.oy_px[c];
-  for (int i = 0; i < 8; ++i) side.constants.k[i] = Pack(view.k[c][i]);
+  for (int i = 0; i < max_distortion_count; ++i) side.constants.k[i] = Pack(view.k[c][i]);
   side.count = parameter_count(view.models[c]);
   std::visit(
       [&](auto model) {
@@ -122,9 +122,11 @@ HWY_INLINE PackLoss loss_of(const Loss& loss, Pack r) {
   return {gain * c * c * Pack(1.0 / 3.0) * (one - t * t * t), gain * t * t};
 }
 
-constexpr int tile = 4;          // columns of a square of sums
-constexpr int chunk = 8;         // packs of rows that fit the first-level cache
-constexpr int max_columns = 32;  // two cameras of 12, a pose of 6, the residual; padded
+constexpr int tile = 4;   // columns of a square of sums
+constexpr int chunk = 8;  // packs of rows that fit the first-level cache
+/// Two cameras, a pose of 6, the residual; padded.
+constexpr int max_columns =
+    (2 * (core_parameter_count + max_distortion_count) + 7 + tile - 1) / tile * tile;
 
 /// Adds the products of columns i … i + 3 by j … j + 3 over `n` packs of rows.
 HWY_INLINE void add_tile(

@@ -17,7 +17,7 @@ inline constexpr int packed_pair_lanes = 5;
 /// A rig of two cameras in the kernels' form.
 struct EpipolarView {
   CameraModel models[2];
-  double f_px[2], ax[2], ox_px[2], oy_px[2], k[2][8];
+  double f_px[2], ax[2], ox_px[2], oy_px[2], k[2][max_distortion_count];
   double R[9], t[3];
 
   explicit EpipolarView(const Rig& rig);

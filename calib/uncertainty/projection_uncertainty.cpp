@@ -23,7 +23,7 @@ using namespace internal;
 
 namespace {
 
-constexpr int max_columns = core_parameter_count + 8 + 6 + 6;  // opencv8, pose, motion
+constexpr int max_columns = core_parameter_count + max_distortion_count + 6 + 6;  // pose, motion
 using Sensitivity = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, max_columns>;
 
 void check_camera(const Rig& rig, int camera) {

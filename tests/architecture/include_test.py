@@ -9,8 +9,8 @@ Fails on an include of a room that is not among those a room may include, on an 
 (an include of a room further down the file), on a file that belongs to no room, on a permission
 that nothing uses, on a public header that includes an internal one, and on a file that uses a name
 of the project without including the header that declares it; and where docs/architecture.md does
-not show the rooms as rooms.toml has them, or names a function in a file that lacks it. --graph
-prints the arrows, --update writes the rooms into that page.
+not show the rooms as rooms.toml has them, or names a file that is not there or lacks a name beside
+it. --graph prints the arrows, --update writes the rooms into that page.
 """
 import argparse
 import re
@@ -109,22 +109,25 @@ def diagram(rooms):
 
 def table(rooms):
     """The rooms as a table in Markdown, the lowest first."""
-    lines = ["| room | purpose | may include |", "| --- | --- | --- |"]
+    lines = ["| room | purpose | public headers | may include |", "| --- | --- | --- | --- |"]
     for room in rooms:
         lines.append(f"| `{room['name']}` | {room['purpose']} | "
+                     f"{', '.join(f'`{header}`' for header in room['public']) or 'none'} | "
                      f"{', '.join(room['may_include']) or 'nothing'} |")
     return "\n".join(lines) + "\n"
 
 
+FILE = r"[\w/]+\.(?:cpp|h|inc|js|toml)"
 PAGE_PARTS = re.compile(r"(^```text rooms\n)(.*?)(^```$)(.*?)(^\| room \|.*?\n)(?=\n)", re.M | re.S)
 
 
 def step_faults(page):
-    """Rows "| step | sources | functions |" of a page whose sources lack the file or the name."""
+    """Rows of a page that name a file which is not there or lacks a name beside it: those of three
+    cells, "| step | files | names |", and of two, "| for | files and names |"."""
     found = []
     for row in re.findall(r"^\| .* \|$", page.read_text(encoding="utf-8"), re.M):
         cells = row.strip("| ").split(" | ")
-        names = re.findall(r"`([\w/]+\.(?:cpp|h|js))`", cells[1]) if len(cells) == 3 else []
+        names = re.findall(rf"`({FILE})`", cells[1]) if len(cells) in (2, 3) else []
         if not names or "/" not in names[0]:
             continue
         text, folder = "", ""
@@ -135,7 +138,7 @@ def step_faults(page):
                 found.append(f"{page.name}: names {folder}/{file.name}, which is not there")
                 continue
             text += file.read_text(encoding="utf-8")
-        for function in re.findall(r"`([\w:]+)`", cells[2]):
+        for function in re.findall(r"`([\w:]+)`", cells[-1]):
             if not re.search(rf"\b{function.split('::')[-1]}\b", text):
                 found.append(f"{page.name}: {function} is not in {', '.join(names)}")
     return found

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iterator>
+
 #include "calib/camera.h"
 #include "calib/pose.h"
 #include "calib/radial1.h"
@@ -19,7 +21,8 @@ inline Rig stereo_rig(const CameraModel& model = Radial1{}) {
     camera.parameters = Eigen::VectorXd::Zero(parameter_count(model));
     camera.parameters.head<4>() << 525 + 3 * i, 1.002 - 0.003 * i, 318 + 4 * i, 242 - 5 * i;
     for (Eigen::Index k = 4; k < camera.parameters.size(); ++k) {
-      const double radial[] = {-0.12, 0.04, 4e-4, -3e-4, -0.01, 0.02, 0.01, 0.005};
+      constexpr double radial[] = {-0.12, 0.04, 4e-4, -3e-4, -0.01, 0.02, 0.01, 0.005};
+      static_assert(std::size(radial) >= max_distortion_count);
       camera.parameters[k] = radial[k - 4] * (1 + 0.1 * i);
     }
     rig.cameras.push_back(camera);

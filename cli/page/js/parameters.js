@@ -18,10 +18,11 @@ const PARAMETER_MEANING = [
 const KIND_MEANING = {
   mvb: "They are the minimum variance bound: what the corners' noise alone would allow, which on"
     + " real images is too small.",
-  clustered: "They come from how much whole views disagree (a sandwich covariance clustered by"
-    + " view), so model and target errors that change from view to view are in them.",
-  jackknife: "They come from leaving out one view at a time (a jackknife, shrunk towards the shape"
-    + " of the bound), so model and target errors that change from view to view are in them.",
+  clustered: "They come from how much whole frames disagree (a sandwich covariance clustered by"
+    + " frame), so model and target errors that change from frame to frame are in them.",
+  jackknife: "They come from how much whole frames disagree, corrected for few frames and shrunk"
+    + " towards the shape of the bound (a small-sample, jackknife-type covariance), so model and"
+    + " target errors that change from frame to frame are in them.",
   prior: "They are assumed, not measured.",
   combined: "They combine a prior with measurements.",
 };

@@ -14,6 +14,7 @@
 int main(int, char** argv) {
   using namespace vernier;
   const RigEstimate estimate = read_rig(std::string(argv[1]) + "/rigs/nominal.rig.json").estimate;
+  // honest: the cluster-robust covariance, not the bound.
   const RigAndBoards joint = rig_and_boards(estimate, CovarianceChoice::honest);
 
   const ProjectionUncertainty left(joint, /*camera=*/0, PointFixedTo::boards);

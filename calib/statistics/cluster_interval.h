@@ -7,9 +7,9 @@
 
 namespace vernier::internal {
 
-/// 95 % interval of a figure whose samples are alike within clusters. With K clusters the
-/// percentiles q of their bootstrap (calib/statistics/bootstrap.h) are drawn away from the figure v
-/// itself by
+/// Interval of a figure whose samples are alike within clusters, at options.confidence; 95 % in the
+/// formulas. With K clusters the percentiles q of their bootstrap (calib/statistics/bootstrap.h)
+/// are drawn away from the figure v itself by
 ///
 ///     v − f (v − q_0.025),  v + f (q_0.975 − v),   f = t_{K−1, 0.975} / z_0.975 √(K / (K − 1))
 ///

@@ -34,7 +34,7 @@ struct Shard {
 
 struct StudyRun {
   std::filesystem::path folder;  ///< results are kept, and resumed from, here
-  int threads = 0;               ///< 0: as many as there are
+  int threads = 0;               ///< 0: as many as there are cores
   Shard shard;
   std::string command;                                ///< that this run is; kept beside its results
   std::function<void(int done, int total)> progress;  ///< called from any thread, one at a time
@@ -44,7 +44,9 @@ struct StudyRun {
 
 /// Runs what is missing of this shard. Blocks run in parallel, each on one thread, and so do the
 /// queries of a ceiling, so results do not depend on the number of threads; a killed run goes on
-/// where it was. The caller's own parallel work is not limited.
+/// where it was. The queries of a ceiling are shared among shards. The caller's own parallel work
+/// is not limited: TBB's limit for the process is raised during the run where more threads are
+/// asked for, never lowered, and one that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
 /// A cell's results.

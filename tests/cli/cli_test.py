@@ -1093,6 +1093,12 @@ class Study(Case):
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
 
+    def test_more_threads_than_cores_are_no_reason_to_speak(self):
+        threads = max(8, (os.cpu_count() or 1) + 2)
+        done = self.works('study', self.study(6), '-o', self.folder / 'many', '--threads',
+                          str(threads), '-q')
+        self.assertEqual(done.stderr, '')
+
     def test_a_study_names_the_covariance_that_drives_psi_c(self):
         for rig, kind in (('nominal', 'mvb'), ('renamed.json', 'jackknife')):
             if rig != 'nominal':

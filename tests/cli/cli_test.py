@@ -1046,6 +1046,15 @@ class Simulation(Case):
         self.complains('simulate', '--rig', self.folder / 'bare.json', '--pose', '10,7.5,0',
                        '--source', 'calibration=1', of='covariance')
 
+    def test_simulate_takes_a_pose_on_the_route_of_a_world_without_walls(self):
+        edges = ''.join(f'[[segment]]\nsegment = [{x}, {y}, 0, {x}, {y}, 0.8]\n'
+                        for x in (4, 5) for y in (-0.5, 0.5))
+        world = self.folder / 'low.world.toml'
+        world.write_text('format = "vernier/world"\nversion = 1\n' + edges +
+                         '[[route]]\npoints_m = [[0, 0], [1, 0]]\n')
+        self.works('simulate', '--world', world, '--pose', '0,0,0', '-q')
+        self.complains('simulate', '--world', world, '--pose', '0,3,0', of='outside the world')
+
     def test_world_make_is_repeatable(self):
         for name in ('a', 'b'):
             self.works('world', 'make', '--seed', '7', '-o', self.folder / name)
@@ -1098,6 +1107,22 @@ class Study(Case):
         done = self.works('study', self.study(6), '-o', self.folder / 'many', '--threads',
                           str(threads), '-q')
         self.assertEqual(done.stderr, '')
+
+    def test_a_report_replaces_no_file_of_its_study(self):
+        (self.folder / 'measured.toml').write_text('[sources]\nedge_loss = 0.1\n')
+        (self.folder / 's.toml').write_text('[study]\ntrials = 1\n[map]\nspacing_m = 4\n'
+                                            '[sources]\nfile = "measured.toml"\n')
+        out = self.folder / 'out'
+        self.works('study', self.folder / 's.toml', '-o', out, '-q')
+        files = sorted(file.name for file in out.iterdir()
+                       if file.suffix in ('.toml', '.json', '.sqlite'))
+        self.assertEqual(files, ['results.sqlite', 'rig.json', 'sources.toml', 'study.toml',
+                                 'world.world.toml'])
+        for name in files:
+            before = (out / name).read_bytes()
+            self.complains('report', out, '-o', out / name,
+                           of='is an input, which the output would replace')
+            self.assertEqual((out / name).read_bytes(), before)
 
     def test_a_study_names_the_covariance_that_drives_psi_c(self):
         for rig, kind in (('nominal', 'mvb'), ('renamed.json', 'jackknife')):
@@ -1157,9 +1182,6 @@ class Study(Case):
         self.works('study', self.study(20), '-o', self.folder / 'out', '-q')
         page = self.folder / 'report.html'
         self.works('report', self.folder / 'out', '-o', page)
-        for name in ('study.toml', 'rig.json', 'results.sqlite'):
-            self.complains('report', self.folder / 'out', '-o', self.folder / 'out' / name,
-                           of='is an input, which the output would replace')
         text = page.read_text()
         self.assertFalse('<!--VERNIER' in text, 'a mark of the template is left')
         self.assertIsNone(re.search(r'<(script|link|img)[^>]+(src|href)="?(http|//|[.\w]+/)', text))

@@ -1094,6 +1094,7 @@ class Study(Case):
         self.assertEqual(comparison['maps'], 6)
         self.assertTrue(0 <= comparison['p_value'] <= 1)
         self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
+        self.assertEqual(comparison['p_value_holm'], comparison['p_value'])  # it is the only one
         counts = [comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')]
         self.assertEqual(sum(counts), 60)
         for i in range(2):
@@ -1101,6 +1102,20 @@ class Study(Case):
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
+
+    def test_comparisons_are_adjusted_for_their_number(self):
+        file = self.folder / 's.toml'
+        file.write_text('[study]\ntrials = 18\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
+                        '[sweep]\n"sources.calibration" = [0.1, 30, 100, 1000]\n')
+        done = self.works('study', file, '-o', self.folder / 'out', '--json', '-q')
+        found = json.loads(done.stdout)['comparisons']
+        self.assertEqual(len(found), 3)
+        least = 0
+        for rank, row in enumerate(sorted(found, key=lambda row: row['p_value'])):
+            least = max(least, min(1, (3 - rank) * row['p_value']))
+            self.assertAlmostEqual(row['p_value_holm'], least, places=12)
+        self.assertNotEqual([row['p_value'] for row in found],
+                            [row['p_value_holm'] for row in found])
 
     def test_more_threads_than_cores_are_no_reason_to_speak(self):
         threads = max(8, (os.cpu_count() or 1) + 2)
@@ -1148,6 +1163,7 @@ class Study(Case):
             self.assertEqual(cell['maps'], 5)
         comparison, = json.loads(done.stdout)['comparisons']
         self.assertIsNone(comparison['p_value'])
+        self.assertIsNone(comparison['p_value_holm'])
         self.assertIsNone(comparison['mcnemar_p'])
         table = self.works('study', 'status', self.folder / 'few').stdout
         self.assertIn('no interval: it needs 6 maps, has 5', table)

@@ -178,6 +178,11 @@ std::string interval_text(const CellSummary& summary) {
                      100 * summary.success_interval_95->high);
 }
 
+/// Shards have a part of its queries each.
+std::string ceiling_text(const CellResult& cell) {
+  return std::isnan(cell.ceiling) ? "-" : fmt::format("{:.1f} %", 100 * cell.ceiling);
+}
+
 }  // namespace
 
 std::string study_table(const Study& study, const StudyResults& results) {
@@ -189,11 +194,11 @@ std::string study_table(const Study& study, const StudyResults& results) {
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    text += fmt::format(
-        "{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} {:>9.1f}\n",
-        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        100 * s.success, interval_text(s), 100 * s.coverage, 100 * cell.ceiling, s.median_error_m,
-        s.cpu_ms_mean, s.cpu_ms_p95);
+    text +=
+        fmt::format("{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>9} {:>9.3f} {:>9.1f} {:>9.1f}\n",
+                    swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
+                    100 * s.success, interval_text(s), 100 * s.coverage, ceiling_text(cell),
+                    s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();

@@ -13,8 +13,9 @@ struct Interval {
   bool operator==(const Interval&) const = default;
 };
 
-/// Wilson's score interval for a proportion (Wilson 1927); `confidence` in (0, 1). trials = 0 gives
-/// [0, 1]. `trials` need not be whole: an effective number serves for clustered data.
+/// Wilson's score interval for a proportion (Wilson 1927). trials = 0 gives [0, 1]. `trials` need
+/// not be whole: an effective number serves for clustered data. Throws Error unless
+/// 0 <= successes <= trials and confidence is in (0, 1).
 Interval wilson_interval(double successes, double trials, double confidence = 0.95);
 
 /// Clopper–Pearson interval for a proportion (1934): its coverage is at least its confidence for

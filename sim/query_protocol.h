@@ -35,9 +35,11 @@ ProtocolSpan span(QueryProtocol protocol);
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m);
 
 /// Why a robot's camera cannot be at a pose, as a predicate for a sentence about the pose; empty if
-/// it can. It cannot be outside the bounding box of the world, where a robot of 0.12 m radius that
-/// extends 0.2 m above its camera could not stand, and, in a world with a route, in a space that
-/// surfaces at the camera's height close off from the route (the inside of a wall or a cupboard).
+/// it can. It cannot be outside the bounding box of the world's segments and surfaces and of 0.6 m
+/// around its route; below the floor; above a level surface over the point, such as a ceiling; where
+/// a robot of 0.12 m radius that extends 0.2 m above its camera could not stand; and, in a world
+/// with a route, in a space that surfaces at the camera's height close off from the route (the
+/// inside of a wall or a cupboard).
 std::string standing_fault(const Visibility& visibility,
                            const localise::Pose2D& pose,
                            double eye_height_m);

@@ -13,6 +13,7 @@
 
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
+#include "calib/calibration/result_checks.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
@@ -336,6 +337,9 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   }
   result.joint = calibrate_jointly(result.evidence, start, joint);
   add_warnings(inputs, result);
+  auto& warnings = result.joint.estimate.calibration->warnings;
+  const auto folds = inversion_warnings(result.joint.estimate.rig);
+  warnings.insert(warnings.end(), folds.begin(), folds.end());
   return result;
 }
 

@@ -54,12 +54,13 @@ std::optional<std::string> inversion_warning(const Camera& camera) {
     }
   }
   if (folded == 0) return {};
+  const double percent = 100.0 * folded / (columns * rows);
   return fmt::format(
-      "the distortion of camera \"{}\" cannot be inverted in {:.2g} % of its image ({}; from "
+      "the distortion of camera \"{}\" cannot be inverted in {:.{}f} % of its image ({}; from "
       "{:.0f} "
-      "px of its principal point on): pixels there have no ray, and functions that need one fail; "
-      "use a model with fewer distortion parameters, or add views at the image's border",
-      camera.name, 100.0 * folded / (columns * rows), fmt::join(regions, ", "), least_px);
+      "px of its principal point on): pixels there have no ray, and functions that need one "
+      "fail; use a model with fewer distortion parameters, or add views at the image's border",
+      camera.name, percent, percent < 10 ? 1 : 0, fmt::join(regions, ", "), least_px);
 }
 
 }  // namespace

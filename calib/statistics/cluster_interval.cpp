@@ -27,7 +27,8 @@ Interval cluster_interval(int clusters,
   const double value = statistic(each);
   const Interval drawn = bootstrap_interval(each.size(), statistic, options);
   if (!std::isfinite(value) || std::isnan(drawn.low)) return {nan, nan};
-  const double few = student_quantile(0.975, clusters - 1) / normal_quantile(0.975) *
+  const double upper = 0.5 + 0.5 * options.confidence;
+  const double few = student_quantile(upper, clusters - 1) / normal_quantile(upper) *
                      std::sqrt(clusters / (clusters - 1.0));
   if (is_scale && drawn.low > 0.5 * value && drawn.low > 0) {
     return {value * std::pow(std::min(1.0, value / drawn.high), few),

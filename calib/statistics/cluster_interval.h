@@ -7,9 +7,9 @@
 
 namespace vernier::internal {
 
-/// 95 % interval of a statistic whose samples are correlated within clusters. With K clusters the
-/// percentiles q of their bootstrap (calib/statistics/bootstrap.h) are moved away from the value v
-/// by
+/// Interval at options.confidence of a statistic whose samples are correlated within clusters; 95 %
+/// in the formulas. With K clusters the percentiles q of their bootstrap
+/// (calib/statistics/bootstrap.h) are moved away from the value v by
 ///
 ///     v − f (v − q_0.025),  v + f (q_0.975 − v),   f = t_{K−1, 0.975} / z_0.975 √(K / (K − 1))
 ///

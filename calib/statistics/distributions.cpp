@@ -10,8 +10,10 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "calib/error.h"
 #include "calib/statistics/random.h"
@@ -43,6 +45,18 @@ void check_probability(const char* distribution, double p) {
   if (!(p > 0 && p < 1)) throw Error(distribution, "p is not between 0 and 1", "");
 }
 
+/// What Boost.Math finds, whose exceptions become an Error.
+template <class Evaluate>
+double found(const char* distribution, Evaluate evaluate) {
+  try {
+    return evaluate();
+  } catch (const std::overflow_error&) {
+    throw Error(distribution, "the value is larger than a double can be", "");
+  } catch (const std::exception& error) {
+    throw Error(distribution, std::string("the value was not found: ") + error.what(), "");
+  }
+}
+
 void check_binomial(int trials, double probability) {
   if (trials < 0 || !(probability >= 0 && probability <= 1)) {
     throw Error("binomial distribution",
@@ -60,40 +74,44 @@ double chi_squared_cdf(double x, double dof) {
   check_dof("chi-squared", dof);
   check_number("chi-squared", x);
   if (x <= 0) return 0;
-  return x == infinity ? 1 : cdf(ChiSquared(dof), x);
+  return x == infinity ? 1 : found("chi-squared", [&] { return cdf(ChiSquared(dof), x); });
 }
 
 double chi_squared_survival(double x, double dof) {
   check_dof("chi-squared", dof);
   check_number("chi-squared", x);
   if (x <= 0) return 1;
-  return x == infinity ? 0 : cdf(complement(ChiSquared(dof), x));
+  if (x == infinity) return 0;
+  return found("chi-squared", [&] { return cdf(complement(ChiSquared(dof), x)); });
 }
 
 double chi_squared_quantile(double p, double dof) {
   check_dof("chi-squared", dof);
   check_probability("chi-squared", p);
-  return boost::math::quantile(ChiSquared(dof), p);
+  return found("chi-squared", [&] { return boost::math::quantile(ChiSquared(dof), p); });
 }
 
 double fisher_cdf(double x, double d1, double d2) {
-  check_dof("F distribution", std::min(d1, d2));
+  check_dof("F distribution", d1);
+  check_dof("F distribution", d2);
   check_number("F distribution", x);
   if (x <= 0) return 0;
-  return x == infinity ? 1 : cdf(Fisher(d1, d2), x);
+  return x == infinity ? 1 : found("F distribution", [&] { return cdf(Fisher(d1, d2), x); });
 }
 
 double fisher_survival(double x, double d1, double d2) {
-  check_dof("F distribution", std::min(d1, d2));
+  check_dof("F distribution", d1);
+  check_dof("F distribution", d2);
   check_number("F distribution", x);
   if (x <= 0) return 1;
-  return x == infinity ? 0 : cdf(complement(Fisher(d1, d2), x));
+  if (x == infinity) return 0;
+  return found("F distribution", [&] { return cdf(complement(Fisher(d1, d2), x)); });
 }
 
 double student_cdf(double t, double dof) {
   check_dof("t distribution", dof);
   check_number("t distribution", t);
-  return cdf(Student(dof), t);
+  return found("t distribution", [&] { return cdf(Student(dof), t); });
 }
 
 double student_survival(double t, double dof) { return student_cdf(-t, dof); }
@@ -101,25 +119,32 @@ double student_survival(double t, double dof) { return student_cdf(-t, dof); }
 double student_quantile(double p, double dof) {
   check_dof("t distribution", dof);
   check_probability("t distribution", p);
-  return boost::math::quantile(Student(dof), p);
+  return found("t distribution", [&] { return boost::math::quantile(Student(dof), p); });
 }
 
 double beta_quantile(double p, double a, double b) {
-  check_dof("beta distribution", std::min(a, b));
+  check_dof("beta distribution", a);
+  check_dof("beta distribution", b);
   check_probability("beta distribution", p);
-  return boost::math::quantile(boost::math::beta_distribution<double, Policy>(a, b), p);
+  return found("beta distribution", [&] {
+    return boost::math::quantile(boost::math::beta_distribution<double, Policy>(a, b), p);
+  });
 }
 
 double binomial_cdf(int successes, int trials, double probability) {
   check_binomial(trials, probability);
   if (successes < 0) return 0;
-  return successes >= trials ? 1 : cdf(Binomial(trials, probability), successes);
+  if (successes >= trials) return 1;
+  return found("binomial distribution",
+               [&] { return cdf(Binomial(trials, probability), successes); });
 }
 
 double binomial_survival(int successes, int trials, double probability) {
   check_binomial(trials, probability);
   if (successes < 0) return 1;
-  return successes >= trials ? 0 : cdf(complement(Binomial(trials, probability), successes));
+  if (successes >= trials) return 0;
+  return found("binomial distribution",
+               [&] { return cdf(complement(Binomial(trials, probability), successes)); });
 }
 
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf) {
@@ -138,13 +163,15 @@ double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<doub
 }
 
 std::vector<double> holm_adjusted(const std::vector<double>& p) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!std::isnan(p[i])) order.push_back(i);
+  }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
-  std::vector<double> adjusted(p.size());
+  std::vector<double> adjusted = p;
   double largest = 0;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const double step = static_cast<double>(p.size() - k) * p[order[k]];
+    const double step = static_cast<double>(order.size() - k) * p[order[k]];
     largest = std::max(largest, std::min(1.0, step));
     adjusted[order[k]] = largest;
   }

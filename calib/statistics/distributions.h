@@ -11,7 +11,8 @@ namespace vernier::internal {
 
 // Distributions, by Boost.Math. A cdf is P(X <= x), a survival function P(X > x), each computed
 // directly and not as one minus the other, so that both tails keep their relative accuracy. All
-// throw Error for degrees of freedom not above 0, a p outside (0, 1) and an x that is NaN.
+// throw Error for degrees of freedom that are not positive and finite, a p outside (0, 1), an x that
+// is NaN, and a result that overflows.
 
 /// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h).
 double normal_cdf(double z);
@@ -43,7 +44,8 @@ double binomial_survival(int successes, int trials, double probability);
 double kolmogorov_smirnov_p(std::vector<double> sample, const std::function<double(double)>& cdf);
 
 /// p-values adjusted for their number by Holm's step-down method (Holm 1979): a hypothesis with an
-/// adjusted p below α may be rejected with a probability of at most α of any false rejection.
+/// adjusted p below α may be rejected with a probability of at most α of any false rejection. One
+/// that is not a number stays so and is not counted.
 std::vector<double> holm_adjusted(const std::vector<double>& p);
 
 /// A draw from χ² with `dof` > 2 degrees of freedom (Marsaglia and Tsang 2000).

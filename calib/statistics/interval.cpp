@@ -16,7 +16,13 @@ namespace vernier {
 using namespace internal;
 
 Interval wilson_interval(double successes, double trials, double confidence) {
-  if (!(trials > 0)) return {0, 1};
+  if (!(successes >= 0 && successes <= trials && confidence > 0 && confidence < 1)) {
+    throw Error(
+        "Wilson's interval",
+        fmt::format("{} successes of {} at a confidence of {}", successes, trials, confidence),
+        "give 0 <= successes <= trials and a confidence between 0 and 1");
+  }
+  if (trials == 0) return {0, 1};
   const double z = normal_quantile(0.5 + 0.5 * confidence), p = successes / trials;
   const double shrink = 1 + z * z / trials;
   const double centre = (p + z * z / (2 * trials)) / shrink;

@@ -88,7 +88,7 @@ std::vector<fs::path> files_read(const Inputs& inputs) {
   std::vector<fs::path> files;
   if (!inputs.study.empty()) {
     files = store_files(inputs.study);
-    for (const char* name : {"study.toml", "world.world.toml", "rig.json"}) {
+    for (const char* name : {"study.toml", "world.world.toml", "rig.json", "sources.toml"}) {
       files.push_back(fs::path(inputs.study) / name);
     }
   }

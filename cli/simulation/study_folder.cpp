@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
@@ -19,6 +20,7 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "sim/study/study.h"
@@ -131,8 +133,17 @@ Json cell_json(const CellResult& cell) {
 
 Json comparisons_json(const StudyResults& results) {
   Json comparisons = Json::array();
-  for (const auto& [a, b] : comparable_pairs(results.cells)) {
-    const PairedComparison c = compare(results.cells[a], results.cells[b]);
+  const std::vector<std::pair<std::size_t, std::size_t>> pairs = comparable_pairs(results.cells);
+  std::vector<PairedComparison> compared;
+  std::vector<double> p_values;
+  for (const auto& [a, b] : pairs) {
+    compared.push_back(compare(results.cells[a], results.cells[b]));
+    p_values.push_back(compared.back().p_value);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [a, b] = pairs[i];
+    const PairedComparison& c = compared[i];
     comparisons.push_back({{"a", short_label(results.cells[a].cell)},
                            {"b", short_label(results.cells[b].cell)},
                            {"both", c.both},
@@ -142,6 +153,7 @@ Json comparisons_json(const StudyResults& results) {
                            {"maps", c.maps},
                            {"test", "paired t over maps"},
                            {"p_value", json_number(c.p_value)},
+                           {"p_value_holm", json_number(adjusted[i])},
                            {"mcnemar_p", json_number(c.mcnemar_p)}});
   }
   return comparisons;
@@ -166,6 +178,11 @@ std::string interval_text(const CellSummary& summary) {
                      100 * summary.success_interval_95->high);
 }
 
+/// Shards have a part of its queries each.
+std::string ceiling_text(const CellResult& cell) {
+  return std::isnan(cell.ceiling) ? "-" : fmt::format("{:.1f} %", 100 * cell.ceiling);
+}
+
 }  // namespace
 
 std::string study_table(const Study& study, const StudyResults& results) {
@@ -177,11 +194,11 @@ std::string study_table(const Study& study, const StudyResults& results) {
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    text += fmt::format(
-        "{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>7.1f} % {:>9.3f} {:>9.1f} {:>9.1f}\n",
-        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        100 * s.success, interval_text(s), 100 * s.coverage, 100 * cell.ceiling, s.median_error_m,
-        s.cpu_ms_mean, s.cpu_ms_p95);
+    text +=
+        fmt::format("{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>9} {:>9.3f} {:>9.1f} {:>9.1f}\n",
+                    swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
+                    100 * s.success, interval_text(s), 100 * s.coverage, ceiling_text(cell),
+                    s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();

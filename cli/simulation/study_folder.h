@@ -22,7 +22,8 @@ Study open_folder(const std::filesystem::path& folder, Session& session);
 
 /// The settings that differ between cells, and the first cell's whole settings.
 Json cell_json(const CellResult& cell);
-/// Each cell against the nearest one before it with the same queries.
+/// Each cell against the nearest one before it with the same queries; the p-values as they are and
+/// adjusted for their number by Holm's method.
 Json comparisons_json(const StudyResults& results);
 Json study_json(const Study& study, const StudyResults& results);
 std::string study_table(const Study& study, const StudyResults& results);

@@ -31,6 +31,7 @@ namespace {
 
 constexpr double robot_radius_m = 0.12;
 constexpr double robot_top_m = 0.2;  ///< above its camera
+constexpr double floor_m = 0.02;     ///< what lies lower is the floor itself
 
 /// Distance on the floor from a point to a segment.
 double plan_distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -53,12 +54,56 @@ bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& p
   return inside;
 }
 
+/// Bounding box of the poses that are accepted: of segments and surfaces, from the floor at 0 or
+/// lower, and of the route with the largest offset of a query.
+WorldExtent standing_box(const World& world) {
+  WorldExtent box{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
+                  Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
+  const auto take_in = [&](const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m) {
+    box.low_m = box.low_m.cwiseMin(low_m);
+    box.high_m = box.high_m.cwiseMax(high_m);
+  };
+  for (const WorldSegment& segment : world.segments) {
+    take_in(segment.a_m, segment.a_m);
+    take_in(segment.b_m, segment.b_m);
+  }
+  for (const WorldSurface& surface : world.surfaces) {
+    for (const Eigen::Vector3d& point : surface.polygon_m) take_in(point, point);
+  }
+  const double across_m = span(QueryProtocol::anywhere).across_m;
+  const Eigen::Vector3d about(across_m, across_m, 0);
+  for (const RouteLeg& leg : world.route) {
+    for (const Eigen::Vector2d& p : leg.points_m) {
+      const Eigen::Vector3d at(p.x(), p.y(), 0);
+      take_in(at - about, at + about);
+    }
+  }
+  if (box.low_m.x() > box.high_m.x()) return extent(world);  // an empty world
+  box.low_m.z() = std::min(0.0, box.low_m.z());
+  return box;
+}
+
+/// Height of the highest level surface over a point, such as a ceiling; infinite if there is none.
+double ceiling_height_m(const World& world, const Eigen::Vector2d& at_m) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const WorldSurface& surface : world.surfaces) {
+    double low = surface.polygon_m[0].z(), high = low;
+    for (const auto& point : surface.polygon_m) {
+      low = std::min(low, point.z());
+      high = std::max(high, point.z());
+    }
+    if (high < floor_m || high - low >= 1e-6 || !inside_plan(at_m, surface.polygon_m)) continue;
+    highest = std::max(highest, high);
+  }
+  return std::isinf(highest) ? -highest : highest;
+}
+
 /// Whether a path of short straight steps, free of surfaces at eye height, connects a point to the
 /// route: first a direct line of sight to the route, then a search over a grid through the point.
 class WayToRoute {
  public:
   WayToRoute(const Visibility& visibility, double height_m)
-      : visibility_(visibility), box_(extent(visibility.world())), height_m_(height_m) {
+      : visibility_(visibility), box_(standing_box(visibility.world())), height_m_(height_m) {
     const std::vector<RouteLeg>& route = visibility.world().route;
     const double length = route_length_m(route);
     for (double s = 0; s < length; s += step_m) {
@@ -155,7 +200,6 @@ ProtocolSpan span(QueryProtocol protocol) {
 }
 
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
-  constexpr double floor_m = 0.02;  // surfaces below are the floor itself
   for (const WorldSurface& surface : world.surfaces) {
     double low = surface.polygon_m[0].z(), high = low;
     for (const auto& point : surface.polygon_m) {
@@ -174,17 +218,21 @@ bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, d
 
 std::string standing_fault(const Visibility& visibility, const Pose2D& pose, double eye_height_m) {
   const World& world = visibility.world();
-  const WorldExtent box = extent(world);
+  const WorldExtent box = standing_box(world);
   if (!(pose.x_m >= box.low_m.x() && pose.x_m <= box.high_m.x() && pose.y_m >= box.low_m.y() &&
         pose.y_m <= box.high_m.y())) {
     return fmt::format("is outside the world, which extends from ({:g}, {:g}) to ({:g}, {:g}) m",
                        box.low_m.x(), box.low_m.y(), box.high_m.x(), box.high_m.y());
   }
-  if (!(eye_height_m >= box.low_m.z() && eye_height_m <= box.high_m.z())) {
-    return fmt::format("is at a height of {:g} m, outside the world's {:g} to {:g} m", eye_height_m,
-                       box.low_m.z(), box.high_m.z());
-  }
   const Eigen::Vector2d at(pose.x_m, pose.y_m);
+  if (!(eye_height_m >= box.low_m.z())) {
+    return fmt::format("is at a height of {:g} m, below the floor at {:g} m", eye_height_m,
+                       box.low_m.z());
+  }
+  if (const double ceiling_m = ceiling_height_m(world, at); !(eye_height_m <= ceiling_m)) {
+    return fmt::format("is at a height of {:g} m, above the ceiling at {:g} m", eye_height_m,
+                       ceiling_m);
+  }
   if (!is_free(world, at, robot_radius_m, eye_height_m + robot_top_m)) {
     return fmt::format("has a surface nearer than {:g} m, or less than {:g} m above the camera",
                        robot_radius_m, robot_top_m);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -84,6 +85,51 @@ std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
                      ceiling_queries(study));
 }
 
+/// One query's share of a ceiling whose queries are shared among shards.
+std::string query_key(const std::string& ceiling, int query) {
+  return fmt::format("{} query {}", ceiling, query);
+}
+
+using Notes = std::map<std::string, std::string>;
+
+/// The notes of all stores of the folder.
+Notes notes_of(const std::filesystem::path& folder) {
+  Notes notes;
+  for (const auto& file : store_files(folder)) {
+    for (const auto& [key, value] : StudyStore(file).notes()) notes[key] = value;
+  }
+  return notes;
+}
+
+/// A number of the notes, not a number where they have none.
+double noted(const Notes& notes, const std::string& key) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto found = notes.find(key);
+  return found == notes.end() ? nan : vernier::internal::to_real(found->second).value_or(nan);
+}
+
+/// What the notes have of a ceiling's queries, not a number for the others.
+std::vector<double> noted_queries(const Study& study, const Notes& notes, const std::string& key) {
+  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
+  for (std::size_t i = 0; i < of_query.size(); ++i) {
+    of_query[i] = noted(notes, query_key(key, static_cast<int>(i)));
+  }
+  return of_query;
+}
+
+/// The sum is in the order of the queries, whichever was done first.
+double mean(const std::vector<double>& of_query) {
+  double sum = 0;
+  for (const double ceiling : of_query) sum += ceiling;
+  return sum / static_cast<double>(of_query.size());
+}
+
+/// Not a number where the notes lack it or one of its queries.
+double noted_ceiling(const Study& study, const Notes& notes, const std::string& key) {
+  const double whole = noted(notes, key);
+  return std::isnan(whole) ? mean(noted_queries(study, notes, key)) : whole;
+}
+
 struct Job {
   const StudyCell* cell;
   std::string key;
@@ -123,6 +169,25 @@ std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
   return missing;
 }
 
+/// Lets the process use more threads than it has cores where a run asks for more, as long as this
+/// exists; never fewer than without.
+class RaisedThreadLimit {
+ public:
+  explicit RaisedThreadLimit(int threads) {
+    if (allowed(threads) < threads) control_.emplace(limit, static_cast<std::size_t>(threads));
+  }
+
+  /// So many of the threads as the process may use: a limit of the caller's own stays.
+  int allowed(int threads) const {
+    const std::size_t active = tbb::global_control::active_value(limit);
+    return static_cast<int>(std::min(static_cast<std::size_t>(threads), active));
+  }
+
+ private:
+  static constexpr auto limit = tbb::global_control::max_allowed_parallelism;
+  std::optional<tbb::global_control> control_;
+};
+
 /// Calls work(0) … work(count - 1) on the threads of an arena.
 template <class Work>
 void in_parallel(tbb::task_arena& arena, int count, Work work) {
@@ -136,53 +201,73 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
   });
 }
 
-/// The world's ceiling on the first queries of a cell; calls `one_done` after each of them. The sum
-/// is in the order of the queries, independent of the order of completion.
-double compute_ceiling(const Study& study,
-                       const Visibility& visibility,
-                       const ExperimentSettings& settings,
-                       tbb::task_arena& arena,
-                       const std::function<void()>& one_done) {
+/// A ceiling that no store of the folder has, and this shard's part of it.
+struct MissingCeiling {
+  const ExperimentSettings* settings;
+  std::vector<double> of_query;  ///< NaN until it is known
+  std::vector<int> mine;         ///< the queries to compute
+};
+
+/// Computes this shard's queries of a ceiling; calls `one_done` after each of them.
+void compute_queries(const Study& study,
+                     const Visibility& visibility,
+                     MissingCeiling& ceiling,
+                     tbb::task_arena& arena,
+                     const std::function<void()>& one_done) {
+  const ExperimentSettings& settings = *ceiling.settings;
   NoiseFreeViewOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
-  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
-  in_parallel(arena, static_cast<int>(of_query.size()), [&](int i) {
-    of_query[i] = finder
-                      .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
-                                          settings.seed, static_cast<std::uint32_t>(i)))
-                      .ceiling();
+  in_parallel(arena, static_cast<int>(ceiling.mine.size()), [&](int i) {
+    const int query = ceiling.mine[i];
+    ceiling.of_query[query] =
+        finder
+            .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
+                                settings.seed, static_cast<std::uint32_t>(query)))
+            .ceiling();
     one_done();
   });
-  double sum = 0;
-  for (const double ceiling : of_query) sum += ceiling;
-  return sum / static_cast<double>(of_query.size());
 }
 
-/// Computes the ceilings missing from the store, and stores each when it is done.
+/// Computes the ceilings that no store of the folder has, and stores each as soon as it is known.
+/// With other shards, this one computes one of every shard.count queries.
 void add_ceilings(const Study& study,
                   const Visibility& visibility,
                   const StudyRun& run,
                   tbb::task_arena& arena,
                   StudyStore& store) {
-  std::map<std::string, const ExperimentSettings*> missing;
+  const Notes notes = notes_of(run.folder);
+  std::map<std::string, MissingCeiling> missing;
+  int total = 0;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = ceiling_key(study, cell.experiment);
-    if (store.note(key).empty()) missing.emplace(key, &cell.experiment);
+    if (missing.count(key) > 0 || !std::isnan(noted_ceiling(study, notes, key))) continue;
+    MissingCeiling ceiling{&cell.experiment, noted_queries(study, notes, key), {}};
+    for (int i = run.shard.index; i < ceiling_queries(study); i += run.shard.count) {
+      if (std::isnan(ceiling.of_query[i])) ceiling.mine.push_back(i);
+    }
+    total += static_cast<int>(ceiling.mine.size());
+    if (!ceiling.mine.empty()) missing.emplace(key, std::move(ceiling));
   }
   if (missing.empty()) return;
   std::mutex mutex;
   int done = 0;
-  const int total = static_cast<int>(missing.size()) * ceiling_queries(study);
   if (run.ceiling_progress) run.ceiling_progress(0, total);
   const auto one_done = [&] {
     const std::lock_guard lock(mutex);
     ++done;
     if (run.ceiling_progress) run.ceiling_progress(done, total);
   };
-  for (const auto& [key, settings] : missing) {
-    store.set_metadata(
-        key, fmt::format("{}", compute_ceiling(study, visibility, *settings, arena, one_done)));
+  for (auto& [key, ceiling] : missing) {
+    compute_queries(study, visibility, ceiling, arena, one_done);
+    const double whole = mean(ceiling.of_query);
+    if (!std::isnan(whole)) {
+      store.set_metadata(key, fmt::format("{}", whole));
+      continue;
+    }
+    for (const int query : ceiling.mine) {
+      store.set_metadata(query_key(key, query), fmt::format("{}", ceiling.of_query[query]));
+    }
   }
 }
 
@@ -226,7 +311,8 @@ void run_study(const Study& study, const StudyRun& run) {
   if (!run.command.empty() && !jobs.empty())
     store.set_metadata(command_key(run.command), run.command);
 
-  tbb::task_arena arena(run.threads > 0 ? run.threads : tbb::task_arena::automatic);
+  const RaisedThreadLimit raised(run.threads);
+  tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
   add_ceilings(study, visibility, run, arena, store);
 
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
@@ -258,7 +344,7 @@ void run_study(const Study& study, const StudyRun& run) {
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
   std::map<std::pair<std::string, int>, StoredBlock> blocks;
-  std::map<std::string, std::string> ceilings;
+  Notes notes;
   std::set<std::string> commands;
   for (const auto& file : store_files(folder)) {
     const StudyStore store(file);
@@ -266,11 +352,8 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
       auto& kept = blocks[{block.cell, block.block}];
       kept = longer_block(std::move(block), std::move(kept), file.string());
     }
-    for (const StudyCell& cell : study.file.cells) {
-      const std::string key = ceiling_key(study, cell.experiment);
-      if (const std::string value = store.note(key); !value.empty()) ceilings[key] = value;
-    }
     for (const auto& [key, value] : store.notes()) {
+      notes[key] = value;
       if (key == command_key(value)) commands.insert(value);
     }
   }
@@ -280,11 +363,7 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     CellResult result;
     result.cell = cell;
     result.trials_per_block = study.file.trials_per_block;
-    const auto ceiling = ceilings.find(ceiling_key(study, cell.experiment));
-    result.ceiling = std::numeric_limits<double>::quiet_NaN();
-    if (ceiling != ceilings.end()) {
-      result.ceiling = vernier::internal::to_real(ceiling->second).value_or(result.ceiling);
-    }
+    result.ceiling = noted_ceiling(study, notes, ceiling_key(study, cell.experiment));
     results.cells.push_back(std::move(result));
   }
   for (const Job& job : all_jobs(study)) {

@@ -45,7 +45,9 @@ struct StudyRun {
 
 /// Runs the missing blocks of this shard. Blocks run in parallel, each on one thread, as do the
 /// queries of a ceiling, so results do not depend on the number of threads; an interrupted run can
-/// be resumed. The caller's own parallel work is not limited.
+/// be resumed. Shards share the queries of a ceiling. The caller's own parallel work is not limited:
+/// TBB's limit for the process is raised during the run if more threads are asked for, never
+/// lowered, and a limit that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
 /// Results of a cell.

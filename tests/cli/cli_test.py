@@ -1047,6 +1047,15 @@ class Simulation(Case):
         self.complains('simulate', '--rig', self.folder / 'bare.json', '--pose', '10,7.5,0',
                        '--source', 'calibration=1', of='covariance')
 
+    def test_simulate_takes_a_pose_on_the_route_of_a_world_without_walls(self):
+        edges = ''.join(f'[[segment]]\nsegment = [{x}, {y}, 0, {x}, {y}, 0.8]\n'
+                        for x in (4, 5) for y in (-0.5, 0.5))
+        world = self.folder / 'low.world.toml'
+        world.write_text('format = "vernier/world"\nversion = 1\n' + edges +
+                         '[[route]]\npoints_m = [[0, 0], [1, 0]]\n')
+        self.works('simulate', '--world', world, '--pose', '0,0,0', '-q')
+        self.complains('simulate', '--world', world, '--pose', '0,3,0', of='outside the world')
+
     def test_world_make_is_repeatable(self):
         for name in ('a', 'b'):
             self.works('world', 'make', '--seed', '7', '-o', self.folder / name)
@@ -1086,6 +1095,7 @@ class Study(Case):
         self.assertEqual(comparison['maps'], 6)
         self.assertTrue(0 <= comparison['p_value'] <= 1)
         self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
+        self.assertEqual(comparison['p_value_holm'], comparison['p_value'])  # it is the only one
         counts = [comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')]
         self.assertEqual(sum(counts), 60)
         for i in range(2):
@@ -1093,6 +1103,42 @@ class Study(Case):
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
                             self.folder / 'merged', '--json')
         self.assertEqual(self.untimed(merged.stdout), self.untimed(one.stdout))
+
+    def test_comparisons_are_adjusted_for_their_number(self):
+        file = self.folder / 's.toml'
+        file.write_text('[study]\ntrials = 18\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
+                        '[sweep]\n"sources.calibration" = [0.1, 30, 100, 1000]\n')
+        done = self.works('study', file, '-o', self.folder / 'out', '--json', '-q')
+        found = json.loads(done.stdout)['comparisons']
+        self.assertEqual(len(found), 3)
+        least = 0
+        for rank, row in enumerate(sorted(found, key=lambda row: row['p_value'])):
+            least = max(least, min(1, (3 - rank) * row['p_value']))
+            self.assertAlmostEqual(row['p_value_holm'], least, places=12)
+        self.assertNotEqual([row['p_value'] for row in found],
+                            [row['p_value_holm'] for row in found])
+
+    def test_more_threads_than_cores_are_no_reason_to_speak(self):
+        threads = max(8, (os.cpu_count() or 1) + 2)
+        done = self.works('study', self.study(6), '-o', self.folder / 'many', '--threads',
+                          str(threads), '-q')
+        self.assertEqual(done.stderr, '')
+
+    def test_a_report_replaces_no_file_of_its_study(self):
+        (self.folder / 'measured.toml').write_text('[sources]\nedge_loss = 0.1\n')
+        (self.folder / 's.toml').write_text('[study]\ntrials = 1\n[map]\nspacing_m = 4\n'
+                                            '[sources]\nfile = "measured.toml"\n')
+        out = self.folder / 'out'
+        self.works('study', self.folder / 's.toml', '-o', out, '-q')
+        files = sorted(file.name for file in out.iterdir()
+                       if file.suffix in ('.toml', '.json', '.sqlite'))
+        self.assertEqual(files, ['results.sqlite', 'rig.json', 'sources.toml', 'study.toml',
+                                 'world.world.toml'])
+        for name in files:
+            before = (out / name).read_bytes()
+            self.complains('report', out, '-o', out / name,
+                           of='is an input, which the output would replace')
+            self.assertEqual((out / name).read_bytes(), before)
 
     def test_a_study_names_the_covariance_that_drives_psi_c(self):
         for rig, kind in (('nominal', 'mvb'), ('renamed.json', 'jackknife')):
@@ -1118,6 +1164,7 @@ class Study(Case):
             self.assertEqual(cell['maps'], 5)
         comparison, = json.loads(done.stdout)['comparisons']
         self.assertIsNone(comparison['p_value'])
+        self.assertIsNone(comparison['p_value_holm'])
         self.assertIsNone(comparison['mcnemar_p'])
         table = self.works('study', 'status', self.folder / 'few').stdout
         self.assertIn('no interval: it needs 6 maps, has 5', table)
@@ -1128,7 +1175,11 @@ class Study(Case):
             self.assertIsNone(cell['success_interval_95_missing'])
 
     def test_a_merge_with_a_missing_shard_is_doubtful(self):
-        self.works('study', self.study(), '-o', self.folder / 'part0', '--shard', '0/2', '-q')
+        folder = self.folder / 'part0'
+        part = self.works('study', self.study(), '-o', folder, '--shard', '0/2', '-q')
+        self.assertNotIn('nan %', part.stdout)  # of the ceiling, whose other queries are elsewhere
+        cells = json.loads(self.works('study', 'status', folder, '--json', '-q').stdout)['cells']
+        self.assertEqual([cell['world_ceiling'] for cell in cells], [None, None])
         done = vernier('study', 'merge', self.folder / 'part0', '-o', self.folder / 'merged')
         self.assertEqual(done.returncode, 3)
         self.assertIn('blocks are missing', done.stderr)
@@ -1152,9 +1203,6 @@ class Study(Case):
         self.works('study', self.study(20), '-o', self.folder / 'out', '-q')
         page = self.folder / 'report.html'
         self.works('report', self.folder / 'out', '-o', page)
-        for name in ('study.toml', 'rig.json', 'results.sqlite'):
-            self.complains('report', self.folder / 'out', '-o', self.folder / 'out' / name,
-                           of='is an input, which the output would replace')
         text = page.read_text()
         self.assertFalse('<!--VERNIER' in text, 'a mark of the template is left')
         self.assertIsNone(re.search(r'<(script|link|img)[^>]+(src|href)="?(http|//|[.\w]+/)', text))

@@ -41,6 +41,7 @@ function sample_pages(folder, page) {
       cells: [bare_cell(study.cells[2])] } }), true],
     "no-sweep": [JSON.stringify({ title: "Methods", study: { ...study, sweep: null } }), true],
     ...gap_samples(study),
+    "adjusted": [JSON.stringify({ title: "Adjusted", study: adjusted(study) }), true],
     "true-bound": [JSON.stringify({ title: "Bound", rigs: [true_bound(full.rigs[0])] }), true],
     "sweep-with-zero": [JSON.stringify({ title: "Zero", study: with_zero(study) }), true],
   };
@@ -115,6 +116,14 @@ function evaluation_with_gaps() {
     curves: { some: [[0.5, 0.01], [0.7, null], [0.9, 0.05]], none: [[0.4, 0.1], [0.6, 0.2]] },
     calibration_error: { draws: 2, seed: 1, rigs: ["nominal"],
       cells: [cell(0.1, 0.02), cell(1, null), cell(10, 0.1)] } };
+}
+
+/** Four p below 0.05, of which Holm leaves two, and one that there are too few maps for. */
+function adjusted(study) {
+  const p = [[0.04, 0.06], [0.0123, 0.0369], [0.03, 0.06], [0.0011, 0.0044], [null, null]];
+  const [row] = study.comparisons;
+  return { ...study, comparisons: p.map(([p_value, p_value_holm]) => ({ ...row,
+    test: "paired t over maps", p_value, p_value_holm })) };
 }
 
 function with_zero(study) {
@@ -217,6 +226,10 @@ const SPECIAL = {
     nulls[3]?.[0] !== 1 && "null mismatch is no gap",
     zero_shares !== 6 && `${zero_shares} shares of 0 in tables, where 6 densities are`,
     !text.includes("vernier evaluate --scenes 'two pairs.toml'") && "the command is not said"],
+  "adjusted": ({ text }) => [
+    !(text.includes("0.037") && text.includes("0.060")) && "an adjusted p is not shown",
+    [...text.matchAll(/is\sbetter/g)].length !== 2 && "the words are not by the adjusted p",
+    [...text.matchAll(/no\sdifference\sshown/g)].length !== 2 && "a p is not adjusted"],
   "true-bound": ({ heads, text }) => [
     heads.some((head) => head.includes("of the bound")) && "the bound stands twice in the table",
     heads.includes("honest") && "boards left out are counted twice",

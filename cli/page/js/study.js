@@ -143,7 +143,12 @@ export function comparisons_section(study) {
     "Cells ran on the same queries with the same random numbers, so the sharper question is where"
     + " they disagree: queries that only one of the two answered within 1 m. p is the chance"
     + ` of a split at least this uneven if neither cell were better (${test}).`));
-  if (study.comparisons.length > 3) {
+  if (study.comparisons.some((row) => "p_value_holm" in row)) {
+    made.append(paragraph("Where cells are compared several times, one small p is to be expected by"
+      + " chance. The p of Holm is adjusted for the number of comparisons: a cell is called the better"
+      + " one where it is below 0.05. If all cells are alike, that happens in any row with a"
+      + " probability of at most 5 %."));
+  } else if (study.comparisons.length > 3) {
     made.append(paragraph(`With ${study.comparisons.length} comparisons, one p below 0.05 is to be`
       + " expected now and then by chance; p is not corrected for their number."));
   }
@@ -153,7 +158,8 @@ export function comparisons_section(study) {
     both_count("Both", "both"), both_count("Only A", "only_a"), both_count("Only B", "only_b"),
     both_count("Neither", "neither"),
     { head: "A less B", small: "points of success", cell: (row) => points(row) },
-    { head: "p", cell: (row) => p_value(p_of(row)) },
+    { head: "p", small: "by itself", cell: (row) => p_value(p_of(row)) },
+    { head: "p", small: "adjusted, Holm", cell: (row) => p_value(row.p_value_holm) },
     { head: "In words", text: true, cell: verdict },
   ], study.comparisons));
 }
@@ -170,7 +176,7 @@ function points(row) {
 const p_of = (row) => ("p_value" in row ? row.p_value : row.mcnemar_p);
 
 function verdict(row) {
-  const p = p_of(row);
+  const p = "p_value_holm" in row ? row.p_value_holm : p_of(row);
   if (!is_number(p)) return DASH;
   if (p >= 0.05) return "no difference shown";
   return difference(row) > 0 ? `${row.a} is better` : `${row.b} is better`;

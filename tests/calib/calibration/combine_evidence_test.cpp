@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
+#include "calib/camera.h"
 #include "calib/combine.h"
 #include "calib/covariance.h"
 #include "calib/estimate/simulated_pairs.h"
@@ -76,6 +80,26 @@ TEST(CombineEvidence, BendsOfDifferentBoardsAreSaidToBeTakenAsKnown) {
   EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& warning) {
     return warning.find("different boards") != std::string::npos;
   }));
+}
+
+// The same lens is warned of by `calibrate` and by calibrate_from_pairs.
+TEST(CombineEvidence, ADistortionThatCannotBeInvertedIsSaid) {
+  RigEstimate known;
+  known.rig = test::stereo_rig(OpenCv5{});
+  for (Camera& camera : known.rig.cameras) camera.parameters.tail<5>().setZero();
+  const int n = parameter_count(known.rig);
+  known.covariance = Covariance{CovarianceKind::prior, parameter_names(known.rig),
+                                1e-6 * Eigen::MatrixXd::Identity(n, n)};
+  const auto folds_said = [&] {
+    const Combination combined = combine({{"datasheet", known, {}}});
+    const std::vector<std::string>& said = combined.joint.estimate.calibration->warnings;
+    return std::count_if(said.begin(), said.end(), [](const std::string& warning) {
+      return warning.find("\"right\" cannot be inverted in 14 %") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(folds_said(), 0);
+  known.rig.cameras[1].parameters[core_parameter_count] = -0.4;
+  EXPECT_EQ(folds_said(), 1);
 }
 
 TEST(CombineEvidence, ABoardKeepsThePriorItWasCalibratedWith) {

@@ -35,6 +35,19 @@ TEST(InversionWarnings, NameTheCameraAndTheRegion) {
   EXPECT_NE(warnings[0].find("use a model with fewer distortion parameters"), std::string::npos);
 }
 
+// The share was "1e+02 %" from 99.5 % on.
+TEST(InversionWarnings, SayTheShareInPlainDigits) {
+  const auto said_of = [](double k1) {
+    Rig rig = test::stereo_rig(OpenCv5{});
+    for (Camera& camera : rig.cameras) camera.parameters.tail<5>().setZero();
+    rig.cameras[0].parameters[core_parameter_count] = k1;
+    return inversion_warnings(rig).at(0);
+  };
+  EXPECT_NE(said_of(-1e9).find(" in 100 % of its image"), std::string::npos) << said_of(-1e9);
+  EXPECT_NE(said_of(-10).find(" in 96 % of its image"), std::string::npos) << said_of(-10);
+  EXPECT_NE(said_of(-0.32).find(" in 4.0 % of its image"), std::string::npos) << said_of(-0.32);
+}
+
 TEST(InversionWarnings, LensesThatDoNotFoldPassInSilence) {
   EXPECT_TRUE(inversion_warnings(test::stereo_rig()).empty());
   for (const CameraModel& model : {CameraModel(OpenCv5{}), CameraModel(Fisheye4{})}) {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "calib/interval.h"
+#include "calib/statistics/cluster_interval.h"
+#include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
 #include "tests/support/error_message.h"
 
@@ -72,6 +74,22 @@ TEST(Bootstrap, LeavesOutWhatIsNotFinite) {
   EXPECT_TRUE(std::isnan(bootstrap_interval(1, value).low));
   EXPECT_TRUE(std::isnan(
       bootstrap_interval(5, [](std::span<const std::size_t>) { return std::nan(""); }).high));
+}
+
+TEST(ClusterInterval, WidensByTheQuantilesOfItsConfidence) {
+  constexpr int clusters = 5;
+  std::vector<double> values(clusters);
+  std::iota(values.begin(), values.end(), 0.0);
+  for (const double confidence : {0.5, 0.9, 0.99}) {
+    const BootstrapOptions options{.resamples = 999, .confidence = confidence};
+    const Interval drawn = bootstrap_interval(clusters, mean_of(values), options);
+    const Interval widened = cluster_interval(clusters, mean_of(values), options);
+    const double upper = 0.5 + 0.5 * confidence;
+    const double few = student_quantile(upper, clusters - 1) / normal_quantile(upper) *
+                       std::sqrt(clusters / (clusters - 1.0));
+    EXPECT_NEAR((2 - widened.low) / (2 - drawn.low), few, 1e-12) << confidence;
+    EXPECT_NEAR((widened.high - 2) / (drawn.high - 2), few, 1e-12) << confidence;
+  }
 }
 
 TEST(Bootstrap, RefusesOptionsOutOfBounds) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -60,6 +61,26 @@ TEST(ChiSquared, RefusesWhatIsNoNumber) {
             std::string::npos);
   EXPECT_NE(test::error_message([] { chi_squared_survival(std::nan(""), 3); }).find("not a number"),
             std::string::npos);
+}
+
+// Boost.Math's own exceptions are none that a caller of this library expects.
+TEST(Distributions, RefuseEveryArgumentThatIsNoneWithAnError) {
+  constexpr double inf = std::numeric_limits<double>::infinity(), nan = NAN;
+  using Call = std::function<double()>;
+  for (const double bad : {inf, nan, 0.0, -1.0}) {
+    const Call calls[] = {
+        [&] { return fisher_survival(1, 3, bad); }, [&] { return fisher_survival(1, bad, 3); },
+        [&] { return fisher_cdf(1, 3, bad); },      [&] { return fisher_cdf(1, bad, 3); },
+        [&] { return beta_quantile(0.5, 3, bad); }, [&] { return beta_quantile(0.5, bad, 3); },
+        [&] { return student_cdf(1, bad); },        [&] { return student_quantile(0.5, bad); }};
+    for (const Call& call : calls) {
+      EXPECT_NE(test::error_message(call).find("degrees of freedom"), std::string::npos) << bad;
+    }
+  }
+  EXPECT_NE(test::error_message([] { student_quantile(1e-300, 0.5); }).find("larger than a double"),
+            std::string::npos);
+  EXPECT_EQ(student_cdf(inf, 3), 1);
+  EXPECT_EQ(student_survival(inf, 3), 0);
 }
 
 TEST(Fisher, SurvivalIsThatOfTheTables) {
@@ -140,6 +161,16 @@ TEST(Holm, StepsDownAndNeverDecreases) {
   EXPECT_NEAR(adjusted[3], 0.02, 1e-15);
   EXPECT_EQ(holm_adjusted({0.7, 0.9})[1], 1);
   EXPECT_TRUE(holm_adjusted({}).empty());
+}
+
+TEST(Holm, LeavesOutWhatIsNoNumber) {
+  const std::vector<double> adjusted = holm_adjusted({NAN, 0.01, NAN, 0.04, 0.03, 0.005});
+  EXPECT_TRUE(std::isnan(adjusted[0]));
+  EXPECT_TRUE(std::isnan(adjusted[2]));
+  EXPECT_NEAR(adjusted[1], 0.03, 1e-15);
+  EXPECT_NEAR(adjusted[3], 0.06, 1e-15);
+  EXPECT_NEAR(adjusted[4], 0.06, 1e-15);
+  EXPECT_NEAR(adjusted[5], 0.02, 1e-15);
 }
 
 }  // namespace

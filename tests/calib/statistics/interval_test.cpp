@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "calib/depth_uncertainty.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "calib/validation/monte_carlo_check.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 
@@ -43,6 +46,21 @@ TEST(Wilson, StaysInsideZeroAndOne) {
   EXPECT_NEAR(wilson_interval(0, 20).low, 0, 1e-15);
   EXPECT_NEAR(wilson_interval(20, 20).high, 1, 1e-15);
   EXPECT_GT(wilson_interval(20, 20).low, 0.8);
+}
+
+TEST(Wilson, RefusesWhatIsNoProportion) {
+  const auto said = [](double successes, double trials, double confidence) {
+    return test::error_message([=] { wilson_interval(successes, trials, confidence); });
+  };
+  EXPECT_NE(said(11, 10, 0.95).find("11 successes of 10"), std::string::npos);
+  for (const double confidence : {0.0, 1.0, -0.5, 1.5, std::nan("")}) {
+    EXPECT_NE(said(5, 10, confidence).find("between 0 and 1"), std::string::npos) << confidence;
+  }
+  EXPECT_NE(said(-1, 10, 0.95), "");
+  EXPECT_NE(said(0, -1, 0.95), "");
+  EXPECT_NE(said(std::nan(""), 10, 0.95), "");
+  EXPECT_NE(said(1, std::nan(""), 0.95), "");
+  EXPECT_EQ(said(2.5, 7.3, 0.95), "");  // an effective number
 }
 
 TEST(DesignEffect, OneForEvenClustersAndLargeForUnevenOnes) {

@@ -111,8 +111,51 @@ TEST(StandingFault, NamesWhyACameraCannotBeThere) {
   EXPECT_NE(fault(0.05, 2, 1.2).find("has a surface nearer than 0.12 m"), std::string::npos);
   EXPECT_NE(fault(2, 1, 2.4).find("less than 0.2 m above the camera"), std::string::npos);
   EXPECT_EQ(fault(7, 1, 1.2), "is outside the world, which extends from (0, 0) to (6, 4) m");
-  EXPECT_EQ(fault(2, 1, 3), "is at a height of 3 m, outside the world's 0 to 2.5 m");
+  EXPECT_EQ(fault(2, 1, 3), "is at a height of 3 m, above the ceiling at 2.5 m");
+  EXPECT_EQ(fault(2, 1, -1), "is at a height of -1 m, below the floor at 0 m");
   EXPECT_NE(fault(std::nan(""), 1, 1.2), "");
+}
+
+/// Four edges beyond the end of a route, lower than the camera: no walls and no ceiling.
+WorldDescription low_world() {
+  WorldDescription description;
+  for (const double x : {4.0, 5.0}) {
+    for (const double y : {-0.5, 0.5}) {
+      description.loose.segments_m.push_back({{x, y, 0}, {x, y, 0.8}});
+    }
+  }
+  description.route.push_back({{{0, 0}, {1, 0}}});
+  return description;
+}
+
+TEST(StandingFault, APoseOnTheRouteHasNoneWhateverTheWorldsEdges) {
+  WorldDescription with_table = low_world(), of_surfaces = low_world(), high_up = low_world();
+  add_box(with_table, 2, 1, 0.6, 0.6, 0.7);
+  of_surfaces.loose.segments_m.clear();
+  of_surfaces.loose.surfaces_m.push_back({{4, -1, 0}, {4, 1, 0}, {4, 1, 0.5}, {4, -1, 0.5}});
+  for (auto& [a, b] : high_up.loose.segments_m) {
+    a.z() += 2;
+    b.z() += 2;
+  }
+  for (const WorldDescription& description : {low_world(), with_table, of_surfaces, high_up}) {
+    const World world = build_world(description);
+    const Visibility visibility(world);
+    for (double s = 0; s < 1; s += 0.25) {
+      EXPECT_EQ(standing_fault(visibility, route_point(world.route, s).pose, 1.2), "") << s;
+    }
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const Pose2D q = draw_query(visibility, QueryProtocol::anywhere, 1.2, 5, trial);
+      EXPECT_EQ(standing_fault(visibility, q, 1.2), "") << q.x_m << ' ' << q.y_m;
+    }
+    EXPECT_EQ(standing_fault(visibility, {3, 0, 0}, 1.2), "");  // between route and edges
+    EXPECT_NE(standing_fault(visibility, {-1, 0, 0}, 1.2).find("outside the world"),
+              std::string::npos);
+    EXPECT_NE(standing_fault(visibility, {0, 0, 0}, -0.1).find("below the floor"),
+              std::string::npos);
+  }
+  const World world = build_world(with_table);
+  EXPECT_EQ(standing_fault(Visibility(world), {2.3, 1.3, 0}, 1.2),
+            "lies 1.2 m high, above what covers the place at 0.7 m");
 }
 
 TEST(StandingFault, QueriesHaveNone) {

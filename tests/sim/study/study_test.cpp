@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/study.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,6 +23,7 @@
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -72,32 +80,64 @@ class StudyRuns : public testing::Test {
   std::filesystem::path folder_;
 };
 
+std::size_t allowed_threads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
 TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
   const Study s = study(120);
-  const std::string one = words(run(s, "one", 1)), two = words(run(s, "two", 2));
+  const auto words_of = [&](int threads) {
+    std::set<std::thread::id> seen;
+    const auto look_at = [&](int, int) { seen.insert(std::this_thread::get_id()); };
+    const StudyRun job{.folder = folder_ / std::to_string(threads),
+                       .threads = threads,
+                       .progress = look_at,
+                       .ceiling_progress = look_at};
+    run_study(s, job);
+    EXPECT_EQ(seen.size(), static_cast<std::size_t>(threads));  // on a single core too
+    return words(study_results(s, job.folder));
+  };
+  const std::string one = words_of(1), two = words_of(2);
   EXPECT_GT(one.size(), 1000u);
   EXPECT_EQ(one, two);
 }
 
-// A limit for the whole process would slow down whoever uses the library beside its own threads.
+// A lower limit for the whole process would slow down whoever uses the library beside its own
+// threads; without a higher one TBB gives no more threads than there are cores, and says so.
 TEST_F(StudyRuns, TheProcessKeepsItsThreads) {
-  const auto allowed = [] {
-    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  };
-  const std::size_t before = allowed();
-  for (const int threads : {1, 3}) {
-    const std::string name = "threads" + std::to_string(threads);
+  const std::size_t before = allowed_threads();
+  for (const std::size_t threads : {std::size_t{1}, before + 3}) {
     int calls = 0;
     const auto look_at = [&](int, int) {
       ++calls;
-      EXPECT_EQ(allowed(), before);
+      EXPECT_EQ(allowed_threads(), std::max(before, threads));
     };
-    run_study(study(6), {.folder = folder_ / name,
-                         .threads = threads,
-                         .progress = look_at,
-                         .ceiling_progress = look_at});
+    const auto look_within = [&](int done, int total) {
+      look_at(done, total);
+      if (done == 0) return;  // said before the arena is entered
+      EXPECT_EQ(tbb::this_task_arena::max_concurrency(), static_cast<int>(threads));
+    };
+    testing::internal::CaptureStderr();
+    run_study(study(6), {.folder = folder_ / ("threads" + std::to_string(threads)),
+                         .threads = static_cast<int>(threads),
+                         .progress = look_within,
+                         .ceiling_progress = look_within});
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_GT(calls, 12);
+    EXPECT_EQ(allowed_threads(), before);
   }
+}
+
+TEST_F(StudyRuns, ALimitOfTheCallersOwnStays) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  std::set<std::thread::id> seen;
+  testing::internal::CaptureStderr();
+  run_study(study(6), {.folder = folder_ / "limited", .threads = 3, .progress = [&](int, int) {
+                         EXPECT_EQ(allowed_threads(), 1u);
+                         seen.insert(std::this_thread::get_id());
+                       }});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(seen.size(), 1u);
 }
 
 TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
@@ -136,6 +176,68 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
   run_study(s, {.folder = folder_ / "resumed", .threads = 2, .progress = [&](int, int total) {
                   EXPECT_EQ(total, 0);
                 }});
+}
+
+// In folders of their own, as on machines that share no disk, and in one.
+TEST_F(StudyRuns, ShardsShareTheCeiling) {
+  Study s = study(7);
+  s.file = parse_study("[study]\ntrials = 7\nprotocol = \"near_path\"\n[map]\nspacing_m = 4\n",
+                       "s.toml");
+  const auto queries_of = [&](const std::string& name, Shard shard) {
+    int queries = 0;
+    StudyRun job{.folder = folder_ / name, .threads = 2, .shard = shard};
+    job.ceiling_progress = [&](int done, int total) {
+      queries = total;
+      EXPECT_LE(done, total);
+    };
+    run_study(s, job);
+    return queries;
+  };
+  const auto ceiling_in = [&](const std::string& name) {
+    return study_results(s, folder_ / name).cells[0].ceiling;
+  };
+  const int parts[] = {3, 2, 2};
+  std::filesystem::create_directories(folder_ / "merged");
+  for (int i = 0; i < 3; ++i) {
+    const std::string own = "own" + std::to_string(i);
+    EXPECT_EQ(queries_of(own, {i, 3}), parts[i]);
+    EXPECT_TRUE(std::isnan(ceiling_in(own)));
+    const std::string store = "results-" + std::to_string(i) + "-of-3.sqlite";
+    std::filesystem::copy_file(folder_ / own / store, folder_ / "merged" / store);
+  }
+  for (const Shard& shard : {Shard{1, 2}, Shard{}}) {  // in stores of other shards
+    EXPECT_EQ(queries_of("merged", shard), 0);
+  }
+  EXPECT_EQ(queries_of("halves", {0, 2}), 4);
+  EXPECT_EQ(queries_of("halves", {1, 2}), 3);
+  EXPECT_EQ(queries_of("begun", {0, 2}), 4);
+  EXPECT_EQ(queries_of("begun", {}), 3);
+  EXPECT_EQ(queries_of("whole", {}), 7);
+  EXPECT_GT(ceiling_in("whole"), 0);
+  for (const char* name : {"merged", "halves", "begun"}) {
+    EXPECT_EQ(ceiling_in(name), ceiling_in("whole")) << name;
+  }
+}
+
+// Thirds have no end in binary, so that their sum has one value in order only.
+TEST_F(StudyRuns, ASharedCeilingIsSummedInTheOrderOfQueries) {
+  Study s = study(7);
+  s.file = parse_study("[study]\ntrials = 7\n[map]\nspacing_m = 4\n", "s.toml");
+  run_study(s, {.folder = folder_ / "thirds", .threads = 2, .shard = {1, 2}});
+  double sum = 0;
+  for (int query = 0; query < 7; ++query) sum += 1.0 / (query + 3);
+  {
+    StudyStore store(folder_ / "thirds" / "results-1-of-2.sqlite");
+    for (const auto& [key, value] : store.notes()) {
+      const std::size_t at = key.find(" query 1");
+      if (at == std::string::npos) continue;
+      for (int query = 0; query < 7; ++query) {
+        store.set_metadata(key.substr(0, at) + " query " + std::to_string(query),
+                           fmt::format("{}", 1.0 / (query + 3)));
+      }
+    }
+  }
+  EXPECT_EQ(study_results(s, folder_ / "thirds").cells[0].ceiling, sum / 7);
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {

@@ -155,7 +155,7 @@ TEST(StandingFault, APoseOnTheRouteHasNoneWhateverTheWorldsEdges) {
   }
   const World world = build_world(with_table);
   EXPECT_EQ(standing_fault(Visibility(world), {2.3, 1.3, 0}, 1.2),
-            "lies 1.2 m high, above what covers the place at 0.7 m");
+            "is at a height of 1.2 m, above the ceiling at 0.7 m");
 }
 
 TEST(StandingFault, QueriesHaveNone) {

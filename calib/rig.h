@@ -32,6 +32,8 @@ Eigen::VectorXd parameters(const Rig& rig);
 
 /// The rig at `rig` moved by `delta` in its tangent: intrinsics add, a rotation becomes
 /// exp([w]x) R (left tangent, radians), a translation adds. Covariances live in this tangent.
+/// Throws Error where `delta` has another size than the rig has parameters, and as parameters()
+/// does.
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
 
 /// The delta with retract(from, delta) = to.

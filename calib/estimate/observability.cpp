@@ -35,6 +35,7 @@ constexpr int scale_powers[] = {2, 4, 1, 1, 6, 2, 4, 6};
 
 /// What moves the rays of a camera by a matrix: that matrix, and the camera's parameters.
 std::vector<std::pair<Eigen::VectorXd, Eigen::Matrix3d>> ray_moves(const Camera& camera) {
+  check_parameters(camera);
   const Eigen::VectorXd& a = camera.parameters;
   const auto k = a.tail(a.size() - core_parameter_count);
   const auto none = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(a.size())); };

@@ -10,7 +10,9 @@
 namespace vernier::internal {
 
 /// The bytes of an image file. Throws Error for PNG, JPEG and Netpbm files that are cut off or
-/// damaged: their decoders would fill in the rest or print to standard error.
+/// damaged: their decoders would fill in the rest or print to standard error. A JPEG file that
+/// loses no pixels but of which a decoder would print something is given rewritten, with the same
+/// pixels.
 std::string read_image_bytes(const std::filesystem::path& file);
 
 /// Its pixels, with the flags of cv::imread. Throws Error(file) for what is no image.

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""usage: scripts/check_build_cost.py [BUILD_FOLDER] [--top N] [--tolerance PERCENT] [--allow-cached]
+"""usage: scripts/check_build_cost.py [BUILD_FOLDER] [--top N] [--tolerance PERCENT]
+                                  [--allow-cached]
 
 Lists the units that cost more than 12 CPU seconds to compile; exit code 1 if there is one.
 BUILD_FOLDER is build/release; --top N lists the N dearest besides. --tolerance raises all limits by so

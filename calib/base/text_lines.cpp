@@ -14,7 +14,7 @@
 namespace vernier::internal {
 namespace {
 
-std::string_view trimmed(std::string_view field) {
+std::string_view without_blanks(std::string_view field) {
   while (!field.empty() && field.front() == ' ') field.remove_prefix(1);
   while (!field.empty() && field.back() == ' ') field.remove_suffix(1);
   return field;
@@ -87,12 +87,12 @@ std::optional<double> to_real(std::string_view text) {
 }
 
 double parse_real(std::string_view field, const std::string& place, std::string_view what) {
-  const std::string_view text = trimmed(field);
+  const std::string_view text = without_blanks(field);
   return number_or_error(to_real(text), text, place, what);
 }
 
 int parse_whole(std::string_view field, const std::string& place, std::string_view what) {
-  const std::string_view text = trimmed(field);
+  const std::string_view text = without_blanks(field);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();

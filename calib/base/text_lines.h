@@ -37,8 +37,8 @@ class TextLines {
 std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);
 
 /// The number that all of `text` is, or nothing: the decimal point is a point whatever the locale
-/// says. Infinities and "nan" are numbers; a sign may lead, a blank may not. What is too small for a
-/// double is 0, what is too large is no number.
+/// says. Infinities and "nan" are numbers; a sign may lead, a blank may not. What is too small for
+/// a double is 0, what is too large is no number.
 std::optional<double> to_real(std::string_view text);
 
 /// Throws Error(`place`) where `field` is no number, naming `what` it should have been.

@@ -31,7 +31,8 @@ int parameter_count(const Rig& rig);
 Eigen::VectorXd parameters(const Rig& rig);
 
 /// The rig moved by `delta` in its tangent: intrinsics add, a rotation becomes exp([w]x) R (left
-/// tangent, radians), a translation adds. Covariances are expressed in this tangent.
+/// tangent, radians), a translation adds. Covariances are expressed in this tangent. Throws Error if
+/// the size of `delta` is not the number of parameters, and as parameters() does.
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
 
 /// The delta with retract(from, delta) = to.

@@ -36,6 +36,30 @@ Finding shipped_finding(const std::string& what, const fs::path& name) {
   return {what, there ? "found" : "missing: install again", there};
 }
 
+/// The page's template, and the script that is made of others when Vernier is built.
+Finding page_finding() {
+  const fs::path page = shipped_file("page/report.html");
+  if (page.empty() || has_script(page.parent_path())) {
+    return shipped_finding("report page", "page/report.html");
+  }
+  return {
+      "report page",
+      "missing its script: esbuild was missing; run scripts/install_packages.sh, then configure "
+      "and build again",
+      false};
+}
+
+Finding plots_finding() {
+  const fs::path page = shipped_file("page/report.html");
+  const bool there = !page.empty() && has_plots(page.parent_path());
+  return {"report plots (plotly)",
+          there ? "found"
+                : "missing: pages hold tables only; esbuild or plotly.js was missing, or "
+                  "-DVERNIER_PAGE_PLOTS=OFF set; run scripts/install_packages.sh, then configure "
+                  "and build again",
+          there};
+}
+
 /// The sample images where Debian installs them, or unpacked below the current folder.
 Finding image_finding() {
   const fs::path below = "usr/share/doc/opencv-doc/examples/data";
@@ -80,8 +104,6 @@ Finding share_finding() {
 
 std::vector<Finding> findings() {
   const char* data = std::getenv("VERNIER_DATA");
-  const fs::path page = shipped_file("page/report.html");
-  const bool plots = !page.empty() && has_plots(page.parent_path());
   return {
       {"vernier", VERNIER_VERSION},
       {"compiler", __VERSION__},
@@ -96,11 +118,8 @@ std::vector<Finding> findings() {
       share_finding(),
       shipped_finding("world workshop", "worlds/workshop.world.toml"),
       shipped_finding("rig nominal", "rigs/nominal.rig.json"),
-      shipped_finding("report page", "page/report.html"),
-      {"report plots (plotly)",
-       plots ? "found"
-             : "missing: pages hold tables only; build again with -DVERNIER_PAGE_PLOTS=ON",
-       plots},
+      page_finding(),
+      plots_finding(),
       library_finding(),
       python_finding(),
       image_finding(),

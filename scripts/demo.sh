@@ -16,10 +16,13 @@ begin_part "packages" # nothing to do if they are there
 scripts/install_packages.sh --demo
 
 begin_part "build"
-# A build folder that is set up already keeps its settings.
+# A build folder that is set up already keeps its settings; what was missing then, such as esbuild,
+# which the page needs, is searched again.
 if [[ ! -f build/release/build.ninja ]]; then
   # Several sources a unit (a unity build) take a third of the time of one by one.
   cmake --preset release -DVERNIER_BUILD_TESTS=OFF -DVERNIER_BUILD_BENCH=OFF -DCMAKE_UNITY_BUILD=ON
+else
+  cmake build/release
 fi
 cmake --build --preset release --parallel "$(nproc)" --target vernier_program
 

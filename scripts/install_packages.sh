@@ -37,7 +37,9 @@ packages=(
   libhwy-dev libyaml-cpp-dev libboost-dev libjpeg-dev libpng-dev esbuild
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
-if [[ $scope == test ]]; then packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap); fi
+if [[ $scope == test ]]; then
+  packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap locales)
+fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }

@@ -19,7 +19,15 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::uint64_t most_pixels = 1u << 30;  // more than OpenCV decodes
+// Of 16384 x 16384 pixels, more than a camera has. libjpeg holds up to 6 bytes of each of them (a
+// progressive file in colour), whatever little of them the file has.
+constexpr std::uint64_t most_pixels = 1u << 28;
+
+std::string too_many(std::uint32_t width, std::uint32_t height) {
+  if (std::uint64_t{width} * height <= most_pixels) return "";
+  return "has a header of " + std::to_string(width) + "x" + std::to_string(height) +
+         " pixels, more than can be read (" + std::to_string(most_pixels) + ")";
+}
 
 /// libjpeg and libpng report errors by longjmp, so no object with a destructor may be alive across
 /// their calls.
@@ -27,7 +35,8 @@ struct JpegCheck {
   jpeg_error_mgr errors{};  // first member: libjpeg is given only its address
   std::jmp_buf at_error{};
   jpeg_decompress_struct decoder{};
-  bool cut_off = false;
+  std::uint32_t width = 0, height = 0;  ///< as the header says
+  bool cut_off = false, warned = false;
   std::array<char, JMSG_LENGTH_MAX> damage{};  ///< libjpeg's first message
 };
 
@@ -42,11 +51,12 @@ bool loses_pixels(int code) {
 void on_jpeg_message(j_common_ptr decoder, int level) {
   JpegCheck& check = check_of(decoder);
   if (level >= 0) return;  // a trace
+  check.warned = true;
   const int code = decoder->err->msg_code;
-  if (code == JWRN_JPEG_EOF) check.cut_off = true;
-  if (loses_pixels(code) && check.damage[0] == '\0') {
-    decoder->err->format_message(decoder, check.damage.data());
-  }
+  check.cut_off = code == JWRN_JPEG_EOF;
+  if (loses_pixels(code)) decoder->err->format_message(decoder, check.damage.data());
+  // libjpeg would go on and fill in all the pixels that the file does not have.
+  if (check.cut_off || check.damage[0] != '\0') std::longjmp(check.at_error, 1);
 }
 
 void on_jpeg_error(j_common_ptr decoder) { std::longjmp(check_of(decoder).at_error, 1); }
@@ -59,7 +69,9 @@ void read_jpeg(JpegCheck& check, const unsigned char* bytes, std::size_t size) {
   jpeg_create_decompress(&decoder);
   jpeg_mem_src(&decoder, bytes, static_cast<unsigned long>(size));
   jpeg_read_header(&decoder, TRUE);
-  if (std::uint64_t{decoder.image_width} * decoder.image_height > most_pixels) return;
+  check.width = decoder.image_width;
+  check.height = decoder.image_height;
+  if (std::uint64_t{check.width} * check.height > most_pixels) return;
   decoder.out_color_space = decoder.jpeg_color_space;
   decoder.scale_num = 1;
   decoder.scale_denom = 8;
@@ -75,6 +87,7 @@ void read_jpeg(JpegCheck& check, const unsigned char* bytes, std::size_t size) {
 struct PngCheck {
   const unsigned char* next = nullptr;
   std::size_t left = 0;
+  std::uint32_t width = 0, height = 0;  ///< as the header says
   bool cut_off = false;
   std::array<char, 200> damage{};  ///< libpng's message
 };
@@ -101,20 +114,23 @@ void on_png_warning(png_structp, png_const_charp) {}
 void read_png(PngCheck& check, png_structp decoder, png_infop info) {
   if (setjmp(png_jmpbuf(decoder)) != 0) return;
   png_set_read_fn(decoder, &check, read_png_bytes);
+  // Of chunks that the pixels do not need as well: OpenCV would only print their wrong checksum.
+  png_set_crc_action(decoder, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   png_read_info(decoder, info);
-  const png_uint_32 height = png_get_image_height(decoder, info);
-  if (std::uint64_t{png_get_image_width(decoder, info)} * height > most_pixels) return;
+  check.width = png_get_image_width(decoder, info);
+  check.height = png_get_image_height(decoder, info);
+  if (std::uint64_t{check.width} * check.height > most_pixels) return;
   const int passes = png_set_interlace_handling(decoder);
   png_start_read_image(decoder);
   for (int pass = 0; pass < passes; ++pass) {
-    for (png_uint_32 y = 0; y < height; ++y) png_read_row(decoder, nullptr, nullptr);
+    for (png_uint_32 y = 0; y < check.height; ++y) png_read_row(decoder, nullptr, nullptr);
   }
   png_read_end(decoder, nullptr);
 }
 
 }  // namespace
 
-std::string jpeg_damage(std::string_view bytes) {
+std::string jpeg_damage(std::string_view bytes, bool* warned) {
   JpegCheck check;
   check.decoder.err = jpeg_std_error(&check.errors);
   check.errors.error_exit = on_jpeg_error;
@@ -122,8 +138,9 @@ std::string jpeg_damage(std::string_view bytes) {
   check.errors.output_message = print_nothing;
   read_jpeg(check, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   jpeg_destroy_decompress(&check.decoder);
+  if (warned) *warned = check.warned;
   if (check.cut_off) return "is cut off (its JPEG data have no end)";
-  if (check.damage[0] == '\0') return "";
+  if (check.damage[0] == '\0') return too_many(check.width, check.height);
   return "is damaged (libjpeg: " + std::string(check.damage.data()) + ")";
 }
 
@@ -137,7 +154,7 @@ std::string png_damage(std::string_view bytes) {
   if (info) read_png(check, decoder, info);
   png_destroy_read_struct(&decoder, &info, nullptr);
   if (check.cut_off) return "is cut off (its PNG data have no end)";
-  if (check.damage[0] == '\0') return "";
+  if (check.damage[0] == '\0') return too_many(check.width, check.height);
   return "is damaged (libpng: " + std::string(check.damage.data()) + ")";
 }
 

@@ -12,6 +12,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/image_damage.h"
+#include "calib/base/jpeg_rewriting.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -55,10 +56,11 @@ std::string netpbm_fault(std::string_view bytes) {
   return whole ? "" : "is cut off (it has fewer pixels than its header says)";
 }
 
-std::string fault_of(std::string_view bytes) {
+/// `warned`: another decoder would print something nevertheless.
+std::string fault_of(std::string_view bytes, bool& warned) {
   if (is_netpbm(bytes)) return netpbm_fault(bytes);
   if (is_png(bytes)) return png_damage(bytes);
-  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_damage(bytes);
+  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_damage(bytes, &warned);
   return "";
 }
 
@@ -66,9 +68,14 @@ std::string fault_of(std::string_view bytes) {
 
 std::string read_image_bytes(const std::filesystem::path& file) {
   std::string bytes = read_whole(file);
-  const std::string fault = fault_of(bytes);
+  bool warned = false;
+  const std::string fault = fault_of(bytes, warned);
   if (!fault.empty()) {
     throw Error(file.string(), fault, "copy it again, or leave it out");
+  }
+  if (warned) {
+    std::string silent = rewritten_jpeg(bytes);
+    if (!silent.empty()) return silent;
   }
   return bytes;
 }

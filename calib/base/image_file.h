@@ -10,7 +10,8 @@
 namespace vernier::internal {
 
 /// The bytes of an image file. Throws Error for truncated or damaged PNG, JPEG and Netpbm files,
-/// whose decoders would fill in the rest or print to standard error.
+/// whose decoders would fill in the rest or print to standard error. A JPEG file that is intact but
+/// that makes a decoder print warnings is returned rewritten, with the same pixels.
 std::string read_image_bytes(const std::filesystem::path& file);
 
 /// The decoded pixels, with the flags of cv::imread. Throws Error(file) if it is not an image.

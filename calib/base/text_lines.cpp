@@ -14,17 +14,36 @@
 namespace vernier::internal {
 namespace {
 
-template <class Number>
-Number parse(std::string_view field, const std::string& place, std::string_view what) {
+std::string_view without_blanks(std::string_view field) {
   while (!field.empty() && field.front() == ' ') field.remove_prefix(1);
   while (!field.empty() && field.back() == ' ') field.remove_suffix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) {
-    throw Error(place, fmt::format("{} is \"{}\", not a number", what, field),
-                "correct or remove the line");
+  return field;
+}
+
+template <class Number>
+Number number_or_error(const std::optional<Number>& value,
+                       std::string_view field,
+                       const std::string& place,
+                       std::string_view what) {
+  if (value) return *value;
+  throw Error(place, fmt::format("{} is \"{}\", not a number", what, field),
+              "correct or remove the line");
+}
+
+/// Whether a decimal number other than 0 is below 1 in magnitude, by its first digit and exponent.
+bool is_small(std::string_view number) {
+  const std::size_t end = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view digits = number.substr(0, end);
+  long long exponent = 0;
+  if (end < number.size()) {
+    std::string_view said = number.substr(end + 1);
+    if (said.starts_with('+')) said.remove_prefix(1);
+    const auto read = std::from_chars(said.data(), said.data() + said.size(), exponent);
+    if (read.ec != std::errc()) return said.starts_with('-');
   }
-  return value;
+  const auto first = static_cast<long long>(digits.find_first_of("123456789"));
+  const auto point = static_cast<long long>(std::min(digits.find('.'), digits.size()));
+  return (first < point ? point - first - 1 : point - first) + exponent < 0;
 }
 
 }  // namespace
@@ -59,16 +78,25 @@ std::optional<double> to_real(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
+  if (end != text.data() + text.size()) return {};
+  if (error == std::errc::result_out_of_range && is_small(text)) {
+    return text.starts_with('-') ? -0.0 : 0.0;
+  }
+  if (error != std::errc()) return {};
   return value;
 }
 
 double parse_real(std::string_view field, const std::string& place, std::string_view what) {
-  return parse<double>(field, place, what);
+  const std::string_view text = without_blanks(field);
+  return number_or_error(to_real(text), text, place, what);
 }
 
 int parse_whole(std::string_view field, const std::string& place, std::string_view what) {
-  return parse<int>(field, place, what);
+  const std::string_view text = without_blanks(field);
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return number_or_error(whole ? std::optional(value) : std::nullopt, text, place, what);
 }
 
 }  // namespace vernier::internal

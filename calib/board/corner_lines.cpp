@@ -38,7 +38,7 @@ BoardObservations finished(BoardObservations observations,
   try {
     check_and_sort(observations);
   } catch (const Error& error) {
-    throw Error(file.string(), error.what(), "");
+    throw Error(file.string(), error.place() + ": " + error.fault(), error.remedy());
   }
   return observations;
 }

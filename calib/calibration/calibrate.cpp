@@ -219,7 +219,10 @@ Solution solve(BoardObservations observations, const CalibrationOptions& options
     linearise(s);
   } catch (const Error& error) {  // the earlier findings may be the reason
     if (s.diagnosis.trust_warnings.empty()) throw;
-    throw Error(error.what(), fmt::format("{}", fmt::join(s.diagnosis.trust_warnings, "; ")), "");
+    throw Error(error.place(),
+                fmt::format("{}, perhaps because of what was seen before: {}", error.fault(),
+                            fmt::join(s.diagnosis.trust_warnings, "; ")),
+                error.remedy());
   }
   if (options.pixel_sigma_px > 0) return s;
   if (s.problem.priors.empty()) {  // σ does not move the solution

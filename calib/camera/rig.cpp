@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 
 #include "calib/camera.h"
+#include "calib/error.h"
 #include "calib/pose.h"
 
 namespace vernier {
@@ -54,6 +57,12 @@ Eigen::VectorXd parameters(const Rig& rig) {
 }
 
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta) {
+  for (const Camera& camera : rig.cameras) check_parameters(camera);
+  if (delta.size() != parameter_count(rig)) {
+    throw Error("rig",
+                fmt::format("{} changes for {} parameters", delta.size(), parameter_count(rig)),
+                "give one a parameter, in the order of parameter_names");
+  }
   Rig moved = rig;
   int index = 0;
   for (Camera& camera : moved.cameras) {

@@ -37,6 +37,7 @@ static_assert(std::size(scale_powers) >= max_distortion_count);
 
 /// The parameter changes that multiply the rays of a camera by a matrix, and that matrix.
 std::vector<std::pair<Eigen::VectorXd, Eigen::Matrix3d>> ray_moves(const Camera& camera) {
+  check_parameters(camera);
   const Eigen::VectorXd& a = camera.parameters;
   const auto k = a.tail(a.size() - core_parameter_count);
   const auto none = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(a.size())); };

@@ -19,6 +19,7 @@ double width_ratio(const Camera& camera, const Eigen::Vector2i& size_px) {
 }
 
 void resize(Camera& camera, const Eigen::Vector2i& size_px) {
+  check_parameters(camera);
   const double s = width_ratio(camera, size_px);
   const double middle = 0.5 * (camera.size_px[1] - 1), new_middle = 0.5 * (size_px[1] - 1);
   double &ox = camera.parameters[2], &oy = camera.parameters[3];

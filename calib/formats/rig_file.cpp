@@ -58,10 +58,12 @@ Json camera_json(const Camera& camera, const Pose& T_camera_first, bool first) {
 Camera parse_camera(const Node& node) {
   Camera camera;
   camera.name = node.at("name").text();
+  const Node model = node.at("model");
+  const std::string wanted = model.text();
   try {
-    camera.model = camera_model(node.at("model").text());
+    camera.model = camera_model(wanted);
   } catch (const Error& error) {
-    throw Error(node.place(), error.what(), "");
+    throw Error(model.place(), error.place() + ": " + error.fault(), error.remedy());
   }
   const Eigen::VectorXd size = node.at("size_px").vector();
   if (size.size() != 2 || !(size.minCoeff() >= 1) || size != size.array().round().matrix()) {

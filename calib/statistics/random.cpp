@@ -11,11 +11,20 @@
 
 namespace vernier::internal {
 
+constexpr std::uint32_t first_prior = 0xffff0000;  // among the features
+
 RandomCounter of_view(RandomCounter place, int frame, int camera) {
   const std::uint64_t identity =
       std::uint64_t{64} * static_cast<std::uint32_t>(frame) + static_cast<std::uint32_t>(camera);
   place.feature = static_cast<std::uint32_t>(identity);
   place.frame = static_cast<std::uint32_t>(identity >> 32);
+  // The views whose places are those of priors go where no view is.
+  if (place.frame == 0 && place.feature >= first_prior) place.frame = 1u << 21;
+  return place;
+}
+
+RandomCounter of_prior(RandomCounter place, std::uint32_t number) {
+  place.feature = first_prior + number;
   return place;
 }
 

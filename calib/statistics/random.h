@@ -23,6 +23,9 @@ struct RandomCounter {
 /// from 0 to 63: sets the feature and, with the part that exceeds its 32 bits, the counter's frame.
 RandomCounter of_view(RandomCounter place, int frame, int camera);
 
+/// `place` for the prior of this number from 0 to 65535, distinct from those of all views.
+RandomCounter of_prior(RandomCounter place, std::uint32_t number);
+
 /// Stream of random numbers for one counter: Philox4x32-10 (Salmon et al., "Parallel random
 /// numbers: as easy as 1, 2, 3", SC11) with key = seed and counter = (trial, feature, source · eye
 /// · frame, draw). Normal deviates by inverse CDF, so one draw costs one uniform and couples

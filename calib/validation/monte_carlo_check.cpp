@@ -29,7 +29,6 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::uint32_t prior_feature = 0xffff0000;  // beyond those of views
 constexpr int wishart_draws = 2000;
 constexpr double min_p = 0.005;
 
@@ -56,7 +55,7 @@ class Copies {
     ReprojectionProblem problem = problem_;
     for (std::size_t k = 0; k < priors_.size(); ++k) {
       // P = root rootᵀ: the mean's covariance is the pseudo-inverse, of root whiteᵀ z.
-      RandomStream draws(place(trial, prior_feature + static_cast<std::uint32_t>(k)));
+      RandomStream draws(of_prior(place(trial, 0), static_cast<std::uint32_t>(k)));
       const Eigen::MatrixXd& white = priors_[k].white;
       problem.priors[k].mean =
           retract(state_.rig, white.transpose() * draws.normals(static_cast<int>(white.rows())));

@@ -75,7 +75,7 @@ BoardObservations checked(const std::string& file, BoardObservations observation
   try {
     check_observations(observations);
   } catch (const Error& error) {
-    throw Error(file, error.what(), "");
+    throw Error(file, error.place() + ": " + error.fault(), error.remedy());
   }
   return observations;
 }

@@ -67,7 +67,7 @@ void rename(RigEstimate& estimate, const std::string& list) {
   try {
     rename_cameras(estimate, names);
   } catch (const Error& error) {
-    throw Error("--names " + list, error.what(), "separate them by commas");
+    throw Error("--names " + list, error.fault(), error.remedy() + ", with commas between");
   }
 }
 

@@ -83,7 +83,7 @@ GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {
   try {
     rig_prior(known.rig, known);
   } catch (const Error& error) {
-    throw Error(place, error.what(), "");
+    throw Error(place, error.place() + ": " + error.fault(), error.remedy());
   }
   return known;
 }

@@ -135,6 +135,7 @@ void run(const ReportArguments& options, Session& session) {
     throw Error("report", "the page's files are not installed beside the program",
                 "set VERNIER_SHARE to the folder share/vernier of an installation");
   }
+  check_script(page_folder);  // before minutes of work
   const Inputs inputs = inputs_of(options);
   const std::vector<NamedRig> rigs = read_rigs(inputs.rigs, session);
   check_output_is_not_input(files_read(inputs), options.output);

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* plotly_file = "plotly.js";
+constexpr const char *script_file = "report.js", *plotly_file = "plotly.js";
 
 Json trial_json(const TrialResult& t) {
   Json row{t.trial, t.truth.x_m, t.truth.y_m, t.truth.heading_rad};
@@ -158,7 +158,15 @@ Json report_view(const Study& study) {
                             seen.edges.size(), sighting.segments.size())}};
 }
 
+bool has_script(const fs::path& folder) { return fs::is_regular_file(folder / script_file); }
+
 bool has_plots(const fs::path& folder) { return fs::is_regular_file(folder / plotly_file); }
+
+void check_script(const fs::path& folder) {
+  if (has_script(folder)) return;
+  throw Error("report", "this build has no script for the page, because esbuild was missing",
+              "run scripts/install_packages.sh, then configure and build again");
+}
 
 std::string assemble_page(const fs::path& folder, const Json& data) {
   std::string json;
@@ -171,10 +179,6 @@ std::string assemble_page(const fs::path& folder, const Json& data) {
     }
   }
   std::string plotly;
-  if (!fs::is_regular_file(folder / "report.js")) {
-    throw Error("report", "this build has no script for the page, because esbuild was missing",
-                "run scripts/install_packages.sh, then configure and build again");
-  }
   if (has_plots(folder)) {
     plotly = "<script id=\"plotly\">" + read_whole(folder / plotly_file) + "</script>";
   }
@@ -183,7 +187,7 @@ std::string assemble_page(const fs::path& folder, const Json& data) {
                {"<!--VERNIER:PLOTLY-->", plotly},
                {"<!--VERNIER:DATA-->",
                 "<script type=\"application/json\" id=\"data\">" + json + "</script>"},
-               {"<!--VERNIER:JS-->", read_whole(folder / "report.js")}});
+               {"<!--VERNIER:JS-->", read_whole(folder / script_file)}});
 }
 
 }  // namespace vernier::cli

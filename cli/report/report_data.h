@@ -18,8 +18,13 @@ Json report_world(const World& world);
 /// The view of the first trial of a study's middle cell.
 Json report_view(const Study& study);
 
-/// Whether pages made from the folder's files have plots: not where it was built without.
+/// Whether the folder has the page's script and plots. Both are made when Vernier is built, the one
+/// by esbuild, the other by esbuild from plotly.js.
+bool has_script(const std::filesystem::path& folder);
 bool has_plots(const std::filesystem::path& folder);
+
+/// Throws Error where the folder has no script, without which there can be no page.
+void check_script(const std::filesystem::path& folder);
 
 /// Fills the page's template. A page without plots says so and holds tables only.
 std::string assemble_page(const std::filesystem::path& folder, const Json& data);

@@ -64,10 +64,11 @@ class StudyReader : private TomlReader {
   double number_in(const toml::node& node, const std::string& what, double low, double high) const;
   template <class Parse>
   auto word(const toml::node& node, const std::string& what, Parse parse) const {
+    const std::string said = text(node, what);
     try {
-      return parse(text(node, what));
+      return parse(said);
     } catch (const Error& error) {
-      fail(node, error.what(), "");
+      fail(node, error.place() + ": " + error.fault(), error.remedy());
     }
   }
 

@@ -184,10 +184,10 @@ DisparityMap read_output(const fs::path& file,
     options.min_px = range.min_px - 0.5;
     return read_disparity(file, options);
   } catch (const Error& error) {
-    std::string what = error.what();
+    std::string place = error.place();
     const std::string folder = (file.parent_path() / "").string();
-    if (what.rfind(folder, 0) == 0) what.erase(0, folder.size());
-    throw Error(command.place, what, "");
+    if (place.rfind(folder, 0) == 0) place.erase(0, folder.size());
+    throw Error(command.place, place + ": " + error.fault(), error.remedy());
   }
 }
 

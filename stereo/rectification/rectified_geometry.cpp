@@ -164,6 +164,7 @@ RectifiedGeometry rectified_geometry(const Rig& rig, const RectifiedGeometryOpti
 std::optional<RectifiedGeometry> geometry_of_rectified_rig(const Rig& rig) {
   if (rig.cameras.size() != 2) return std::nullopt;
   const Camera &left = rig.cameras[0], &right = rig.cameras[1];
+  for (const Camera& camera : rig.cameras) check_parameters(camera);
   for (const Camera& camera : rig.cameras) {
     const auto lens = camera.parameters.tail(camera.parameters.size() - core_parameter_count);
     const bool pinhole = !std::holds_alternative<Fisheye4>(camera.model) && lens.isZero(0);

@@ -83,7 +83,30 @@ class Report(unittest.TestCase):
         done = self.works(*call, env=without)
         self.assertFalse(json.loads(done.stdout)['plots'])
         self.assertIn('no plots', done.stderr)
-        self.assertIn('pages hold tables only', self.works('doctor', env=without).stdout)
+        self.assertIn('pages hold tables only; esbuild or plotly.js was missing',
+                      self.works('doctor', env=without).stdout)
+
+    def test_a_page_without_its_script_is_refused_before_any_work(self):
+        built = pathlib.Path(PROGRAM).parent / 'share/vernier/page'
+        page = self.folder / 'share/page'
+        page.mkdir(parents=True)
+        for name in ('report.html', 'report.css'):
+            (page / name).symlink_to(built / name)
+        without = dict(os.environ, VERNIER_SHARE=str(self.folder / 'share'))
+        found = {finding['what']: finding for finding in
+                 json.loads(self.works('doctor', '--json', env=without).stdout)['findings']}
+        for what in ('report page', 'report plots (plotly)'):
+            self.assertFalse(found[what]['found'], what)
+            self.assertIn('run scripts/install_packages.sh', found[what]['value'])
+        self.assertIn('esbuild was missing', found['report page']['value'])
+        # This rig file is none, which the work on it would say.
+        (self.folder / 'no_rig.json').write_text('{')
+        done = subprocess.run([PROGRAM, 'report', 'no_rig.json', '-o', 'report.html'],
+                              capture_output=True, text=True, cwd=self.folder, env=without)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn('this build has no script for the page, because esbuild was missing',
+                      done.stderr)
+        self.assertFalse((self.folder / 'report.html').exists())
 
     def test_the_page_holds_the_licence_of_plotly(self):
         self.page_with_plots()

@@ -45,7 +45,21 @@ if(result EQUAL 0 OR NOT message MATCHES "vernier has no component \"lidar\"; it
   message(FATAL_ERROR "an unknown component gave ${result}: ${message}")
 endif()
 
-# The installed program must find what is installed with it.
+# The installed program must find what is installed with it, and nothing that it needs stay behind.
 if(EXISTS ${prefix}/bin/vernier)
-  run(${prefix}/bin/vernier world info workshop)
+  set(vernier ${CMAKE_COMMAND} -E env --unset=VERNIER_SHARE ${prefix}/bin/vernier)
+  run(${vernier} world info workshop)
+  set(built_page ${VERNIER_BUILD_DIR}/share/vernier/page)
+  file(GLOB built RELATIVE ${built_page} ${built_page}/*)
+  file(GLOB installed RELATIVE ${share}/page ${share}/page/*)
+  if(NOT built OR NOT installed STREQUAL built)
+    message(FATAL_ERROR "share/vernier/page holds \"${installed}\", the build's \"${built}\"")
+  endif()
+  if("report.js" IN_LIST built) # not where the build had no esbuild
+    run(${vernier} report nominal --no-proof -o r.html)
+    file(READ ${build}_run/r.html page)
+    if(NOT page MATCHES "id=\"data\"" OR page MATCHES "<!--VERNIER:")
+      message(FATAL_ERROR "r.html is no filled page")
+    endif()
+  endif()
 endif()

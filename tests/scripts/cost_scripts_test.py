@@ -82,26 +82,36 @@ class MeasuredCompile(InFolder):
 class BuildCost(InFolder):
     """The check of what the log holds."""
 
-    def check(self, costs, exceptions="", top=0):
-        """The exit code of the check and what it printed; calib/camera/rig.cpp is one unit of two."""
+    def write(self, costs, units=("rig.o", "pose.o")):
+        """A build folder whose log holds these costs."""
         build = self.folder / "build"
         build.mkdir(exist_ok=True)
         (build / "compile_costs.tsv").write_text("".join(
             f"{seconds}\t{outcome}\t{unit}\t{source}\n"
             for seconds, outcome, unit, source in costs), encoding="utf-8")
         (build / "compile_commands.json").write_text(json.dumps(
-            [{"command": f"c++ -o {unit} -c x"} for unit in ("rig.o", "pose.o", "unity.o")]),
-            encoding="utf-8")
+            [{"command": f"c++ -o {unit} -c x"} for unit in units]), encoding="utf-8")
+        return build
+
+    def check(self, costs, exceptions="", units=("rig.o", "pose.o"), **options):
+        """The exit code of the check and what it printed; calib/camera/rig.cpp is one unit of two."""
+        build = self.write(costs, units)
         check = load_check()
         check.EXCEPTIONS = self.folder / "exceptions.txt"
         check.EXCEPTIONS.write_text(exceptions, encoding="utf-8")
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             try:
-                code = check.check(build, top)
+                code = check.check(build, 0, **options)
             except check.Unusable as problem:
-                return 2, str(problem)
+                return 2, printed.getvalue() + str(problem)
         return code, printed.getvalue()
+
+    def command(self, *arguments):
+        """The exit code of the script as a program, and what it printed."""
+        run = subprocess.run([SCRIPTS / "check_build_cost.py", *arguments], capture_output=True,
+                             text=True, check=False)
+        return run.returncode, run.stdout + run.stderr
 
     RIG = str(ROOT / "calib/camera/rig.cpp")
     POSE = str(ROOT / "calib/pose.cpp")
@@ -112,30 +122,81 @@ class BuildCost(InFolder):
         self.assertEqual(code, 1)
         self.assertIn("too dear to compile: calib/camera/rig.cpp", said)
         self.assertNotIn("compile: calib/pose.cpp", said)
-        self.assertIn("2 of 3 units measured", said)
+        self.assertIn("2 of 2 units measured", said)
 
     def test_the_last_compilation_in_earnest_counts(self):
         code, said = self.check([(30, "compiled", "rig.o", self.RIG),
                                  (2, "compiled", "rig.o", self.RIG),
                                  (40, "failed", "rig.o", self.RIG),
                                  (0.01, "cached", "rig.o", self.RIG),
-                                 (0.01, "cached", "pose.o", self.POSE)])
+                                 (0.01, "cached", "pose.o", self.POSE)], allow_cached=True)
         self.assertEqual(code, 0, said)
-        self.assertIn("1 of 3 units measured, 2 CPU s together; 1 known from the compiler", said)
+        self.assertIn("1 of 2 units measured, 2 CPU s together; 1 known from the compiler", said)
+        self.assertIn("not measured: 1 units came from the compiler cache", said)
 
     def test_removed_units_and_batches_do_not_count(self):
         code, said = self.check([
             (30, "compiled", "gone.o", self.RIG),
-            (30, "compiled", "unity.o", str(self.folder / "build/Unity/unity_0_cxx.cxx"))])
+            (2, "compiled", "rig.o", self.RIG),
+            (30, "compiled", "unity.o", str(self.folder / "build/Unity/unity_0_cxx.cxx"))],
+            units=("rig.o", "unity.o"))
         self.assertEqual(code, 0, said)
-        self.assertIn("0 of 3 units measured", said)
+        self.assertIn("1 of 2 units measured", said)
         self.assertIn("batches of a unity build left out: 1", said)
 
+    def test_too_few_units_measured_is_no_pass(self):
+        units = [f"{i}.o" for i in range(20)]
+        measured = [(1, "compiled", unit, self.RIG) for unit in units]
+        cached = [(0.01, "cached", unit, self.RIG) for unit in units]
+        self.assertEqual(self.check(measured[:18], units=units)[0], 0)  # 90 %
+        code, said = self.check(measured[:17] + cached[17:], units=units)
+        self.assertEqual(code, 2)
+        self.assertIn("too few units were measured to judge: 17 of 20, 90% are needed", said)
+        for costs, wanted in ((measured[:17] + cached[17:], 0), (measured[:10] + cached[10:17], 2)):
+            self.assertEqual(self.check(costs, units=units, allow_cached=True)[0], wanted)
+        for costs in ([], [(30, "compiled", "gone.o", self.RIG)],
+                      [(30, "compiled", "1.o", str(self.folder / "build/Unity/unity_0_cxx.cxx"))]):
+            self.assertEqual(self.check(costs, units=units)[0], 2)
+        dear = [(30, "compiled", "1.o", self.RIG)]
+        self.assertEqual(self.check(dear, units=units)[0], 1)  # a dear unit is one in any case
+
+    def test_tolerance_raises_the_limits(self):
+        at_limit = [(18.0, "compiled", "rig.o", self.RIG), (1, "compiled", "pose.o", self.POSE)]
+        self.assertEqual(self.check(at_limit, tolerance=50)[0], 0)
+        self.assertEqual(self.check(at_limit, tolerance=49)[0], 1)
+        above = [(18.01, "compiled", "rig.o", self.RIG), (1, "compiled", "pose.o", self.POSE)]
+        self.assertEqual(self.check(above, tolerance=50)[0], 1)
+        excepted = "calib/camera/rig.cpp 16 kernels\n"
+        for seconds, wanted in ((24, 0), (24.01, 1)):
+            costs = [(seconds, *at_limit[0][1:]), at_limit[1]]
+            self.assertEqual(self.check(costs, excepted, tolerance=50)[0], wanted)
+
+    def test_the_command_line(self):
+        # An object of no source of the checkout: the exceptions of the checkout say nothing of it.
+        build = self.write([(17, "compiled", "rig.o", "/far/rig.cpp"),
+                            (0.01, "cached", "pose.o", "/far/pose.cpp")])
+        self.assertEqual(self.command(build)[0], 1)
+        code, said = self.command(build, "--tolerance", "50")
+        self.assertEqual(code, 2)
+        self.assertIn("check_build_cost.py: too few units were measured", said)
+        code, said = self.command("--allow-cached", "--tolerance", "50", build, "--top", "1")
+        self.assertEqual(code, 0, said)
+        self.assertIn("17.00 s  /far/rig.cpp  (rig.o)", said)
+        self.assertIn("not measured: 1 units came from the compiler cache", said)
+        self.assertEqual(self.command("--help")[0], 0)
+        for bad in (["--top"], ["--tolerance", "x"], ["--other"], ["a", "b"]):
+            self.assertEqual(self.command(*bad)[0], 2, bad)
+        code, said = self.command(self.folder / "none")
+        self.assertEqual(code, 2)
+        self.assertIn("build with -DVERNIER_MEASURE_BUILD=ON first", said)
+
     def test_exceptions(self):
-        dear = [(15, "compiled", "rig.o", self.RIG)]
+        pose = (1, "compiled", "pose.o", self.POSE)
+        dear = [(15, "compiled", "rig.o", self.RIG), pose]
         self.assertEqual(self.check(dear, "calib/camera/rig.cpp 16 kernels\n")[0], 0)
         self.assertEqual(self.check(dear, "calib/camera/rig.cpp 14 kernels\n")[0], 1)
-        code, said = self.check([(3, "compiled", "rig.o", self.RIG)], "calib/camera/rig.cpp 16 kernels\n")
+        code, said = self.check([(3, "compiled", "rig.o", self.RIG), pose],
+                                "calib/camera/rig.cpp 16 kernels\n")
         self.assertEqual(code, 0)
         self.assertIn("warning: exceptions.txt: calib/camera/rig.cpp costs 3.0 s", said)
         code, said = self.check(dear, "calib/camera/rig.cpp 16 kernels\ncalib/none.cpp 16 kernels\n")
@@ -149,6 +210,26 @@ class BuildCost(InFolder):
         check = load_check()
         for source in check.read_exceptions(check.EXCEPTIONS):
             self.assertTrue((ROOT / source).is_file(), source)
+
+
+class Demo(InFolder):
+    """scripts/demo.sh between programs that do nothing."""
+
+    def test_searches_again_what_a_build_folder_was_set_up_without(self):
+        for name in ("scripts", "bin", "build/release"):
+            (self.folder / name).mkdir(parents=True)
+        (self.folder / "build/release/build.ninja").touch()
+        for name in ("demo.sh", "part_times.sh"):
+            (self.folder / "scripts" / name).write_bytes((SCRIPTS / name).read_bytes())
+        for name, text in (("scripts/install_packages.sh", ""), ("build/release/vernier", ""),
+                           ("bin/cmake", f"echo \"$*\" >>{self.folder}/calls")):
+            (self.folder / name).write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+            (self.folder / name).chmod(0o755)
+        run = self.bash('PATH=$PWD/bin:$PATH bash scripts/demo.sh')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        calls = (self.folder / "calls").read_text(encoding="utf-8").splitlines()
+        self.assertEqual(calls[0], "build/release")  # configures, with the settings that it has
+        self.assertIn("--target vernier_program", calls[1])
 
 
 class Parts(InFolder):

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 
@@ -17,6 +18,16 @@ inline std::string error_message(const std::function<void()>& call) {
     return error.what();
   }
   return "";
+}
+
+/// Its place, fault and remedy apart.
+inline std::array<std::string, 3> error_parts(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return {error.place(), error.fault(), error.remedy()};
+  }
+  return {};
 }
 
 }  // namespace vernier::test

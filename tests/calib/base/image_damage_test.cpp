@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <charconv>
 #include <cstddef>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vernier {
 
@@ -70,6 +75,55 @@ TEST(ImageDamage, AWrongChecksumIsSeen) {
   std::string wrong = png;
   wrong[20] ^= 1;  // of the header
   EXPECT_EQ(png_damage(wrong), "is damaged (libpng: IHDR: CRC error)");
+}
+
+TEST(ImageDamage, AWrongChecksumIsSeenInAChunkThatThePixelsDoNotNeed) {
+  std::string text = png;
+  constexpr std::size_t after_header = 8 + 25;
+  text.insert(after_header, bytes_of("00000003") + "tEXta" + '\0' + "b" + bytes_of("c2e4d5e1"));
+  EXPECT_EQ(png_damage(text), "is damaged (libpng: tEXt: CRC error)");
+}
+
+/// A progressive JPEG file whose header says another size.
+std::string of_size(unsigned width, unsigned height) {
+  cv::Mat pixels(96, 128, CV_8U);
+  cv::randu(pixels, 0, 255);
+  std::vector<unsigned char> written;
+  cv::imencode(".jpg", pixels, written, {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  std::string bytes(written.begin(), written.end());
+  const std::size_t frame = bytes.find("\xff\xc2");
+  int at = 5;
+  for (const unsigned value : {height >> 8, height, width >> 8, width}) {
+    bytes[frame + at++] = static_cast<char>(value & 255);
+  }
+  return bytes;
+}
+
+long peak_memory_mb() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return used.ru_maxrss / 1024;
+}
+
+TEST(ImageDamage, AHeaderOfManyPixelsCostsNoMoreThanTheFileHas) {
+  const std::string whole = of_size(16000, 16000);
+  const long before_mb = peak_memory_mb();
+  const std::size_t first_scan = whole.find("\xff\xda");
+  EXPECT_EQ(jpeg_damage(whole.substr(0, first_scan + 40)),
+            "is cut off (its JPEG data have no end)");
+  EXPECT_EQ(jpeg_damage(whole),
+            "is damaged (libjpeg: Corrupt JPEG data: premature end of data segment)");
+  EXPECT_LT(peak_memory_mb() - before_mb, 200);  // 500 and more where all pixels are filled in
+}
+
+TEST(ImageDamage, MorePixelsThanACameraHasAreRefused) {
+  EXPECT_EQ(jpeg_damage(of_size(32000, 32000)),
+            "has a header of 32000x32000 pixels, more than can be read (268435456)");
+  std::string large = png;
+  large.replace(16, 8, bytes_of("0001000000010000"));
+  large.replace(29, 4, bytes_of("49ef6f3f"));
+  EXPECT_EQ(png_damage(large),
+            "has a header of 65536x65536 pixels, more than can be read (268435456)");
 }
 
 TEST(ImageDamage, NothingIsPrinted) {

@@ -6,8 +6,12 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <string>
+
+#include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
 
 namespace vernier {
 
@@ -15,28 +19,66 @@ using namespace internal;
 
 namespace {
 
-/// Sets a locale that writes 1,5 for 1.5, where the system has one, and the former one at the end.
+/// Sets a locale that writes 1,5 for 1.5, and the former one at the end: one of the system's or, as
+/// minimal systems have none, one that localedef makes of the sources of Debian's package locales.
 class CommaLocale {
  public:
-  CommaLocale() : former_(std::setlocale(LC_ALL, nullptr)) {
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE", "fr_FR"}) {
-      if (std::setlocale(LC_ALL, name)) return;
+  CommaLocale() {
+    if (is_set("de_DE.UTF-8")) return;
+    const std::string made = (folder_.path() / "de_DE.UTF-8").string();
+    if (std::system(("localedef -i de_DE -f UTF-8 '" + made + "' >/dev/null 2>&1").c_str()) != 0) {
+      return;
     }
+    setenv("LOCPATH", folder_.path().c_str(), 1);
+    is_set("de_DE.UTF-8");
+    unsetenv("LOCPATH");
   }
   ~CommaLocale() { std::setlocale(LC_ALL, former_.c_str()); }
   CommaLocale(const CommaLocale&) = delete;
   CommaLocale& operator=(const CommaLocale&) = delete;
 
  private:
-  std::string former_;
+  static bool is_set(const char* name) { return std::setlocale(LC_ALL, name) != nullptr; }
+
+  test::Folder folder_;
+  std::string former_ = std::setlocale(LC_ALL, nullptr);
 };
 
 TEST(ToReal, ReadsAPointAndNoCommaInEveryLocale) {
   const CommaLocale locale;
+  if (std::string(std::localeconv()->decimal_point) != ",") {
+    GTEST_SKIP() << "no locale here writes a comma; install Debian's package locales";
+  }
+  ASSERT_EQ(std::strtod("1,5", nullptr), 1.5);
   EXPECT_EQ(to_real("1.5"), 1.5);
   EXPECT_EQ(to_real("-2.5e-3"), -2.5e-3);
   EXPECT_EQ(to_real("1,5"), std::nullopt);
   EXPECT_EQ(parse_real(" 1.5 ", "a.csv:1", "x"), 1.5);
+}
+
+TEST(ToReal, IsZeroForWhatIsTooSmallAndNothingForWhatIsTooLarge) {
+  for (const char* text :
+       {"1e-400", "+1e-400", "0.001e-330", "123e-400", "1e-99999999999999999999"}) {
+    EXPECT_EQ(to_real(text), 0) << text;
+  }
+  EXPECT_TRUE(std::signbit(to_real("-1e-400").value()));
+  EXPECT_EQ(to_real("0." + std::string(400, '0') + "1"), 0);
+  for (const char* text : {"1e400", "-1e400", "0.001e400", "1e+400", "1e99999999999999999999"}) {
+    EXPECT_EQ(to_real(text), std::nullopt) << text;
+  }
+  EXPECT_EQ(to_real("1" + std::string(400, '0')), std::nullopt);
+  EXPECT_EQ(to_real("1e-400x"), std::nullopt);
+}
+
+TEST(ParseReal, TakesOneSign) {
+  EXPECT_EQ(parse_real("+1.5", "a.csv:1", "x"), 1.5);
+  EXPECT_EQ(parse_real(" -1 ", "a.csv:1", "x"), -1);
+  EXPECT_EQ(parse_real("1e-400", "a.csv:1", "x"), 0);
+  for (const char* text : {"+-1", "++1", "-+1", "+", "+ 1"}) {
+    EXPECT_EQ(
+        test::error_message([&] { parse_real(text, "a.csv:1", "x"); }),
+        "a.csv:1: x is \"" + std::string(text) + "\", not a number; correct or remove the line");
+  }
 }
 
 TEST(ToReal, TakesAllOfTheText) {

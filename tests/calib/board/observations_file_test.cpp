@@ -102,6 +102,13 @@ TEST_F(ObservationsFile, PixelsOutsideTheImageAreNamedByLineRowAndColumn) {
                 "outside the image of 640x480; check the image size"),
       std::string::npos);
   // what no line says alone begins with the file
+  write_atomically(folder_ / "bad.csv", header + good);
+  const auto parts = test::error_parts([&] {
+    read_observations(folder_ / "bad.csv", {{640, 480}, {640, 480}});
+  });
+  EXPECT_EQ(parts[0], (folder_ / "bad.csv").string());
+  EXPECT_EQ(parts[1].rfind("frame 0, camera 1: fewer than four corners", 0), 0u);
+  EXPECT_NE(parts[2], "");
   EXPECT_NE(complaint_of(header + good).find("bad.csv: frame 0, camera 1: fewer than four corners"),
             std::string::npos);
   EXPECT_NE(complaint_of(header + "0,2,0,2,0,0,0,9,9\n")

@@ -12,6 +12,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -99,6 +100,23 @@ TEST(Calibrate, CamerasWithoutACommonFrameAreNamed) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("camera 1: it shares no frame"), std::string::npos);
   }
+}
+
+TEST(Calibrate, WhatWasSeenBeforeItFailedIsPartOfTheFault) {
+  BoardObservations observations = simulate_board(test::stereo_rig(), {}, 3, 0,
+                                                  {.frames = 6, .pixel_sigma_px = 0, .tilt_rad = 0})
+                                       .observations;
+  for (Eigen::Vector3d& point : observations.target_m) point *= 1000;
+  const auto [place, fault, remedy] = test::error_parts([&] {
+    // What is held keeps the tilts from being looked at.
+    calibrate(observations, {.held = {{"left.k1", 0.0}}});
+  });
+  EXPECT_EQ(place.find(": "), std::string::npos) << place;
+  EXPECT_NE(fault.find("perhaps because of what was seen before: the board measures"),
+            std::string::npos)
+      << fault;
+  EXPECT_EQ(remedy.find("the board measures"), std::string::npos);
+  EXPECT_NE(remedy, "");
 }
 
 }  // namespace

@@ -8,10 +8,13 @@
 #include <string>
 
 #include "calib/error.h"
+#include "calib/estimate/resized_rig.h"
+#include "calib/observability.h"
 #include "calib/opencv_models.h"
 #include "calib/pose.h"
 #include "calib/radial1.h"
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
@@ -105,6 +108,10 @@ TEST(CameraWithoutParameters, IsAnErrorThatNamesIt) {
   EXPECT_EQ(message([&] { camera.oy_px(); }), words);
   EXPECT_EQ(message([&] { check_parameters(camera); }), words);
   EXPECT_EQ(message([&] { parameters(Rig{{camera}, {Pose{}}}); }), words);
+  const Rig rig{{camera, camera}, {Pose{}, Pose{}}};
+  EXPECT_EQ(message([&] { retract(rig, Eigen::VectorXd::Zero(16)); }), words);
+  EXPECT_EQ(message([&] { unobservable_directions(rig, {}); }), words);
+  EXPECT_EQ(message([&] { internal::resized({.rig = rig}, {320, 240}); }), words);
 }
 
 TEST(CameraWithoutParameters, NorMayItHaveTooMany) {
@@ -113,6 +120,10 @@ TEST(CameraWithoutParameters, NorMayItHaveTooMany) {
   EXPECT_EQ(camera.ax(), camera.parameters[1]);
   EXPECT_NE(test::error_message([&] {
               project(camera, {0, 0, 1});
+            }).find("it has 5 parameters, not 4"),
+            std::string::npos);
+  EXPECT_NE(test::error_message([&] {
+              retract(Rig{{camera}, {Pose{}}}, Eigen::VectorXd::Zero(4));
             }).find("it has 5 parameters, not 4"),
             std::string::npos);
 }

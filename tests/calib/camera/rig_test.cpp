@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "calib/opencv_models.h"
+#include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -22,6 +25,16 @@ TEST(Rig, DifferenceInvertsRetract) {
   const Rig rig = test::stereo_rig(OpenCv5{});
   const Eigen::VectorXd delta = Eigen::VectorXd::LinSpaced(parameter_count(rig), -0.05, 0.08);
   EXPECT_LT((difference(retract(rig, delta), rig) - delta).norm(), 1e-12);
+}
+
+TEST(Rig, RetractRefusesAChangeOfAnotherSize) {
+  const Rig rig = test::stereo_rig();
+  for (const int size : {0, 15, 17}) {
+    EXPECT_EQ(test::error_message([&] { retract(rig, Eigen::VectorXd::Zero(size)); }),
+              "rig: " + std::to_string(size) +
+                  " changes for 16 parameters; give one a parameter, in the order of "
+                  "parameter_names");
+  }
 }
 
 }  // namespace

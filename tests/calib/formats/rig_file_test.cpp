@@ -12,6 +12,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -74,6 +75,8 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
       complaint_of(replaced(text, "\"k1\"", "\"k7\"")).find("rig.json: cameras[0].parameters"),
       std::string::npos);
   EXPECT_NE(complaint_of(replaced(text, "radial1", "radial9")).find("unknown model"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(replaced(text, "\"model\"", "\"lens\"")).find("rig.json: cameras[0]: "),
             std::string::npos);
   EXPECT_NE(complaint_of(replaced(text, "\"ay\":1", "\"ay\":2")).find("null direction"),
             std::string::npos);
@@ -179,6 +182,16 @@ TEST(RigFile, NumbersThatAreNotFiniteAreNotWritten) {
   e = estimate();
   e.calibration->outliers.push_back({0, 0, 1, "", {3, 4}, nan});  // its frame went with it
   EXPECT_EQ(error_output(e), "");
+}
+
+TEST(RigFile, AnErrorOfWhatItNamesKeepsItsParts) {
+  const test::Folder folder;
+  const auto file = folder.write(
+      "rig.json", replaced(format_rig(estimate(), KeepEvidence::no), "radial1", "radial9"));
+  const auto [place, fault, remedy] = test::error_parts([&] { read_rig(file); });
+  EXPECT_EQ(place, file.string() + ": cameras[0].model");
+  EXPECT_EQ(fault, "camera model \"radial9\": there is no such model");
+  EXPECT_EQ(remedy, "use radial1, pinhole, opencv4, opencv5, opencv8 or fisheye4");
 }
 
 }  // namespace

@@ -43,12 +43,19 @@ TEST(RandomCounter, OfViewsDiffersForAllFramesAndCameras) {
   EXPECT_EQ(of_view({.seed = 5}, 3, 1).frame, 0u);
   constexpr int largest = std::numeric_limits<int>::max();
   std::set<double> firsts;
-  for (const int frame : {0, 1, 1 << 25, 1 << 26, (1 << 26) + 1, largest - (1 << 26), largest}) {
+  for (const int frame : {0, 1, 1 << 25, 1 << 26, (1 << 26) + 1, largest - (1 << 26), largest,
+                          67107840, (1 << 26) - 1}) {
     for (const int camera : {0, 1, 63}) {
       firsts.insert(RandomStream(of_view({.seed = 5}, frame, camera)).uniform());
     }
   }
-  EXPECT_EQ(firsts.size(), 21u);
+  EXPECT_EQ(firsts.size(), 27u);
+  for (const std::uint32_t prior : {0u, 1u, 63u, 65535u}) {  // 0: camera 0 of frame 67107840
+    firsts.insert(RandomStream(of_prior({.seed = 5}, prior)).uniform());
+  }
+  EXPECT_EQ(firsts.size(), 31u);
+  // Priors drew there before views did so everywhere.
+  EXPECT_EQ(of_prior({.seed = 5}, 2).feature, 0xffff0002u);
 }
 
 TEST(NormalQuantile, InvertsTheDistribution) {

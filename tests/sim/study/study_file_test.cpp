@@ -200,5 +200,15 @@ TEST(StudyFile, ComplaintsAboutAFileOfSourcesNameIt) {
             std::string::npos);
 }
 
+TEST(StudyFile, AnErrorOfAWordKeepsItsParts) {
+  const auto parts =
+      test::error_parts([] { parse_study("[study]\nprotocol = \"far\"\n", "s.toml"); });
+  EXPECT_EQ(parts[0], "s.toml:2");
+  EXPECT_NE(parts[1].find("far"), std::string::npos);
+  EXPECT_NE(parts[2], "");
+  EXPECT_EQ(complaint_of("[study]\nprotocol = 3\n").find("s.toml:2"),
+            complaint_of("[study]\nprotocol = 3\n").rfind("s.toml:2"));  // said once
+}
+
 }  // namespace
 }  // namespace vernier

@@ -277,7 +277,7 @@ TEST(SpaceSegments, WhatCannotBePlacedSaysSo) {
 }
 
 TEST(SpaceSegments, AlreadyRectifiedRigsAreKnown) {
-  const Rig raw = test::stereo_rig();
+  Rig raw = test::stereo_rig();
   const RectifiedGeometry g = rectified_geometry(raw);
   Rig rig = rectified_rig(raw, g);
   const auto same = geometry_of_rectified_rig(rig);
@@ -294,6 +294,8 @@ TEST(SpaceSegments, AlreadyRectifiedRigsAreKnown) {
   EXPECT_LT((ends_of(moved[0].segment) - ends_of(placed[0].segment)).norm(), 1e-12);
   EXPECT_LT((moved[0].by_rig - placed[0].by_rig).norm(), 1e-9 * placed[0].by_rig.norm());
   EXPECT_FALSE(geometry_of_rectified_rig(raw).has_value());
+  raw.cameras[1].parameters.resize(0);
+  EXPECT_THROW(geometry_of_rectified_rig(raw), Error);  // of a camera without parameters
   rig.T_camera_first[1].t.y() = 1e-3;
   EXPECT_FALSE(geometry_of_rectified_rig(rig).has_value());
 }

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/base/grey_image.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/base/image_file.h"
+#include "calib/error.h"
+
+namespace vernier {
+
+using namespace internal;
+
+namespace {
+
+/// A file of these bytes, as long as this lives.
+class File {
+ public:
+  explicit File(const std::string& bytes) { std::ofstream(path_, std::ios::binary) << bytes; }
+  ~File() { std::filesystem::remove(path_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_ =
+      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+std::string coloured_jpeg(const std::vector<int>& options) {
+  cv::Mat small(7, 9, CV_8UC3), pixels;
+  cv::RNG random(5);
+  random.fill(small, cv::RNG::UNIFORM, 0, 255);
+  cv::repeat(small, 9, 11, pixels);  // 99 x 63: blocks stand over at the borders
+  std::vector<unsigned char> written;
+  cv::imencode(".jpg", pixels, written, options);
+  return {written.begin(), written.end()};
+}
+
+bool same(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+TEST(ReadGreyImage, IsSilentAndExactOfAJpegWithBytesBetweenItsSegments) {
+  // Exif's orientation: turned by a quarter.
+  const std::string turned{
+      "\xff\xe1\0\x22"
+      "Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0",
+      36};
+  for (const int progressive : {0, 1}) {
+    std::string clean = coloured_jpeg({cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+    clean.insert(2, turned);
+    std::string odd = clean;
+    odd.insert(odd.size() - 2, "xy");
+    odd.insert(2 + turned.size(), "z");
+    const File file(odd);
+    testing::internal::CaptureStderr();
+    const cv::Mat grey = read_grey_image(file.path());
+    const cv::Mat colour = decode_image(read_image_bytes(file.path()), cv::IMREAD_COLOR, "");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(grey.size(), cv::Size(63, 99));
+    EXPECT_TRUE(same(grey, decode_image(clean, cv::IMREAD_GRAYSCALE, ""))) << progressive;
+    EXPECT_TRUE(same(colour, decode_image(clean, cv::IMREAD_COLOR, ""))) << progressive;
+  }
+}
+
+TEST(ReadGreyImage, GivesTheBytesOfACleanJpegAsTheyAre) {
+  const std::string clean = coloured_jpeg({});
+  const File file(clean);
+  EXPECT_EQ(read_image_bytes(file.path()), clean);
+}
+
+TEST(ReadGreyImage, IsSilentOfAPngWithAWrongChecksum) {
+  std::vector<unsigned char> written;
+  cv::imencode(".png", cv::Mat(4, 6, CV_8U, cv::Scalar(7)), written);
+  std::string bytes(written.begin(), written.end());
+  bytes.insert(8 + 25, std::string("\0\0\0\3tEXta\0b\1\2\3\4", 15));
+  const File file(bytes);
+  testing::internal::CaptureStderr();
+  EXPECT_THROW(read_grey_image(file.path()), Error);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace vernier

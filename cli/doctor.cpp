@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One thing looked for.
+/// One checked item.
 struct Finding {
   std::string what, value;
   bool found = true;
@@ -32,7 +32,7 @@ struct Finding {
 
 Finding shipped_finding(const std::string& what, const fs::path& name) {
   const bool there = !shipped_file(name).empty();
-  return {what, there ? "found" : "missing: install again", there};
+  return {what, there ? "found" : "missing: reinstall vernier", there};
 }
 
 /// The sample images where Debian installs them, or unpacked below the current folder.
@@ -51,20 +51,21 @@ Finding library_finding() {
   const bool there = mrcal_available();
   return {"mrcal, C library",
           there ? mrcal_version()
-                : "missing: install Debian's libmrcal-dev and build again, for vernier check",
+                : "missing: install Debian's libmrcal-dev and rebuild; used by vernier check",
           there};
 }
 
 Finding python_finding() {
   const fs::path script = shipped_script("mrcal_uncertainty.py");
   if (script.is_relative()) {
-    return {"mrcal, Python", "missing: share/vernier/python/" + script.string() + "; install again",
-            false};
+    return {"mrcal, Python",
+            "missing: share/vernier/python/" + script.string() + "; reinstall vernier", false};
   }
   const std::string version = mrcal_python_version(script);
-  return {"mrcal, Python",
-          version.empty() ? "missing: install Debian's python3-mrcal, for vernier check" : version,
-          !version.empty()};
+  return {
+      "mrcal, Python",
+      version.empty() ? "missing: install Debian's python3-mrcal; used by vernier check" : version,
+      !version.empty()};
 }
 
 Finding share_finding() {
@@ -97,14 +98,13 @@ std::vector<Finding> findings() {
       shipped_finding("rig nominal", "rigs/nominal.rig.json"),
       shipped_finding("report page", "page/report.html"),
       {"report plots (plotly)",
-       plots ? "found"
-             : "missing: pages hold tables only; build again with -DVERNIER_PAGE_PLOTS=ON",
+       plots ? "found" : "missing: pages have tables only; rebuild with -DVERNIER_PAGE_PLOTS=ON",
        plots},
       library_finding(),
       python_finding(),
       image_finding(),
       {"VERNIER_DATA",
-       data ? (fs::is_directory(data) ? "found" : "names no folder")
+       data ? (fs::is_directory(data) ? "found" : "not a folder")
             : "not set: tests on larger data sets are skipped",
        data != nullptr && fs::is_directory(data)},
   };
@@ -124,7 +124,8 @@ void run(Session& session) {
 
 void add_doctor(CLI::App& app, Session& session) {
   CLI::App* verb =
-      add_verb(app, session, "doctor", "what this build and this machine have", "vernier doctor");
+      add_verb(app, session, "doctor",
+               "show build settings, library versions and optional components", "vernier doctor");
   verb->callback([&session] { session.action = [&session] { run(session); }; });
 }
 

@@ -12,16 +12,16 @@
 
 namespace vernier::cli {
 
-/// The parts of the report page's data (cli/report/report_calibration.h has those of a rig).
+/// Data of the report page (for rigs, see cli/report/report_calibration.h).
 Json report_study(const Study& study, const StudyResults& results);
 Json report_world(const World& world);
-/// The view of the first trial of a study's middle cell.
+/// The view of the first trial in a study's middle cell.
 Json report_view(const Study& study);
 
-/// Whether pages made from the folder's files have plots: not where it was built without.
+/// Whether pages made from the folder's files have plots.
 bool has_plots(const std::filesystem::path& folder);
 
-/// Fills the page's template. A page without plots says so and holds tables only.
+/// Fills the page template. Without plots, the page has tables only and a notice.
 std::string assemble_page(const std::filesystem::path& folder, const Json& data);
 
 }  // namespace vernier::cli

@@ -83,7 +83,7 @@ class Report(unittest.TestCase):
         done = self.works(*call, env=without)
         self.assertFalse(json.loads(done.stdout)['plots'])
         self.assertIn('no plots', done.stderr)
-        self.assertIn('pages hold tables only', self.works('doctor', env=without).stdout)
+        self.assertIn('pages have tables only', self.works('doctor', env=without).stdout)
 
     def test_the_page_holds_the_licence_of_plotly(self):
         self.page_with_plots()

@@ -47,7 +47,7 @@ function coverage_figure(one) {
   const outliers = one.outliers.length
     ? ` Crosses: ${counted(one.outliers.length, "corner")} rejected as outliers.` : "";
   return figure(`Corner coverage, ${one.camera} camera`, "All corners used; darker cells contain"
-    + " more corners. Orange cells contain none: the" + ` calibration is extrapolated`
+    + ` more corners. Orange cells contain none: the calibration is extrapolated`
     + ` there.${outliers}${thinned_words(one)}`,
     `Corners of the ${one.camera} camera over its image; the table above counts empty cells.`,
     image_height(one.size_px), () => coverage_plot(one));

@@ -29,7 +29,7 @@ function depth_figure(rows) {
   return figure("Depth uncertainty against range", "Depth uncertainty due to calibration error"
     + " only, on log-log axes: a straight line of slope 2 is the quadratic growth with range"
     + " expected of stereo. Linear: first-order propagation at the calibrated rig. Sampled: rigs"
-    + " sampled from the covariance. Where they differ, the linear" + ` approximation is no`
+    + ` sampled from the covariance. Where they differ, the linear approximation is no`
     + ` longer valid: use the sampled values.${warning}`,
     "Standard deviation of depth against range, linear and sampled; values are in the"
       + " table.", 400, () => depth_plot(rows));

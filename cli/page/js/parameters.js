@@ -70,7 +70,7 @@ export function directions_list(rig) {
         element("i", { style: `width:${100 * Math.min(1, share)}%` })),
       element("span", {}, words))));
   const condition = is_number(rig.scaled_condition) ? " The condition number of the covariance"
-    + " is" + ` ${significant(rig.raw_condition, 2)}, or ${significant(rig.scaled_condition, 2)}`
+    + ` is ${significant(rig.raw_condition, 2)}, or ${significant(rig.scaled_condition, 2)}`
     + ` after scaling`
     + " each parameter by its standard deviation." : "";
   const rest = all.slice(DIRECTIONS_SHOWN);
@@ -82,6 +82,6 @@ export function directions_list(rig) {
       + condition),
     bars(all.slice(0, DIRECTIONS_SHOWN)),
     rest.length > 0 && element("details", {}, element("summary", {}, `The other`
-      + ` ${rest.length},` + ` ${percent(sum_of(rest, (one) => one.share))} in`
+      + ` ${rest.length}, ${percent(sum_of(rest, (one) => one.share))} in`
       + ` total`), bars(rest)));
 }

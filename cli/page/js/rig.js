@@ -91,15 +91,15 @@ function summary_table(rig) {
     ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
       + (calibration.held?.length ? `fixed: ${calibration.held.join(", ")}` : "none fixed")],
     ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates minus parameters and`
-      + ` six per` + " frame for the board pose"],
+      + ` six per frame for the board pose`],
     ["Prior", calibration.prior_dof > 0 ? `of`
-      + ` ${counted(calibration.prior_dof, "parameter")};` + ` χ² =`
+      + ` ${counted(calibration.prior_dof, "parameter")}; χ² =`
       + ` ${significant(calibration.prior_chi2, 3)} at the solution` : "none"],
     ["Board", warp ? `estimated warp: ${significant(1e3 * warp[0], 2)} mm along rows,`
       + ` ${significant(1e3 * warp[1], 2)} mm along columns`
       : "as specified; no warp estimated"],
     ["Covariance", reason ? reason + (inflation ? `. On average, its σ is`
-      + ` ${significant(inflation, 2)} times` + " that of the bound" : "") : "none"],
+      + ` ${significant(inflation, 2)} times that of the bound` : "") : "none"],
   ];
   return table("Calibration summary", [
     { head: "Item", text: true, cell: ([name]) => name },

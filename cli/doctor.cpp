@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One thing looked for.
+/// One checked item.
 struct Finding {
   std::string what, value;
   bool found = true;
@@ -33,7 +33,7 @@ struct Finding {
 
 Finding shipped_finding(const std::string& what, const fs::path& name) {
   const bool there = !shipped_file(name).empty();
-  return {what, there ? "found" : "missing: install again", there};
+  return {what, there ? "found" : "missing: reinstall vernier", there};
 }
 
 /// The page's template, and the script that is made of others when Vernier is built.
@@ -42,11 +42,11 @@ Finding page_finding() {
   if (page.empty() || has_script(page.parent_path())) {
     return shipped_finding("report page", "page/report.html");
   }
-  return {
-      "report page",
-      "missing its script: esbuild was missing; run scripts/install_packages.sh, then configure "
-      "and build again",
-      false};
+  return {"report page",
+          "no page script, because esbuild was missing: run scripts/install_packages.sh, "
+          "reconfigure and "
+          "rebuild",
+          false};
 }
 
 Finding plots_finding() {
@@ -54,9 +54,9 @@ Finding plots_finding() {
   const bool there = !page.empty() && has_plots(page.parent_path());
   return {"report plots (plotly)",
           there ? "found"
-                : "missing: pages hold tables only; esbuild or plotly.js was missing, or "
-                  "-DVERNIER_PAGE_PLOTS=OFF set; run scripts/install_packages.sh, then configure "
-                  "and build again",
+                : "missing: pages have tables only; esbuild or plotly.js was missing, or "
+                  "-DVERNIER_PAGE_PLOTS=OFF set; run scripts/install_packages.sh, reconfigure "
+                  "and rebuild",
           there};
 }
 
@@ -76,20 +76,21 @@ Finding library_finding() {
   const bool there = mrcal_available();
   return {"mrcal, C library",
           there ? mrcal_version()
-                : "missing: install Debian's libmrcal-dev and build again, for vernier check",
+                : "missing: install Debian's libmrcal-dev and rebuild; used by vernier check",
           there};
 }
 
 Finding python_finding() {
   const fs::path script = shipped_script("mrcal_uncertainty.py");
   if (script.is_relative()) {
-    return {"mrcal, Python", "missing: share/vernier/python/" + script.string() + "; install again",
-            false};
+    return {"mrcal, Python",
+            "missing: share/vernier/python/" + script.string() + "; reinstall vernier", false};
   }
   const std::string version = mrcal_python_version(script);
-  return {"mrcal, Python",
-          version.empty() ? "missing: install Debian's python3-mrcal, for vernier check" : version,
-          !version.empty()};
+  return {
+      "mrcal, Python",
+      version.empty() ? "missing: install Debian's python3-mrcal; used by vernier check" : version,
+      !version.empty()};
 }
 
 Finding share_finding() {
@@ -124,7 +125,7 @@ std::vector<Finding> findings() {
       python_finding(),
       image_finding(),
       {"VERNIER_DATA",
-       data ? (fs::is_directory(data) ? "found" : "names no folder")
+       data ? (fs::is_directory(data) ? "found" : "not a folder")
             : "not set: tests on larger data sets are skipped",
        data != nullptr && fs::is_directory(data)},
   };
@@ -144,7 +145,8 @@ void run(Session& session) {
 
 void add_doctor(CLI::App& app, Session& session) {
   CLI::App* verb =
-      add_verb(app, session, "doctor", "what this build and this machine have", "vernier doctor");
+      add_verb(app, session, "doctor",
+               "show build settings, library versions and optional components", "vernier doctor");
   verb->callback([&session] { session.action = [&session] { run(session); }; });
 }
 

@@ -16,30 +16,30 @@
 
 namespace {
 
-/// What stands on the command line without an option; the shell puts files in an open pattern's
-/// place.
+/// The message for arguments that belong to no option. An unquoted pattern is expanded by the
+/// shell.
 std::string not_expected(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
-  if (words.empty()) return "an argument was not expected";
-  std::string text = "\"" + words.front() + "\"";
-  if (words.size() == 1) return text + " was not expected";
-  text += fmt::format(" and {} more were not expected", words.size() - 1);
+  if (words.empty()) return "unexpected argument";
+  std::string text = "unexpected argument \"" + words.front() + "\"";
+  if (words.size() == 1) return text;
+  text += fmt::format(" and {} more", words.size() - 1);
   const bool images = std::all_of(words.begin(), words.end(), [](const std::string& word) {
     return word.front() != '-' && std::filesystem::path(word).has_extension();
   });
-  return images ? text + "; quote the pattern, like 'left*.png'" : text;
+  return images ? text + "; quote the pattern, for example 'left*.png'" : text;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace vernier;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres would say, results and errors say
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' messages repeat our results and errors
   cli::Session session;
   session.command = cli::command_line(argc, argv);
   CLI::App app{
-      "Vernier: how wrong a stereo rig is, and what that does downstream.\n"
-      "Calibrate, sample correlated errors, and send them through a simulated building."};
+      "Vernier: stereo calibration uncertainty and its effect on matching and localisation.\n"
+      "Calibrate a rig, sample from its covariance, and simulate localisation with the samples."};
   app.name("vernier");
   app.set_version_flag("--version", "vernier " VERNIER_VERSION);
   app.require_subcommand(0, 1);
@@ -47,8 +47,8 @@ int main(int argc, char** argv) {
       "Example:\n"
       "  vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-m 0.025 "
       "-o rig.json\n"
-      "Each verb's --help has one of its own. Exit codes: 0 done, 1 internal error, 2 bad usage or "
-      "input,\n3 no trustworthy answer.");
+      "Each verb's --help has an example. Exit codes: 0 success, 1 internal error, 2 bad usage or "
+      "input,\n3 result not trustworthy.");
   cli::add_doctor(app, session);
   cli::add_detect(app, session);
   cli::add_match(app, session);
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "vernier: {}\n", error.what());
     return static_cast<int>(cli::Exit::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "vernier: {}: {}; check the path and the rights to it\n",
+    fmt::print(stderr, "vernier: {}: {}; check the path and its permissions\n",
                error.path1().string(), error.code().message());
     return static_cast<int>(cli::Exit::bad_input);
   } catch (const std::exception& error) {

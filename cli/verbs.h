@@ -7,7 +7,7 @@
 
 namespace vernier::cli {
 
-/// Each adds one verb to the program: its options, its example, and what it runs.
+/// Each function adds one verb to the program: its options, its example and its action.
 void add_doctor(CLI::App& app, Session& session);
 void add_detect(CLI::App& app, Session& session);
 void add_match(CLI::App& app, Session& session);

@@ -1,21 +1,21 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""What mrcal says of the uncertainty of a calibration that Vernier has solved.
+"""mrcal's uncertainty of a calibration that Vernier has solved.
 
     mrcal_uncertainty.py PROBLEM.json ANSWER.json
     mrcal_uncertainty.py --version
 
-PROBLEM.json is written by `vernier check`: a board calibration in mrcal's terms at its minimum,
-points to project and pixel pairs to triangulate. ANSWER.json holds mrcal's covariances of them by
+PROBLEM.json is written by `vernier check`: a board calibration in mrcal's form at its minimum, points
+to project and pixel pairs to triangulate. ANSWER.json contains their covariances from
 mrcal.projection_uncertainty and mrcal.triangulate (mrcal 2.2, method "mean-pcam").
 
-Where single lens parameters are locked or tied, which mrcal itself cannot do, or hardly differ in
-their effect, the problem has a matrix `basis`, L, whose columns span the free directions. The two
-functions then get, in place of the factorisation of JᵀJ, one that solves with L (LᵀJᵀJL)⁻¹ Lᵀ: the
-covariance of the smaller problem, or that of the same problem with fewer digits lost.
+If single lens parameters are fixed or tied, which mrcal does not support, or are nearly
+indistinguishable, the problem has a matrix `basis`, L, whose columns span the free directions. The
+factorisation of JᵀJ used by the two functions is then replaced by one that solves with
+L (LᵀJᵀJL)⁻¹ Lᵀ: the covariance of the reduced problem, or of the same problem with less rounding error.
 
-Exit codes: 0 done, 1 mrcal failed, 4 Python has no mrcal.
+Exit codes: 0 success, 1 mrcal failed, 4 mrcal's Python module is missing.
 """
 import json
 import math
@@ -32,14 +32,14 @@ except ImportError as error:
 
 
 def version():
-    """mrcal's Python names no version; the file of the library that it loaded does."""
+    """mrcal's Python module has no version; take it from the file name of the loaded library."""
     with open('/proc/self/maps') as maps:
         found = re.search(r'libmrcal\.so\.([0-9.]+)', maps.read())
     return found.group(1) if found else 'unknown'
 
 
 def optimization_inputs(problem):
-    """The problem as mrcal's functions take it: nothing rejected, nothing regularised."""
+    """The problem as arguments of mrcal's functions, without outlier rejection or regularisation."""
     warp = np.array(problem['warp_m'], dtype=float)
     views = np.array(problem['views'], dtype=np.int32).reshape(-1, 2)
     indices = np.column_stack((views, views[:, 1] - 1)).astype(np.int32)
@@ -68,7 +68,7 @@ def optimization_inputs(problem):
 
 
 class FreeDirections:
-    """Stands in for mrcal's factorisation where the problem has a basis."""
+    """Replaces mrcal's factorisation if the problem has a basis."""
 
     def __init__(self, packed_jacobian, packed_basis):
         self.basis = packed_basis
@@ -84,7 +84,7 @@ class FreeDirections:
 
 
 def packed_basis(rig_basis, inputs):
-    """The basis with the board's poses added, between parameters scaled as mrcal scales them."""
+    """The basis extended by the board poses, for parameters in mrcal's packed scale."""
     rig_basis = np.array(rig_basis, dtype=float)
     states = mrcal.num_states(**inputs)
     scale = np.ones(states)
@@ -96,7 +96,7 @@ def packed_basis(rig_basis, inputs):
 
 
 def restrict(rig_basis, inputs):
-    """From here on mrcal's own functions see the smaller problem."""
+    """Makes mrcal's functions use the reduced problem from now on."""
     basis = packed_basis(rig_basis, inputs)
     original = mrcal.optimizer_callback
 
@@ -133,7 +133,7 @@ def triangulations(problem, models):
 
 
 def numbers_or_null(answer):
-    """JSON has no NaN and no infinity: null stands for them."""
+    """Replaces NaN and infinity, which JSON does not have, by null."""
     if isinstance(answer, dict):
         return {key: numbers_or_null(value) for key, value in answer.items()}
     if isinstance(answer, list):

@@ -4,23 +4,22 @@
 """usage: scripts/check_build_cost.py [BUILD_FOLDER] [--top N] [--tolerance PERCENT]
                                   [--allow-cached]
 
-Lists the units that cost more than 12 CPU seconds to compile; exit code 1 if there is one.
-BUILD_FOLDER is build/release; --top N lists the N dearest besides. --tolerance raises all limits by so
-many per cent, for machines whose cores are shared: there the same unit costs up to half as much again.
+Lists the translation units that take more than 12 CPU seconds to compile; exit code 1 if there is one.
+BUILD_FOLDER defaults to build/release. --top N also lists the N slowest units. --tolerance raises all
+limits by PERCENT, for machines with shared cores, on which a unit can take up to 50 % longer.
 
-What a unit costs is in BUILD_FOLDER/compile_costs.tsv, which a build with
--DVERNIER_MEASURE_BUILD=ON writes. CPU seconds are user and system time: they do not depend on how
-many compilers run beside each other. What ccache gave back cost nothing and says nothing: a unit
-counts by the last time it was compiled in earnest. Batches of a unity build are left out. Exit code
-2 if fewer than 90 % of the other units were measured, for then the check says nothing. With
---allow-cached those count towards the 90 % that only ever came from the compiler cache; how many is
-printed. CCACHE_RECACHE=1 in the environment of a build measures them all.
+The times are read from BUILD_FOLDER/compile_costs.tsv, written by a build with
+-DVERNIER_MEASURE_BUILD=ON. CPU seconds are user plus system time, which hardly depends on how many
+compilers run in parallel. Results from ccache are ignored: the last real compilation of a unit counts.
+Unity build batches are excluded. Exit code 2 if fewer than 90 % of the other units were measured.
+With --allow-cached, units found only in the compiler cache count towards the 90 %, and their number is
+printed. A build with CCACHE_RECACHE=1 in its environment measures them all.
 
-scripts/build_cost_exceptions.txt names the units that may cost more, one a line:
+scripts/build_cost_exceptions.txt lists the units that may take longer, one per line:
 
     source  CPU seconds  reason
 
-A warning says which line is needed no longer.
+A warning reports lines that are no longer needed.
 """
 import json
 import re
@@ -36,11 +35,11 @@ BATCH = re.compile(r"/unity_\d+_\w+\.\w+$")
 
 
 class Unusable(Exception):
-    """An input that the check cannot work with: exit code 2."""
+    """An unusable input: exit code 2."""
 
 
 def read_exceptions(path):
-    """{source: limit in seconds} of the file of exceptions."""
+    """{source: limit in seconds} from the file of exceptions."""
     limits = {}
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if not line.strip() or line.startswith("#"):
@@ -50,17 +49,17 @@ def read_exceptions(path):
             source, limit, _ = words
             limit = float(limit)
         except ValueError:
-            raise Unusable(f"{path}:{number}: not 'source seconds reason': {line}") from None
+            raise Unusable(f"{path}:{number}: expected 'source seconds reason': {line}") from None
         if not limit > LIMIT_S:
-            raise Unusable(f"{path}:{number}: {limit:g} s is within the limit of {LIMIT_S:g} s")
+            raise Unusable(f"{path}:{number}: {limit:g} s is not above the general limit of {LIMIT_S:g} s")
         if source in limits:
-            raise Unusable(f"{path}:{number}: {source} stands there twice")
+            raise Unusable(f"{path}:{number}: {source} is listed twice")
         limits[source] = limit
     return limits
 
 
 def read_costs(path):
-    """{object: (CPU seconds, source)} as last compiled in earnest; the objects only ever cached."""
+    """{object: (CPU seconds, source)} of the last real compilation; objects found only in the cache."""
     costs = {}
     cached = set()
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
@@ -69,7 +68,7 @@ def read_costs(path):
             seconds, outcome, unit, source = fields
             seconds = float(seconds)
         except ValueError:
-            raise Unusable(f"{path}:{number}: not 'seconds outcome object source'") from None
+            raise Unusable(f"{path}:{number}: expected 'seconds outcome object source'") from None
         if outcome == "compiled":
             costs[unit] = (seconds, source)
         elif outcome == "cached":
@@ -78,7 +77,7 @@ def read_costs(path):
 
 
 def read_units(path):
-    """The objects that this build folder makes, those of removed sources left out."""
+    """The objects of this build folder, without those of removed sources."""
     units = set()
     for entry in json.loads(path.read_text(encoding="utf-8")):
         words = shlex.split(entry["command"])
@@ -96,7 +95,7 @@ def name_of(source, build):
 
 
 def check(build, top, tolerance=0, allow_cached=False):
-    """Prints what is wrong; returns the exit code."""
+    """Prints the problems; returns the exit code."""
     build = build.resolve()
     log = build / "compile_costs.tsv"
     if not log.is_file():
@@ -106,16 +105,16 @@ def check(build, top, tolerance=0, allow_cached=False):
     costs, cached = read_costs(log)
     costs = {unit: cost for unit, cost in costs.items() if unit in units}
 
-    dearest = {}  # by source; one may belong to several targets
+    slowest = {}  # by source; one may belong to several targets
     batches = 0
     for unit, (seconds, source) in costs.items():
         if BATCH.search(source):
             batches += 1
             continue
         name = name_of(source, build)
-        if seconds > dearest.get(name, (0.0, ""))[0]:
-            dearest[name] = (seconds, unit)
-    ranking = sorted(dearest.items(), key=lambda item: -item[1][0])
+        if seconds > slowest.get(name, (0.0, ""))[0]:
+            slowest[name] = (seconds, unit)
+    ranking = sorted(slowest.items(), key=lambda item: -item[1][0])
 
     for name, (seconds, unit) in ranking[:top]:
         print(f"{seconds:8.2f} s  {name}  ({unit})")
@@ -128,39 +127,39 @@ def check(build, top, tolerance=0, allow_cached=False):
     missing = [name for name in exceptions
                if not (ROOT / name).is_file() and not (build / name).is_file()]
     for name, seconds, limit in offenders:
-        print(f"too dear to compile: {name}: {seconds:.1f} CPU s, the limit is {limit:g} s",
+        print(f"compilation too slow: {name}: {seconds:.1f} CPU s, limit {limit:g} s",
               file=sys.stderr)
     for name in missing:
-        print(f"{EXCEPTIONS.name}: there is no {name}", file=sys.stderr)
+        print(f"{EXCEPTIONS.name}: {name} does not exist", file=sys.stderr)
     for name in exceptions:
-        if name in dearest and dearest[name][0] <= LIMIT_S:
-            print(f"warning: {EXCEPTIONS.name}: {name} costs {dearest[name][0]:.1f} s and needs no "
-                  "exception now", file=sys.stderr)
+        if name in slowest and slowest[name][0] <= LIMIT_S:
+            print(f"warning: {EXCEPTIONS.name}: {name} takes {slowest[name][0]:.1f} s; "
+                  "its exception is no longer needed", file=sys.stderr)
 
     cached &= units
     measured = [seconds for seconds, source in costs.values() if not BATCH.search(source)]
     words = (f"build cost: {len(measured)} of {len(units)} units measured, "
-             f"{sum(measured):.0f} CPU s together; "
-             f"{len(cached)} known from the compiler cache alone")
+             f"{sum(measured):.0f} CPU s in total; "
+             f"{len(cached)} found only in the compiler cache")
     if batches:
-        words += f"; batches of a unity build left out: {batches}"
+        words += f"; unity build batches excluded: {batches}"
     if ranking:
-        words += f"; the dearest {ranking[0][1][0]:.1f} s, {ranking[0][0]}"
+        words += f"; slowest: {ranking[0][1][0]:.1f} s, {ranking[0][0]}"
     print(words)
     if offenders or missing:
         return 1
     known = len(measured) + (len(cached) if allow_cached else 0)
     if not known or known < ENOUGH * (len(units) - batches):
-        raise Unusable(f"too few units were measured to judge: {len(measured)} of "
-                       f"{len(units) - batches}, {ENOUGH:.0%} are needed; build all, and with "
-                       "CCACHE_RECACHE=1 what came from the compiler cache")
+        raise Unusable(f"too few units were measured: {len(measured)} of "
+                       f"{len(units) - batches}, {ENOUGH:.0%} are needed; build everything, with "
+                       "CCACHE_RECACHE=1 if units came from the compiler cache")
     if allow_cached and cached:
         print(f"not measured: {len(cached)} units came from the compiler cache")
     return 0
 
 
 def main():
-    """The command line; returns the exit code."""
+    """Parses the command line and runs the check; returns the exit code."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
         print(__doc__.strip())

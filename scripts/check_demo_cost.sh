@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-#
-# Does the demo stay within its budget? Seconds of wall time on two cores, in a fresh Debian, with
-# the packages still to be fetched and nothing in a compiler cache.
+# Checks the time budget of the demo: seconds of wall time on two cores, in a fresh Debian without
+# downloaded packages or compiler cache.
 set -euo pipefail
 
 budgets=(
@@ -15,9 +14,9 @@ budgets=(
 usage() {
   cat <<'USAGE'
 usage: scripts/check_demo_cost.sh [FILE]
-Compares the times that scripts/demo.sh left in FILE (out/demo/times.txt) with the demo's budget;
-exit code 1 where one is exceeded. The budget is meant for a fresh Debian:
-scripts/fresh_root_demo.sh, as root, makes one, runs the demo there and then this check.
+Compares the times written by scripts/demo.sh to FILE (default: out/demo/times.txt) with the budget of
+the demo; exit code 1 if one is exceeded. The budget is for a fresh Debian: run
+scripts/fresh_root_demo.sh as root to create one and run the demo and this check in it.
 USAGE
 }
 
@@ -42,7 +41,7 @@ for line in "${budgets[@]}"; do
   read -r part budget <<<"$line"
   seconds=$(awk -F '\t' -v part="$part" '$1 == part { print $2; exit }' "$times")
   if [[ ! $seconds =~ ^[0-9]+\.[0-9][0-9]$ ]]; then
-    echo "check_demo_cost.sh: $times does not say what '$part' took" >&2
+    echo "check_demo_cost.sh: $times has no time for '$part'" >&2
     exit 2
   fi
   verdict=''

@@ -1,19 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-#
-# Runs the demo as a newcomer does: in a fresh, minimal Debian in a folder of its own.
+# Runs the demo as a new user would: in a fresh, minimal Debian in a separate folder.
 set -euo pipefail
 
 usage() {
   cat <<'USAGE'
 usage: scripts/fresh_root_demo.sh [--root FOLDER] [COMMAND]
-As root. Makes a minimal Debian bookworm by debootstrap, from the sources that this machine's apt
-uses, clones this checkout into it (what is committed) and runs scripts/demo.sh there, then
-scripts/check_demo_cost.sh. The exit code is theirs.
-  --root FOLDER   keep the Debian in FOLDER; one that is there is used again as it was left.
-                  Without it, it is made in a temporary folder (TMPDIR) and removed: 4 GB
-  COMMAND         for bash, run in the cloned checkout instead of the demo and its check
+Must be run as root. Creates a minimal Debian bookworm with debootstrap from this machine's apt sources,
+clones this checkout into it (committed files only) and runs scripts/demo.sh and then
+scripts/check_demo_cost.sh there. Returns their exit code.
+  --root FOLDER   keep the Debian in FOLDER, and reuse it if it exists. Default: a temporary folder
+                  (TMPDIR, 4 GB) that is removed at the end
+  COMMAND         bash command to run in the cloned checkout instead of the demo and its check
 USAGE
 }
 
@@ -50,25 +49,24 @@ while (($# > 0)); do
 done
 
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-if [[ $(id -u) != 0 ]]; then refuse "only root can make another root"; fi
+if [[ $(id -u) != 0 ]]; then refuse "must be run as root"; fi
 for program in debootstrap unshare git; do
   if ! command -v "$program" >/dev/null; then
-    refuse "no $program here; apt-get install debootstrap util-linux git"
+    refuse "$program not found; run apt-get install debootstrap util-linux git"
   fi
 done
 
-# One-line sources of bookworm, however this machine writes them down, without those of others.
-# shellcheck disable=SC2016 # apt fills these in
+# One-line apt sources of bookworm, from whatever format this machine uses, without third-party ones.
+# shellcheck disable=SC2016 # expanded by apt
 sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' \
   'Created-By: Packages' | awk '$3 ~ /^bookworm(-updates|-security)?$/ && $4 == "main"' | sort -u)
 mirror=$(awk '$3 == "bookworm" { print $2; exit }' <<<"$sources")
-if [[ -z $mirror ]]; then refuse "this machine's apt has no source of bookworm"; fi
+if [[ -z $mirror ]]; then refuse "this machine's apt has no bookworm source"; fi
 
-# The rest runs in a mount and a process namespace of its own: whatever ends it, nothing stays
-# mounted and no process stays behind.
+# The rest runs in separate mount and process namespaces, so that no mounts or processes remain.
 make_root() {
   local root=$1 checkout=$2 mirror=$3 sources=$4 include=''
-  # 755: apt fetches as a user of its own
+  # 755: apt downloads as a separate user
   chmod 755 "$root"
   if [[ $sources == *"https://"* ]]; then include=--include=ca-certificates; fi
   if ! debootstrap --variant=minbase ${include:+"$include"} bookworm "$root" "$mirror" \
@@ -77,7 +75,7 @@ make_root() {
     return 1
   fi
   echo "$sources" >"$root/etc/apt/sources.list"
-  # How this machine reaches its mirror, and whether that is a snapshot of another day.
+  # Proxy settings of this machine, and date checks in case the mirror is a snapshot.
   apt-config dump Acquire::http::Proxy Acquire::https::Proxy Acquire::Check-Valid-Until \
     Acquire::Check-Date >"$root/etc/apt/apt.conf.d/90machine"
   git clone --quiet "$checkout" "$root/srv/vernier"
@@ -108,9 +106,9 @@ else
   root=$(cd "$root" && pwd)
 fi
 if [[ ! -e $root/srv/made ]]; then
-  if [[ -n $(ls --almost-all "$root") ]]; then refuse "$root is neither empty nor such a root"; fi
-  echo "making a Debian bookworm in $root" >&2
+  if [[ -n $(ls --almost-all "$root") ]]; then refuse "$root is neither empty nor created by this script"; fi
+  echo "creating a Debian bookworm in $root" >&2
   in_namespace make_root "$root" "$checkout" "$mirror" "$sources"
-  echo "made in $SECONDS s" >&2
+  echo "created in $SECONDS s" >&2
 fi
 in_namespace run_in_root "$root" "$command"

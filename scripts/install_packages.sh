@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-#
-# Installs what Vernier needs on Debian bookworm. Says and does nothing where all of it is there.
+# Installs the packages that Vernier needs on Debian bookworm. Does nothing if all are installed.
 set -euo pipefail
 
 usage() {
   cat <<'USAGE'
 usage: scripts/install_packages.sh [--demo | --test]
-  --demo   leave out what only tests, benchmarks and the check against mrcal need
-  --test   add what only the test script needs: clang-format, Python, Chromium, mrcal, COLMAP
+  --demo   without the packages for tests, benchmarks and the check against mrcal
+  --test   with the additional packages of the test script: clang-format, clang-tidy, git,
+           Python, Chromium, mrcal, COLMAP
 USAGE
 }
 
@@ -45,11 +45,11 @@ sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }
 if ! has_sample_images; then packages+=(opencv-doc); fi
 
-# plotly.js, of which the report's page draws its plots; nothing of Python's is needed.
+# plotly.js for the plots of the report page; the Python part is not needed.
 plotly=usr/share/python3-plotly/plotly.js
 has_plotly() { [[ -f /$plotly || -f build/python3-plotly/$plotly ]]; }
 
-# Only the page's test needs npm, and nothing about it ever stops the script.
+# npm is only needed for the test of the report page; problems with it never stop the script.
 has_npm() { command -v npm >/dev/null || command -v node >/dev/null; }
 if [[ $scope == test ]] && ! has_npm; then packages+=(npm); fi
 
@@ -63,7 +63,7 @@ as_root() {
   elif command -v sudo >/dev/null; then
     sudo --preserve-env=DEBIAN_FRONTEND "$@"
   else
-    echo "install_packages.sh: not root and no sudo; as root, run: $*" >&2
+    echo "install_packages.sh: not root and sudo not found; as root, run: $*" >&2
     return 1
   fi
 }
@@ -85,7 +85,7 @@ install_missing() {
   export DEBIAN_FRONTEND=noninteractive
   if ((${#missing[@]} > 0)); then
     if ! command -v apt-get >/dev/null; then
-      echo "install_packages.sh: this is no Debian; install the likes of: ${missing[*]}" >&2
+      echo "install_packages.sh: apt-get not found; install the equivalents of: ${missing[*]}" >&2
       return 1
     fi
     echo "installing ${missing[*]}" >&2
@@ -98,7 +98,7 @@ install_missing() {
   fi
 }
 
-# Unpacks a package beside, into build, without what it depends on.
+# Unpacks a package into build, without its dependencies.
 unpack_beside() {
   local package=$1 folder
   echo "unpacking $package into build/$package" >&2
@@ -116,19 +116,19 @@ install_browser_driver() {
   local stamp=tests/cli/node_modules/.installed
   if [[ $scope != test || ($stamp -nt tests/cli/package-lock.json) ]]; then return; fi
   if ! command -v npm >/dev/null; then
-    echo "warning: no npm here, so the report page's test will be skipped" >&2
+    echo "warning: npm not found; the test of the report page will be skipped" >&2
     return
   fi
-  echo "installing the browser driver of the page's test with npm" >&2
+  echo "installing the browser driver for the report page test with npm" >&2
   if (cd tests/cli && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2); then
     touch "$stamp"
   else
-    echo "warning: npm failed, so the report page's test will be skipped" >&2
+    echo "warning: npm failed; the test of the report page will be skipped" >&2
   fi
 }
 
 install_missing
-# Minimal images leave /usr/share/doc out when they install a package.
+# Minimal images do not install /usr/share/doc.
 if ! has_sample_images; then unpack_beside opencv-doc; fi
 if ! has_plotly; then unpack_beside python3-plotly; fi
 install_browser_driver

@@ -1,20 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-#
-# clang-tidy 14 with .clang-tidy, over C++ files; each finding once; exit code 1 if there is one.
+# Runs clang-tidy 14 with .clang-tidy on C++ files; prints each finding once; exit code 1 if there are
+# any.
 set -euo pipefail
 
 usage() {
   cat <<'USAGE'
 usage: scripts/lint.sh [--since REVISION] [--build FOLDER] [--jobs N] [FILE...]
-Prints what clang-tidy finds in the files given; without any, in all sources that FOLDER builds and
-in the headers that they include.
-  --since REVISION   only files that differ from REVISION in git, changes not committed included
-  --build FOLDER     configured before, not necessarily built (build/release)
-  --jobs N           this many at a time (all processors); a source takes 10 to 30 s, and a batch of
-                     a unity build little more: all of the libraries and the program take some minutes
-                     in a FOLDER configured with -DCMAKE_UNITY_BUILD=ON
+Runs clang-tidy on the given files, by default on all sources built in FOLDER and their headers.
+  --since REVISION   only files that differ from REVISION in git, including uncommitted changes
+  --build FOLDER     configured build folder, need not be built (default: build/release)
+  --jobs N           parallel jobs (default: all processors); a source takes 10 to 30 s, and a unity
+                     batch little more: with a FOLDER configured with -DCMAKE_UNITY_BUILD=ON all of the
+                     libraries and the program take some minutes
 USAGE
 }
 
@@ -52,7 +51,7 @@ while (($# > 0)); do
     -*) wrong_usage ;;
     *)
       files+=("$(cd "$started_in" && realpath "$1")")
-      if [[ ! -f ${files[-1]} ]]; then refuse "there is no file $1"; fi
+      if [[ ! -f ${files[-1]} ]]; then refuse "no such file: $1"; fi
       ;;
   esac
   shift
@@ -62,22 +61,21 @@ if [[ -n $since ]] && ((${#files[@]} > 0)); then wrong_usage; fi
 
 tidy=$(command -v clang-tidy-14 || command -v clang-tidy || true)
 if [[ -z $tidy || $("$tidy" --version) != *"version 14."* ]]; then
-  refuse "clang-tidy 14 is not here; as root: apt-get install clang-tidy"
+  refuse "clang-tidy 14 not found; as root: apt-get install clang-tidy"
 fi
-if ! command -v python3 >/dev/null; then refuse "python3 is not here"; fi
+if ! command -v python3 >/dev/null; then refuse "python3 not found"; fi
 if [[ ! -f $build/compile_commands.json ]]; then
   refuse "no $build/compile_commands.json; run cmake --preset release first"
 fi
 if [[ -n $since ]] && ! git rev-parse --quiet --verify "$since^{commit}" >/dev/null; then
-  refuse "git knows no revision $since"
+  refuse "unknown git revision $since"
 fi
 
 results=$(mktemp --directory)
 trap 'rm --recursive --force "$results"' EXIT
 
-# The build's command lines as clang takes them: without GCC's precompiled headers, which clang
-# cannot read, and in silence about warnings that GCC alone has. Prints the sources, without what the
-# build folder makes for itself.
+# The build's command lines adapted for clang: without GCC's precompiled headers, which clang cannot
+# read, and without errors for GCC-only warning options. Prints the sources, except generated ones.
 python3 - "$build/compile_commands.json" "$results/compile_commands.json" >"$results/sources" <<'PY'
 import json, os, shlex, sys
 
@@ -128,17 +126,16 @@ elif ((${#files[@]} == 0)); then
 fi
 
 lint_one() {
-  local found=$results/${1//\//_}.found said=$results/${1//\//_}.said
+  local found=$results/${1//\//_}.found messages=$results/${1//\//_}.messages
   local options=()
-  # A batch of a unity build includes its sources: their findings count, and that they are sources
-  # does not.
+  # A unity batch includes its sources: report their findings, but not that they are included.
   if [[ $1 == */Unity/unity_* ]]; then
     options=(--checks=-bugprone-suspicious-include "--header-filter=${filter/'\.h$'/'\.(h|cpp)$'}")
   fi
-  if "$tidy" --quiet -p "$results" "${options[@]}" "$1" >"$found" 2>"$said"; then return; fi
-  # It fails on findings too; if there is none, then by itself.
+  if "$tidy" --quiet -p "$results" "${options[@]}" "$1" >"$found" 2>"$messages"; then return; fi
+  # It also fails if there are findings; without findings, clang-tidy itself failed.
   if ! grep --quiet --extended-regexp ':[0-9]+:[0-9]+: (warning|error): ' "$found"; then
-    echo "$1:1:1: error: $(tail --lines=1 "$said") [clang-tidy-failed]" >"$found"
+    echo "$1:1:1: error: $(tail --lines=1 "$messages") [clang-tidy-failed]" >"$found"
   fi
 }
 export -f lint_one
@@ -148,7 +145,7 @@ export tidy results filter
 printf '%s\0' "${files[@]}" |
   xargs --null --max-args=1 --max-procs="$jobs" bash -c 'lint_one "$1"' bash
 
-# A header's finding comes once for each source that includes it: the first stays, with its notes.
+# A finding in a header is reported for each source that includes it: keep the first, with its notes.
 find "$results" -name '*.found' -print0 | sort --zero-terminated | xargs --null cat |
   awk -v root="$PWD/" '
     /^[^ ].*:[0-9]+:[0-9]+: (warning|error): / { show = !seen[$0]++ }

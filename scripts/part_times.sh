@@ -1,15 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
+# To be sourced by other scripts: measures wall time and CPU time of their parts (user plus system, of
+# the script and its finished child processes).
 #
-# For other scripts to source: what each of their parts cost, as wall time and as CPU time (user and
-# system, of the script and of all processes that it waited for).
-#
-#   begin_part NAME    ends the part before and begins the next
-#   end_parts          ends the last one
-#   print_part_times   a table of all parts and of the whole script
-#   write_part_times   the same for programs: NAME, wall and CPU seconds, between tabs
-#
-# A name "run: calibrate" is a piece of the part "run", which has a row of its own with their sum.
+#   begin_part NAME    ends the previous part and begins the next
+#   end_parts          ends the last part
+#   print_part_times   prints a table of all parts and the total
+#   write_part_times   prints the same, tab-separated: NAME, wall and CPU seconds
+# A name such as "run: calibrate" is a step of the part "run", which gets its own row with the sum.
 # shellcheck shell=bash
 
 part_names=()
@@ -65,7 +63,7 @@ write_part_times() {
     if [[ -n ${sum_wall[$whole]:-} ]]; then
       printf '%s\t%s\t%s\n' "$whole" "$(seconds_of "${sum_wall[$whole]}")" \
         "$(seconds_of "${sum_cpu[$whole]}")"
-      unset "sum_wall[$whole]" # stands there once
+      unset "sum_wall[$whole]" # print it only once
     fi
     if [[ ${part_names[i]} == *": "* ]]; then
       printf '%s\t%s\t%s\n' "${part_names[i]}" "$(seconds_of "${part_wall_cs[i]}")" \

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draws how the cost of a calibration grows with its views, from the benchmark's JSON:
+"""Plots the CPU time of a calibration against the number of views, from the benchmark's JSON:
 
     build/release/bench/resolve_bench --benchmark_out=growth.json --benchmark_out_format=json
     scripts/plot_growth.py growth.json docs/images/cost_vs_views.svg

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draws how the time of stereo matchers grows with pixels, disparities and edges:
+"""Plots the CPU time of stereo matchers against pixels, disparities and edges:
 
     build/release/bench/stereo_bench --benchmark_filter=grow --benchmark_out=growth.json \\
         --benchmark_out_format=json
@@ -24,7 +24,7 @@ BASE = {"width": 450, "disparities": 64, "radius": 6}
 
 
 def points(runs, name, varied):
-    """(abscissa, CPU ms) of the runs in which nothing else differs from the base."""
+    """(abscissa, CPU ms) of the runs in which only `varied` differs from the base."""
     found = []
     for run in runs:
         if run["name"].split("/")[0] != name:

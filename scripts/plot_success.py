@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the success of localisation against the error of the calibration, from a study's JSON:
+"""Plots localisation success against calibration error, from a study's JSON:
 
     vernier study scripts/picture_study.toml -o out/picture --json > success.json
     scripts/plot_success.py success.json docs/images/success_vs_psi_c.svg
 
-Needs nothing but Python. One curve a query protocol, with 95 % intervals.
+Needs only the Python standard library. One curve per query protocol, with 95 % intervals.
 """
 import json
 import math
@@ -22,7 +22,7 @@ LABELS = {"near_path": "queries within 0.1 m and 5° of the map's path",
 
 
 def curves(cells):
-    """Protocol -> [(psi_c, success, low, high)] in rising order of psi_c."""
+    """Protocol -> [(psi_c, success, low, high)] in ascending order of psi_c."""
     found = {}
     for cell in cells:
         low, high = cell["success_interval_95"]
@@ -36,7 +36,7 @@ def text(x, y, words, anchor="middle", more=""):
 
 
 def draw(found, trials):
-    """The picture as SVG."""
+    """Returns the plot as SVG."""
     values = sorted({point[0] for points in found.values() for point in points})
     lowest = min(point[2] for points in found.values() for point in points)
     floor = math.floor(10 * lowest) / 10
@@ -63,7 +63,7 @@ def draw(found, trials):
     lines.append(text(18, middle, "localised within 1 m",
                       more=f' transform="rotate(-90 18 {middle})"'))
     for row, ((protocol, points), colour) in enumerate(zip(found.items(), COLOURS)):
-        shift = 3 * (2 * row - len(found) + 1)  # so that intervals do not hide each other
+        shift = 3 * (2 * row - len(found) + 1)  # so that intervals do not overlap
         path = " ".join(f"{x_of(p[0]) + shift:.1f},{y_of(p[1]):.1f}" for p in points)
         lines.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>')
         for psi_c, success, low, high in points:

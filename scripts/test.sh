@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-#
-# Installs what is missing, builds everything and runs every test; with sanitizers, the unit tests.
-# Ends with what each part cost and CTest's line on the tests.
+# Installs missing packages, builds everything and runs all tests, and the unit tests with sanitizers.
+# Prints the time of each part and CTest's summary at the end.
 set -euo pipefail
 
 usage() {
   cat <<'USAGE'
 usage: scripts/test.sh [--quick] [--measure]
-  --quick     without the second build, under address and undefined-behaviour sanitizers
-  --measure   write what each unit costs to compile, and fail where one costs too much; a build
-              folder that measures goes on measuring; what comes from the compiler cache is
-              not measured, which CCACHE_RECACHE=1 in the environment prevents
+  --quick     skip the second build with address and undefined-behaviour sanitizers
+  --measure   measure the compile time of each unit and fail if one is too slow; the build
+              folder keeps this setting; units from the compiler cache are not measured unless
+              CCACHE_RECACHE=1 is in the environment
 USAGE
 }
 
@@ -40,10 +39,10 @@ jobs=$(nproc)
 log=build/release/ctest.log
 rm --force "$log"
 
-# Seconds that tests ran, several at a time; CTest does not know their CPU time.
+# Wall time of tests, run in parallel; CTest does not measure their CPU time.
 print_test_times() {
   local name seconds LC_ALL=C
-  printf '\n%-66s %9s\n' "release tests: by label, and the slowest" "test s"
+  printf '\n%-66s %9s\n' "release tests: by label, and the slowest tests" "test s"
   while IFS=$'\t' read -r name seconds; do
     printf '  %-64.64s %9.1f\n' "$name" "$seconds"
   done < <(sed --quiet --regexp-extended \
@@ -75,7 +74,7 @@ scripts/check_format.sh
 begin_part "release: build"
 options=()
 if [[ $measure == yes ]]; then options+=(-DVERNIER_MEASURE_BUILD=ON); fi
-# Without unity: where sources share a unit, one lives on the includes of another.
+# Without unity builds, which hide missing includes.
 cmake --preset release -DVERNIER_BUILD_TESTS=ON -DVERNIER_BUILD_PROGRAM=ON \
   -DCMAKE_UNITY_BUILD=OFF "${options[@]}"
 cmake --build --preset release --parallel "$jobs"
@@ -83,8 +82,8 @@ begin_part "release: every installed header compiles alone"
 cmake --build --preset release --parallel "$jobs" --target all_verify_interface_header_sets
 cost=0
 if [[ $measure == yes ]]; then
-  # The tests run even so; the exit code says it in the end. What came from the compiler cache is
-  # not measured, and the check prints how many units those are.
+  # Run the tests anyway; the exit code is reported at the end. Units from the compiler cache are
+  # not measured; the check prints their number.
   scripts/check_build_cost.py build/release --top 5 --tolerance 50 --allow-cached || cost=$?
 fi
 begin_part "release: tests"
@@ -99,6 +98,6 @@ if [[ $quick == no ]]; then
 fi
 
 if ((cost != 0)); then
-  begin_part "check of what units cost to compile, see above"
+  begin_part "compile time check, see above"
   exit "$cost"
 fi

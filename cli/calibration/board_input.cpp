@@ -28,7 +28,7 @@ bool has_images(const BoardInput& input) {
 
 std::vector<Eigen::Vector2i> size_of(const BoardInput& input) {
   if (input.size.empty()) {
-    throw Error(input.verb, "the image size is not given", "give --size, such as 640x480");
+    throw Error(input.verb, "image size missing", "give --size, for example 640x480");
   }
   const auto [width, height] = parse_size(input.size, "--size");
   return {{width, height}};
@@ -36,15 +36,15 @@ std::vector<Eigen::Vector2i> size_of(const BoardInput& input) {
 
 double length(const BoardInput& input, double metres, const std::string& option) {
   if (!(metres > 0)) {
-    throw Error(input.verb, option + " is missing or not above 0", "give the length in metres");
+    throw Error(input.verb, option + " is missing or not positive", "give the length in metres");
   }
   return metres;
 }
 
-// Options that belong to one kind of board: with another kind nothing would come of them.
-constexpr std::array of_charuco{"--marker-m", "--dictionary", "--legacy"};
-constexpr std::array of_tags{"--tag-m", "--tag-spacing"};
-constexpr std::array of_tags_found{"--family", "--border-bits", "--top-row-first"};
+// Options that only apply to one kind of board.
+constexpr std::array charuco_options{"--marker-m", "--dictionary", "--legacy"};
+constexpr std::array tag_options{"--tag-m", "--tag-spacing"};
+constexpr std::array tag_detection_options{"--family", "--border-bits", "--top-row-first"};
 
 void refuse(const BoardInput& input, std::span<const char* const> options, const std::string& why) {
   refuse_options(*input.app, options, why);
@@ -57,20 +57,21 @@ void add_tag_options(const BoardInput& input, AprilTagGrid& grid) {
 }
 
 BoardTarget kalibr_target(const BoardInput& input) {
-  if (!input.board.empty()) throw Error(input.verb, "--target stands beside --board", "give one");
-  refuse(input, std::array{"--square-m"}, "the file of --target says it");
-  refuse(input, of_tags, "the file of --target says it");
-  refuse(input, of_charuco, "the file of --target holds no charuco board");
+  if (!input.board.empty())
+    throw Error(input.verb, "--target and --board are mutually exclusive", "give one of them");
+  refuse(input, std::array{"--square-m"}, "already given by the --target file");
+  refuse(input, tag_options, "already given by the --target file");
+  refuse(input, charuco_options, "the --target file is not a charuco board");
   BoardTarget target = read_kalibr_target(input.target);
   if (auto* grid = std::get_if<AprilTagGrid>(&target)) {
     add_tag_options(input, *grid);
   } else {
-    refuse(input, of_tags_found, "the file of --target holds a chessboard, which has no tags");
+    refuse(input, tag_detection_options, "the --target file is a chessboard and has no tags");
   }
   return target;
 }
 
-/// What is wrong with corners from a file begins with its name.
+/// Checks corners from a file; error messages start with the file name.
 BoardObservations checked(const std::string& file, BoardObservations observations) {
   try {
     check_observations(observations);
@@ -81,11 +82,11 @@ BoardObservations checked(const std::string& file, BoardObservations observation
 }
 
 BoardObservations from_observations(const BoardInput& input) {
-  const std::string why = "the file of --observations holds the board's points";
+  const std::string why = "the --observations file contains the board's points";
   refuse(input, std::array{"--board", "--target", "--square-m"}, why);
-  refuse(input, of_charuco, why);
-  refuse(input, of_tags, why);
-  refuse(input, of_tags_found, why);
+  refuse(input, charuco_options, why);
+  refuse(input, tag_options, why);
+  refuse(input, tag_detection_options, why);
   return checked(input.observations, read_observations(input.observations, size_of(input)));
 }
 
@@ -94,8 +95,8 @@ BoardObservations from_corners(const BoardInput& input, Session& session) {
       checked(input.corners, read_corners(input.corners, target_of(input), size_of(input)));
   if (const int coarse = count_coarse_corners(input.corners)) {
     session.warn(
-        fmt::format("{}: {} corners of level above 0 (found in a reduced image) weigh as "
-                    "much as the others",
+        fmt::format("{}: {} corners have a level above 0 (detected in a reduced image) but get the "
+                    "same weight as the others",
                     input.corners, coarse));
   }
   return observations;
@@ -106,53 +107,57 @@ BoardObservations from_corners(const BoardInput& input, Session& session) {
 void add_image_options(CLI::App* verb, BoardInput& input) {
   input.verb = verb->get_name();
   input.app = verb;
-  verb->add_option("--left", input.left, "left images (a quoted pattern); alone: one camera");
-  verb->add_option("--right", input.right, "right images; the same number, the same frame");
+  verb->add_option("--left", input.left,
+                   "left images (quoted pattern); without --right: a single camera");
+  verb->add_option("--right", input.right,
+                   "right images (quoted pattern); matched to left images by number");
   verb->add_option("--camera", input.cameras,
-                   "images of one camera, instead of --left and --right; once for each camera")
+                   "images of one camera; repeat for each camera, instead of --left and --right")
       ->allow_extra_args(false);
   verb->add_option("--board", input.board,
                    "9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 (tags)");
-  verb->add_option("--target", input.target, "instead: target file of Kalibr (YAML)");
-  verb->add_option("--square-m", input.square_m, "side of a square, metres")
+  verb->add_option("--target", input.target, "Kalibr target file (YAML), instead of --board");
+  verb->add_option("--square-m", input.square_m, "square size, metres")->check(finite_and_positive);
+  verb->add_option("--marker-m", input.marker_m, "marker size of a charuco board, metres")
       ->check(finite_and_positive);
-  verb->add_option("--marker-m", input.marker_m, "side of a marker on a charuco board, metres")
-      ->check(finite_and_positive);
-  verb->add_option("--dictionary", input.dictionary, "OpenCV's dictionary of a charuco board")
+  verb->add_option("--dictionary", input.dictionary, "OpenCV marker dictionary of a charuco board")
       ->capture_default_str();
-  verb->add_flag("--legacy", input.legacy, "charuco board as OpenCV before 4.6 drew it");
-  verb->add_option("--tag-m", input.tag_m, "side of an AprilTag over its black border, metres")
+  verb->add_flag("--legacy", input.legacy, "charuco board layout of OpenCV before 4.6");
+  verb->add_option("--tag-m", input.tag_m, "AprilTag size including the black border, metres")
       ->check(finite_and_positive);
-  verb->add_option("--tag-spacing", input.tag_spacing, "gap between AprilTags over their side")
+  verb->add_option("--tag-spacing", input.tag_spacing,
+                   "gap between AprilTags divided by their size")
       ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--family", input.family, "AprilTag family: 16h5, 25h9, 36h10 or 36h11")
       ->capture_default_str();
   verb->add_option("--border-bits", input.border_bits,
-                   "black border of an AprilTag, 1 or 2 bits (else whichever is found)");
+                   "black border of an AprilTag: 1 or 2 bits (default: try both)");
   verb->add_flag("--top-row-first", input.top_row_first,
-                 "AprilTags count from the upper row (Kalibr's from the lowest)");
+                 "AprilTag ids start in the top row (Kalibr: in the bottom row)");
 }
 
 void add_board_options(CLI::App* verb, BoardInput& input) {
   add_image_options(verb, input);
-  verb->add_option("--corners", input.corners, "corners file of vernier detect or mrcal");
+  verb->add_option("--corners", input.corners, "corners file from vernier detect or mrcal (.vnl)");
   verb->add_option("--observations", input.observations,
                    "CSV frame,camera,row,col,X,Y,Z,qx,qy (metres, pixels)");
-  verb->add_option("--size", input.size, "image size, such as 640x480 (for corners, observations)");
+  verb->add_option("--size", input.size,
+                   "image size, such as 640x480 (for --corners and --observations)");
 }
 
 std::vector<std::string> image_patterns(const BoardInput& input) {
   if (!input.cameras.empty()) {
     if (!input.left.empty() || !input.right.empty()) {
-      throw Error(input.verb, "--camera stands beside --left or --right", "give one kind");
+      throw Error(input.verb, "--camera cannot be combined with --left or --right",
+                  "give either --camera or --left/--right");
     }
     return input.cameras;
   }
   if (input.left.empty()) {
-    throw Error(input.verb, input.right.empty() ? "no images are given" : "--left is missing",
-                "give --left and --right, --left alone for one camera, or --camera for each of "
-                "several");
+    throw Error(
+        input.verb, input.right.empty() ? "no images given" : "--left is missing",
+        "give --left and --right, --left alone for a single camera, or --camera for each camera");
   }
   if (input.right.empty()) return {input.left};
   return {input.left, input.right};
@@ -171,17 +176,17 @@ std::vector<std::filesystem::path> files_named(const BoardInput& input) {
 BoardTarget target_of(const BoardInput& input) {
   if (!input.target.empty()) return kalibr_target(input);
   if (input.board.empty()) {
-    throw Error(input.verb, "the board is not given",
+    throw Error(input.verb, "no board given",
                 "give --board, such as 9x6 (inner corners), charuco:8x6 (squares) or apriltag:6x6 "
-                "(tags), or --target with Kalibr's file");
+                "(tags), or --target with a Kalibr target file");
   }
   const auto colon = input.board.find(':');
   const std::string kind = colon == std::string::npos ? "" : input.board.substr(0, colon);
   const auto [columns, rows] = parse_grid(input.board.substr(colon + 1), "--board");
-  if (kind != "charuco") refuse(input, of_charuco, "only a charuco board has it");
+  if (kind != "charuco") refuse(input, charuco_options, "only valid for a charuco board");
   if (kind != "apriltag") {
-    refuse(input, of_tags, "only a grid of AprilTags has it");
-    refuse(input, of_tags_found, "only a grid of AprilTags has it");
+    refuse(input, tag_options, "only valid for an AprilTag grid");
+    refuse(input, tag_detection_options, "only valid for an AprilTag grid");
   }
   if (kind.empty()) return Chessboard{columns, rows, length(input, input.square_m, "--square-m")};
   if (kind == "charuco") {
@@ -193,25 +198,25 @@ BoardTarget target_of(const BoardInput& input) {
                         input.legacy};
   }
   if (kind == "apriltag") {
-    refuse(input, std::array{"--square-m"}, "a grid of AprilTags has no squares, but --tag-m");
+    refuse(input, std::array{"--square-m"}, "an AprilTag grid has no squares; use --tag-m");
     AprilTagGrid grid{columns, rows, length(input, input.tag_m, "--tag-m"), input.tag_spacing};
     add_tag_options(input, grid);
     return grid;
   }
-  throw Error("--board", "\"" + kind + "\" is no kind of board",
-              "write 9x6, charuco:8x6 or apriltag:6x6");
+  throw Error("--board", "unknown kind of board \"" + kind + "\"",
+              "use 9x6, charuco:8x6 or apriltag:6x6");
 }
 
 BoardObservations load(const BoardInput& input, Session& session) {
   const int sources =
       !input.corners.empty() + !input.observations.empty() + (has_images(input) ? 1 : 0);
   if (sources != 1) {
-    throw Error(input.verb, "give exactly one kind of input",
-                "images (--left, --right, --camera), or --corners, or --observations");
+    throw Error(input.verb, "exactly one kind of input is required",
+                "give images (--left, --right or --camera), --corners or --observations");
   }
   if (!input.observations.empty()) return from_observations(input);
   if (!input.corners.empty()) return from_corners(input, session);
-  refuse(input, std::array{"--size"}, "the images say how large they are");
+  refuse(input, std::array{"--size"}, "the size is read from the images");
   ImageDetections found = detect_images(image_patterns(input), target_of(input));
   for (const BoardDetection& image : found.refused) {
     session.warn(image.image.string() + ": " + image.reason);

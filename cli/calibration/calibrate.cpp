@@ -46,8 +46,8 @@ Json comparison_json(const ModelComparison& comparison) {
 
 std::string comparison_table(const ModelComparison& comparison) {
   std::string text = fmt::format(
-      "models on views left out ({} frames):\n{:<10} {:>12} {:>12} {:>13}  {}\n", comparison.frames,
-      "model", "left out px", "fitted px", "views better", "largest move");
+      "lens models on held-out views ({} frames):\n{:<10} {:>12} {:>12} {:>13}  {}\n",
+      comparison.frames, "model", "held-out px", "fitted px", "views better", "largest change");
   const auto line = [&](const ModelScore& s) {
     text += fmt::format("{:<10} {:>12.4f} {:>12.4f} {:>13}  {}\n", s.name, s.held_out_rms_px,
                         s.fitted_rms_px, s.name == comparison.in_use.name ? 0 : s.better_views,
@@ -60,7 +60,7 @@ std::string comparison_table(const ModelComparison& comparison) {
   return text;
 }
 
-void judge(const RigEstimate& estimate, Session& session) {
+void report_warnings(const RigEstimate& estimate, Session& session) {
   const CalibrationSummary& summary = *estimate.calibration;
   for (const std::string& warning : summary.warnings) session.warn(warning);
   for (const std::string& warning : summary.trust_warnings) session.add_trust_warning(warning);
@@ -68,13 +68,13 @@ void judge(const RigEstimate& estimate, Session& session) {
 
 void run(const CalibrateArguments& options, Session& session) {
   if (!options.pairs.empty()) {
-    refuse_options(*options.board.app, board_options, "pairs are of no board");
+    refuse_options(*options.board.app, board_options, "not used with --pairs, which need no board");
     refuse_options(*options.board.app, std::array{"--model", "--know"},
-                   "with --pairs the prior says it");
+                   "with --pairs this comes from the prior");
     refuse_options(*options.board.app, std::array{"--warp", "--no-model-check"},
-                   "it is for views of a board");
+                   "only valid for views of a board");
     refuse_options(*options.board.app, std::array{"--pixel-sigma"},
-                   "the pairs file states the noise, and its residuals scale it");
+                   "the noise is taken from the pairs file and scaled by the residuals");
     calibrate_pairs(options.pairs, options.solver, options.output, !options.no_evidence, session);
     return;
   }
@@ -88,11 +88,11 @@ void run(const CalibrateArguments& options, Session& session) {
     std::vector<std::string>& warnings = estimate.calibration->warnings;
     warnings.insert(warnings.end(), comparison.warnings.begin(), comparison.warnings.end());
     if (!comparison.not_compared.empty()) {
-      warnings.push_back("models were not compared: " + comparison.not_compared);
+      warnings.push_back("lens models were not compared: " + comparison.not_compared);
     }
   }
   write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
-  judge(estimate, session);
+  report_warnings(estimate, session);
   Json json = rig_json(estimate);
   std::string text = rig_table(estimate);
   if (!comparison.richer.empty()) {
@@ -107,20 +107,19 @@ void run(const CalibrateArguments& options, Session& session) {
 
 void add_calibrate(CLI::App& app, Session& session) {
   auto o = std::make_shared<CalibrateArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "calibrate",
-               "calibrate a rig from images or corners of a board, or from matched corners of any "
-               "scene and a prior",
-               "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
-               "--square-m 0.025 -o rig.json\n"
-               "  vernier calibrate --pairs pairs.csv --prior prior.json -o rig.json");
+  CLI::App* verb = add_verb(app, session, "calibrate",
+                            "calibrate a rig from images or corners of a board, or from matched "
+                            "corners of an arbitrary scene and a prior",
+                            "vernier calibrate --left 'left*.png' --right 'right*.png' --board 9x6 "
+                            "--square-m 0.025 -o rig.json\n"
+                            "  vernier calibrate --pairs pairs.csv --prior prior.json -o rig.json");
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
   verb->add_option("--pairs", o->pairs,
-                   "matched corners of any scene (see vernier match); needs --prior");
+                   "matched corners of an arbitrary scene (from vernier match); requires --prior");
   verb->add_flag("--no-model-check", o->no_model_check,
-                 "do not compare with richer lens models on views left out");
-  verb->add_flag("--no-evidence", o->no_evidence, "leave the corners out of the rig file");
+                 "skip the comparison with richer lens models on held-out views");
+  verb->add_flag("--no-evidence", o->no_evidence, "do not store the corners in the rig file");
   verb->add_option("-o,--output", o->output, "rig file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

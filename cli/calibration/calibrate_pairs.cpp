@@ -24,15 +24,16 @@ void calibrate_pairs(const std::string& pairs_file,
                      bool keep_evidence,
                      Session& session) {
   if (solver.prior.empty()) {
-    throw Error("--pairs", "pairs alone do not determine a rig (never its scale)",
-                "give --prior with a rig file, a calibration or a datasheet's values");
+    throw Error(
+        "--pairs", "matched pairs alone do not determine a rig, in particular not its scale",
+        "give --prior with a rig file, for example an earlier calibration or datasheet values");
   }
   const std::filesystem::path prior_file = find_rig(solver.prior);
   check_output_is_not_input({pairs_file, prior_file}, output);
   const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
   SolverInput rest = solver;
-  rest.prior.clear();  // it is read already
+  rest.prior.clear();  // already read above
   const CalibrationOptions how = calibration_options(rest, session);
   JointOptions options;
   options.held = how.held;

@@ -9,7 +9,7 @@
 
 namespace vernier::cli {
 
-/// `vernier calibrate --pairs`: a rig from matched corners of any scene and a prior.
+/// `vernier calibrate --pairs`: calibrates from matched corners of an arbitrary scene and a prior.
 void calibrate_pairs(const std::string& pairs_file,
                      const SolverInput& solver,
                      const std::string& output,

@@ -42,75 +42,76 @@ struct CheckArguments {
   int splits = 100, training_frames = 0;
 };
 
-/// CheckArguments that nothing would come of.
-void refuse_idle_options(const CheckArguments& options) {
+/// Throws Error for options that would have no effect.
+void refuse_unused_options(const CheckArguments& options) {
   const CLI::App& app = *options.board.app;
   if (!options.rig.empty()) {
     const std::string remedy = "leave it out, or give the corners instead of the rig file";
-    refuse_options(app, board_options, "the rig file holds the corners", remedy);
-    refuse_options(app, solver_options, "the rig file says how it was solved", remedy);
+    refuse_options(app, board_options, "the rig file contains the corners", remedy);
+    refuse_options(app, solver_options, "the rig file contains the solver settings", remedy);
   }
   if (!options.holdout) {
-    refuse_options(app, std::array{"--splits", "--training-frames"}, "it is of --holdout",
+    refuse_options(app, std::array{"--splits", "--training-frames"}, "only valid with --holdout",
                    "add --holdout or leave it out");
   }
 }
 
-/// Before anything is solved: boards left out need a pair and some frames.
+/// Checked before solving: held-out boards need a pair of cameras and some frames.
 void check_holdout(const CheckArguments& options, const BoardObservations& observations) {
   constexpr int fewest_frames = 6, fewest_to_calibrate = 3;
   if (!options.holdout) return;
   const auto frames = static_cast<int>(frames_of(observations).size());
   if (observations.size_px.size() < 2 || frames < fewest_frames) {
-    throw Error("--holdout",
-                fmt::format("needs a pair of cameras and at least six frames; here are {} of the "
-                            "one and {} of the other",
-                            observations.size_px.size(), frames),
-                "give more views, or leave it out");
+    throw Error(
+        "--holdout",
+        fmt::format("needs two cameras and at least six frames; got {} camera(s) and {} frame(s)",
+                    observations.size_px.size(), frames),
+        "give more views, or leave it out");
   }
   const int training = options.training_frames;
   if (training != 0 && (training < fewest_to_calibrate || training >= frames)) {
     throw Error("--training-frames", fmt::format("{} of {} frames", training, frames),
-                "give at least 3, and fewer than there are");
+                "give at least 3 and fewer than the number of frames");
   }
 }
 
-/// A calibration to check: how it was solved, and its answer.
+/// A calibration to check: solver options and solution.
 struct Solved {
   CalibrationOptions how;
   RigEstimate estimate;
-  std::optional<RigEstimate> stated;  ///< what the rig file says
+  std::optional<RigEstimate> from_file;  ///< the estimate stored in the rig file
 };
 
-/// The calibration that a rig file's evidence is of, solved again from its corners.
+/// Solves the calibration of a rig file again from the stored corners.
 Solved solve_again(const CheckArguments& options, Session& session) {
   const std::filesystem::path path = find_rig(options.rig);
   RigFile file = read_rig(path);
   for (const std::string& warning : file.warnings) {
-    const bool doubt = warning.starts_with(stored_warning_prefix(path.string()));
-    doubt ? session.add_trust_warning(warning) : session.warn(warning);
+    const bool stored_warning = warning.starts_with(stored_warning_prefix(path.string()));
+    stored_warning ? session.add_trust_warning(warning) : session.warn(warning);
   }
   if (!file.estimate.evidence || !file.estimate.calibration) {
-    throw Error(options.rig, "it holds no evidence to solve again",
+    throw Error(options.rig, "the file has no stored evidence to solve again",
                 "calibrate without --no-evidence, or give the corners");
   }
   if (file.estimate.evidence->observations.views.empty()) {
-    throw Error(options.rig, "it holds no views of a board, which is what check solves again",
-                "give a rig that was calibrated from a board; of pairs, combine the file alone");
+    throw Error(
+        options.rig, "the file has no views of a board, which check solves again",
+        "give a rig calibrated from a board; for pairs, run vernier combine with this file alone");
   }
   if (file.estimate.evidence->pairs.size() > 0) {
-    session.warn(options.rig + ": its matched pairs are left aside, only its boards are checked");
+    session.warn(options.rig + ": matched pairs are ignored; only the board views are checked");
   }
   Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
-  const BoardObservations& observations = solved.stated->evidence->observations;
+  const BoardObservations& observations = solved.from_file->evidence->observations;
   check_holdout(options, observations);
   solved.estimate = calibrate(observations, solved.how);
   return solved;
 }
 
 Solved solve(const CheckArguments& options, Session& session) {
-  refuse_idle_options(options);
+  refuse_unused_options(options);
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   BoardObservations observations = load(options.board, session);
@@ -131,8 +132,9 @@ CheckedProblem problem_to_check(const Solved& solved) {
   p.start = initial_state(evidence.observations, models_of(estimate.rig));
   p.start.rig = with_held_values(p.start.rig, solved.how.held);
   if (solved.how.warp == BoardWarp::known) p.start.warp_m = evidence.warp_m;
-  for (std::size_t i = 0; solved.stated && i < p.state.rig.cameras.size(); ++i) {
-    p.state.rig.cameras[i].name = p.start.rig.cameras[i].name = solved.stated->rig.cameras[i].name;
+  for (std::size_t i = 0; solved.from_file && i < p.state.rig.cameras.size(); ++i) {
+    p.state.rig.cameras[i].name = p.start.rig.cameras[i].name =
+        solved.from_file->rig.cameras[i].name;
   }
   p.observations = evidence.observations;
   p.bound = *estimate.covariance_mvb;
@@ -157,17 +159,17 @@ void run(const CheckArguments& options, Session& session) {
     }
     for (const std::string& failure : part.failures) session.add_trust_warning(failure);
   };
-  if (solved.stated) add("file", check_file(*solved.stated, solved.estimate));
+  if (solved.from_file) add("file", check_file(*solved.from_file, solved.estimate));
   if (options.no_mrcal) {
-    add("mrcal", {nullptr, "mrcal was left out", "--no-mrcal", {}});
+    add("mrcal", {nullptr, "mrcal check skipped", "--no-mrcal", {}});
   } else {
     add("mrcal", check_by_mrcal(problem, session));
   }
   add("monte_carlo", check_by_monte_carlo(problem, options.copies));
   if (options.holdout) {
     CalibrationOptions how = solved.how;
-    how.reject_outliers = false;  // they are out already
-    how.check_input = false;      // and so is what does not fit
+    how.reject_outliers = false;  // already removed
+    how.check_input = false;      // already checked
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
                                           .splits = options.splits,
@@ -182,29 +184,31 @@ void run(const CheckArguments& options, Session& session) {
 
 void add_check(CLI::App& app, Session& session) {
   auto o = std::make_shared<CheckArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "check",
-               "check a calibration: the same problem by mrcal, and by solving noisy copies of it",
-               "vernier check --observations observations.csv --size 640x480 --trials 200");
-  verb->add_option("rig", o->rig, "a rig file with its evidence (or give the corners as below)");
+  CLI::App* verb = add_verb(
+      app, session, "check",
+      "check a calibration: solve the same problem with mrcal, and by Monte Carlo simulation",
+      "vernier check --observations observations.csv --size 640x480 --trials 200");
+  verb->add_option("rig", o->rig,
+                   "rig file with stored evidence (or give corners with the options below)");
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
-  verb->add_option("--trials", o->copies.trials, "noisy copies to solve")
+  verb->add_option("--trials", o->copies.trials, "number of Monte Carlo trials")
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str();
-  verb->add_option("--seed", o->copies.seed, "of the copies' noise")
+  verb->add_option("--seed", o->copies.seed, "random seed of the Monte Carlo noise")
       ->check(not_negative)
       ->capture_default_str();
-  verb->add_option("--threads", o->copies.threads, "0: all; results do not depend on it")
+  verb->add_option("--threads", o->copies.threads,
+                   "number of threads (0: all); does not affect results")
       ->check(CLI::NonNegativeNumber);
-  verb->add_flag("--no-mrcal", o->no_mrcal, "leave mrcal out");
+  verb->add_flag("--no-mrcal", o->no_mrcal, "skip the comparison with mrcal");
   verb->add_flag("--holdout", o->holdout,
-                 "also predict lengths on boards left out of the calibration, over many splits");
-  verb->add_option("--splits", o->splits, "of --holdout")
+                 "cross-validate: measure lengths on held-out boards, over random splits");
+  verb->add_option("--splits", o->splits, "number of splits for --holdout")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   verb->add_option("--training-frames", o->training_frames,
-                   "frames a split calibrates on (a little over half)")
+                   "training frames per split (default: slightly more than half)")
       ->check(CLI::NonNegativeNumber);
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

@@ -23,18 +23,18 @@
 namespace vernier::cli {
 namespace {
 
-/// A minimum that Ceres alone finds (a free warp) is some 1e-6 standard deviations off; opencv8's
-/// bound has five digits.
+/// A minimum found by Ceres alone (free warp) is about 1e-6 standard deviations off; the bound of
+/// opencv8 is accurate to five digits.
 constexpr double gate = 1e-4;
 
-ToleranceCheck parameter_gate(const Rig& stated, const RigEstimate& again) {
+ToleranceCheck parameter_gate(const Rig& from_file, const RigEstimate& again) {
   ToleranceCheck worst{"parameters, in standard deviations", "max_parameter_diff_sigma", "", 0,
                        gate};
-  const std::vector<std::string> names = parameter_names(stated);
-  const Eigen::VectorXd delta = difference(stated, again.rig);
+  const std::vector<std::string> names = parameter_names(from_file);
+  const Eigen::VectorXd delta = difference(from_file, again.rig);
   const Eigen::VectorXd sd = again.covariance_mvb->diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < delta.size(); ++i) {
-    if (sd[i] == 0) continue;  // held where the file has it
+    if (sd[i] == 0) continue;  // fixed in the file
     const double in_sigma = std::abs(delta[i]) / sd[i];
     if (!is_worse(in_sigma, worst.value)) continue;
     worst.value = in_sigma;
@@ -43,13 +43,13 @@ ToleranceCheck parameter_gate(const Rig& stated, const RigEstimate& again) {
   return worst;
 }
 
-ToleranceCheck covariance_gate_of(const RigEstimate& stated, const RigEstimate& again) {
-  const Eigen::MatrixXd &A = *stated.covariance_mvb, &B = *again.covariance_mvb;
+ToleranceCheck covariance_gate_of(const RigEstimate& from_file, const RigEstimate& again) {
+  const Eigen::MatrixXd &A = *from_file.covariance_mvb, &B = *again.covariance_mvb;
   CovarianceDifference worst = normalised_difference(A, B);
-  for (int i = 0; i < static_cast<int>(B.rows()); ++i) {  // what is held has no variance
+  for (int i = 0; i < static_cast<int>(B.rows()); ++i) {  // fixed parameters have no variance
     if (B(i, i) == 0 && A(i, i) != 0) worst = {std::numeric_limits<double>::infinity(), i, i};
   }
-  const std::vector<std::string> names = parameter_names(stated.rig);
+  const std::vector<std::string> names = parameter_names(from_file.rig);
   return {"covariance_mvb, normalised", "max_covariance_diff",
           names[worst.row] + ", " + names[worst.column], worst.largest, gate};
 }
@@ -66,12 +66,12 @@ CalibrationOptions options_of_file(const RigEstimate& estimate) {
     const auto i = std::find(names.begin(), names.end(), held) - names.begin();
     if (i < values.size()) options.held.push_back({held, values[i]});
   }
-  // A noise estimated from the residuals makes χ² the degrees of freedom.
+  // If the noise was estimated from the residuals, χ² equals the degrees of freedom.
   const bool estimated = std::abs(summary.chi2 / summary.dof - 1) < 1e-6;
   options.pixel_sigma_px = estimated ? 0 : summary.pixel_sigma_px;
   const std::vector<GaussianRigPrior>& priors = estimate.evidence->priors;
   if (!priors.empty()) options.prior = priors[0];
-  if (priors.size() > 1) {  // single parameters (--know) stand after a file's
+  if (priors.size() > 1) {  // priors of single parameters (--know) follow a file's
     const GaussianRigPrior& known = priors[1];
     const std::vector<std::string> all = parameter_names(known.rig);
     for (std::size_t i = 0; i < known.covariance.names.size(); ++i) {
@@ -98,19 +98,19 @@ RigEstimate with_default_names(RigEstimate estimate) {
   return estimate;
 }
 
-CheckSection check_file(const RigEstimate& stated, const RigEstimate& again) {
+CheckSection check_file(const RigEstimate& from_file, const RigEstimate& again) {
   CheckSection part;
-  if (stated.calibration->prior_dof > 0 && stated.evidence->priors.empty()) {
+  if (from_file.calibration->prior_dof > 0 && from_file.evidence->priors.empty()) {
     part.reason =
-        "the file holds no prior, so what it states is not compared with solving again; the rest "
-        "is checked without the prior that the calibration had";
+        "the file does not contain the prior of its calibration, so its values are not compared "
+        "with solving again; the other checks run without the prior";
     part.text = part.reason + "\n";
     return part;
   }
-  std::vector<ToleranceCheck> gates{parameter_gate(stated.rig, again)};
-  if (stated.covariance_mvb) gates.push_back(covariance_gate_of(stated, again));
+  std::vector<ToleranceCheck> gates{parameter_gate(from_file.rig, again)};
+  if (from_file.covariance_mvb) gates.push_back(covariance_gate_of(from_file, again));
   add_gates("file against solving again", "solving again", gates, part);
-  if (!stated.covariance_mvb) part.text += "  the file has no covariance_mvb to compare\n";
+  if (!from_file.covariance_mvb) part.text += "  the file has no covariance_mvb to compare\n";
   return part;
 }
 

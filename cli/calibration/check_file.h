@@ -10,17 +10,17 @@
 
 namespace vernier::cli {
 
-/// The options that `estimate` was calibrated with, as far as its file tells: models, held
-/// parameters, a free warp, and a noise that is estimated again where it was. Without priors, which
-/// no file holds; its outliers are out already. `estimate` must have a calibration and evidence.
+/// The options that `estimate` was calibrated with, as far as the file contains them: models, fixed
+/// parameters, free warp, and whether the noise was estimated. Priors are not stored, and outliers
+/// are already removed. `estimate` must have a calibration and evidence.
 CalibrationOptions options_of_file(const RigEstimate& estimate);
 
-/// The same with the names that calibrate() gives cameras: left, right, camera2 … Options that it
-/// is to understand are those of such an estimate.
+/// The same with calibrate()'s default camera names: left, right, camera2 … Use it for the options
+/// passed to calibrate(), whose parameter names contain them.
 RigEstimate with_default_names(RigEstimate estimate);
 
-/// What a file states, parameters and minimum variance bound, against `again`, the solution of the
-/// problem that its evidence is. Where there was a prior, the reason why they are not compared.
-CheckSection check_file(const RigEstimate& stated, const RigEstimate& again);
+/// Compares a file's parameters and minimum variance bound with `again`, the solution from its
+/// stored evidence. If the calibration had a prior, gives the reason why they are not compared.
+CheckSection check_file(const RigEstimate& from_file, const RigEstimate& again);
 
 }  // namespace vernier::cli

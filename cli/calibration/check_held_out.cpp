@@ -21,11 +21,11 @@ std::string coverage_line(const std::string& what,
                      100 * c.coverage_mvb, c.z_rms_honest, c.z_rms_mvb);
 }
 
-/// What could not be predicted, where there is any.
+/// The number of corners and boards that could not be predicted, if any.
 std::string without_a_point(const HeldOutBoardsResult& result) {
   if (result.corners_left_out == 0) return "";
   return fmt::format(
-      " (left out: {} corners without a point in space, {} boards with too few others)",
+      " (excluded: {} corners that do not triangulate, {} boards with too few corners)",
       result.corners_left_out, result.boards_left_out);
 }
 
@@ -59,18 +59,18 @@ CheckSection check_held_out_boards(const BoardObservations& observations,
                {"edges", coverage_json(result.edges)},
                {"scale", coverage_json(result.scale)}};
   part.text = fmt::format(
-      "boards left out: {} splits{}, {} frames to calibrate, {} boards predicted{}\n"
+      "held-out boards: {} splits{}, {} training frames, {} boards predicted{}\n"
       "  {:<26} {:>7} {:>19} {:>11} {:>11} {:>15}\n  {:<26} {:>7} {:>19} {:>11} {:>11} {:>7} "
       "{:>7}\n",
       result.splits, result.failed > 0 ? fmt::format(" ({} failed)", result.failed) : "",
       result.training_frames, result.boards, without_a_point(result), "", "", "", "inside 95 %",
       "inside 95 %", "rms z", "", "lengths", "rms error", "honest", "bound", "honest", "bound");
   part.text += coverage_line("rows, columns, diagonals", result.edges, 1e3, "mm");
-  part.text += coverage_line("whole board's size", result.scale, 1e6, "ppm");
+  part.text += coverage_line("board scale", result.scale, 1e6, "ppm");
   if (result.scale.z_rms_honest > 2) {
     part.failures.push_back(fmt::format(
-        "boards left out are mispredicted: their size is off by {:.1f} stated standard deviations "
-        "(rms); the lens needs another model, or the views differ in kind",
+        "held-out boards are mispredicted: their scale is off by {:.1f} predicted standard "
+        "deviations (rms); try another lens model, or check that all views are alike",
         result.scale.z_rms_honest));
   }
   return part;

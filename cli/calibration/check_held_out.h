@@ -9,10 +9,10 @@
 
 namespace vernier::cli {
 
-/// The shares inside their intervals and what goes with them.
+/// Coverage of the intervals and related statistics.
 Json coverage_json(const LengthCoverage& coverage);
 
-/// Lengths on boards that took no part in the calibration against their intervals, over splits.
+/// Coverage of the predicted intervals for lengths on held-out boards, over random splits.
 CheckSection check_held_out_boards(const BoardObservations& observations,
                                    const HeldOutBoardsOptions& options,
                                    const Session& session);

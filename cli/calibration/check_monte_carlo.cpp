@@ -28,27 +28,28 @@ CheckSection check_by_monte_carlo(const CheckedProblem& p, const MonteCarloResul
                {"ks_p_components", check.ks_p_components},
                {"consistent", check.consistent()}};
   part.text = fmt::format(
-      "by {} noisy copies, solved again{}:\n"
-      "  error squared over covariance (NEES)   {:.2f}, expected {:.0f}, 95 % of means in "
+      "Monte Carlo, {} trials{}:\n"
+      "  NEES                                   {:.2f}, expected {:.0f}, 95 % interval of the mean "
       "[{:.2f}, {:.2f}]\n"
-      "  sampled over predicted sigma           {:.3f} to {:.3f}\n"
+      "  sampled / predicted sigma              {:.3f} to {:.3f}\n"
       "  eigenvalues of the whitened samples    {:.3f} to {:.3f}, band [{:.3f}, {:.3f}]\n"
-      "  Kolmogorov and Smirnov                 p = {:.2g} (NEES), {:.2g} (components)\n",
+      "  Kolmogorov-Smirnov                     p = {:.2g} (NEES), {:.2g} (components)\n",
       check.trials, check.failed > 0 ? fmt::format(" ({} more failed)", check.failed) : "",
       check.nees_mean, check.nees_expected, check.nees_interval_95.low, check.nees_interval_95.high,
       check.std_ratio_min, check.std_ratio_max, check.eigenvalues[0], check.eigenvalues[1],
       check.eigenvalue_band_99.low, check.eigenvalue_band_99.high, check.ks_p,
       check.ks_p_components);
   if (!check.enough_trials_solved()) {
-    part.failures.push_back(fmt::format(
-        "{} of {} noisy copies could not be solved: the views hardly determine the rig, and what "
-        "the others scatter says too little; use a model with fewer parameters, or more views",
-        check.failed, check.trials + check.failed));
+    part.failures.push_back(
+        fmt::format("{} of {} Monte Carlo trials could not be solved: the views barely determine "
+                    "the rig, and the remaining trials are not representative; use a model with "
+                    "fewer parameters, or more views",
+                    check.failed, check.trials + check.failed));
   }
   if (!check.scatter_matches_covariance()) {
     part.failures.push_back(fmt::format(
-        "noisy copies scatter otherwise than the covariance says: NEES {:.2f} for {:.0f}, sigmas "
-        "{:.2f} to {:.2f} times the predicted",
+        "Monte Carlo scatter disagrees with the covariance: NEES {:.2f}, expected {:.0f}; sampled "
+        "sigmas are {:.2f} to {:.2f} times the predicted ones",
         check.nees_mean, check.nees_expected, check.std_ratio_min, check.std_ratio_max));
   }
   return part;

@@ -37,15 +37,15 @@ double cpu_ms(const F& run) {
   return least;
 }
 
-/// What mrcal can be compared with: it has no priors, and here the board keeps its shape.
-struct LikeWithLike {
+/// A problem that mrcal can solve too: without priors and with a fixed board shape.
+struct ComparableProblem {
   RefinedMinimum ours;
   ReprojectionProblem problem;
-  BoardState start;  ///< with the board as bent as at our minimum
+  BoardState start;  ///< with the board warp of our minimum
 };
 
-LikeWithLike like_with_like(const CheckedProblem& p, const Session& session) {
-  LikeWithLike like;
+ComparableProblem comparable_problem(const CheckedProblem& p, const Session& session) {
+  ComparableProblem like;
   like.start = p.start;
   like.start.warp_m = p.state.warp_m;
   like.problem = p.problem;
@@ -58,19 +58,20 @@ LikeWithLike like_with_like(const CheckedProblem& p, const Session& session) {
     like.ours.cost_px2 = refine_minimum(p.observations, p.state, p.problem.held).cost_px2;
     return like;
   }
-  session.warn("mrcal is compared with the calibration " +
-               std::string(p.problem.priors.empty() ? "with the board's shape held where it is"
-                                                    : "without its prior, which mrcal has not"));
+  session.warn("mrcal is compared with a calibration " +
+               std::string(p.problem.priors.empty()
+                               ? "with the board warp fixed at its estimate"
+                               : "without the prior, which mrcal does not support"));
   like.ours = refine_minimum(
       p.observations, minimise_reprojection(p.observations, p.state, like.problem), p.problem.held);
   return like;
 }
 
-/// mrcal's solution beside ours, and what its Python says of the uncertainty.
+/// mrcal's solution compared with ours, and the uncertainty from mrcal's Python functions.
 struct MrcalAnswers {
   MrcalCheck solved;
   UncertaintyComparison propagated;
-  std::string failure;  ///< why its Python has no answer though it is there
+  std::string failure;  ///< why mrcal's Python functions failed although installed
 };
 
 std::vector<ToleranceCheck> gates_of(const MrcalComparison& solved,
@@ -93,8 +94,8 @@ std::vector<ToleranceCheck> gates_of(const MrcalComparison& solved,
   return gates;
 }
 
-/// Left out, with the reason, where the script is missing or the Python has no mrcal.
-MrcalAnswers ask_both(const CheckedProblem& p, const LikeWithLike& like) {
+/// Skipped, with the reason, if the script or mrcal's Python module is missing.
+MrcalAnswers ask_both(const CheckedProblem& p, const ComparableProblem& like) {
   const RefinedMinimum& ours = like.ours;
   MrcalAnswers answers;
   const double sigma = p.problem.pixel_sigma_px;
@@ -114,7 +115,7 @@ CheckSection part_of(const MrcalAnswers& answers, double vernier_ms, double reso
   part.json["max_projection_covariance_diff"] = nullptr;
   add_gates(fmt::format("against mrcal {}", mrcal_version()), "mrcal's",
             gates_of(solved.comparison, propagated), part);
-  if (!failure.empty()) part.failures.push_back("mrcal could not check it: " + failure);
+  if (!failure.empty()) part.failures.push_back("mrcal check failed: " + failure);
   const MrcalSolution& theirs = solved.solution;
   part.json["cost_relative_diff"] = solved.comparison.cost_relative_diff;
   part.json["mrcal_stopped_short_sigma"] = theirs.stopped_short_sigma;
@@ -126,7 +127,7 @@ CheckSection part_of(const MrcalAnswers& answers, double vernier_ms, double reso
   if (!propagated.absent.empty()) part.json["projection_reason"] = propagated.absent;
   if (!solved.restarted.empty()) {
     part.json["restarted"] = solved.restarted;
-    part.text += "  " + solved.restarted + "; it started again near our minimum\n";
+    part.text += "  " + solved.restarted + "; restarted near our minimum\n";
   }
   if (!propagated.absent.empty()) {
     part.text += "  projection and triangulation not compared: " + propagated.absent + "\n";
@@ -142,13 +143,13 @@ CheckSection part_of(const MrcalAnswers& answers, double vernier_ms, double reso
 CheckSection check_by_mrcal(const CheckedProblem& p, const Session& session) {
   CheckSection part;
   if (!mrcal_available()) {
-    part.reason = "this build has no libmrcal (Debian's libmrcal-dev, then build again)";
+    part.reason = "this build has no libmrcal (install Debian's libmrcal-dev and rebuild)";
   } else {
     bool possible = false;
     try {
       MrcalProblem(p.observations, p.start);
       possible = true;
-      const LikeWithLike like = like_with_like(p, session);
+      const ComparableProblem like = comparable_problem(p, session);
       const MrcalAnswers answers = ask_both(p, like);
       const BoardState& start = like.start;
       const Resolver resolver(p.observations, start, like.problem);
@@ -157,10 +158,10 @@ CheckSection check_by_mrcal(const CheckedProblem& p, const Session& session) {
                      cpu_ms([&] { resolver.resolve(); }));
     } catch (const Error& error) {
       part.reason = error.what();
-      if (possible) part.failures.push_back("mrcal could not check it: " + part.reason);
+      if (possible) part.failures.push_back("mrcal check failed: " + part.reason);
     }
   }
-  part.text = "mrcal was left out: " + part.reason + "\n";
+  part.text = "mrcal check skipped: " + part.reason + "\n";
   return part;
 }
 

@@ -12,20 +12,21 @@
 
 namespace vernier::cli {
 
-/// A calibration to be checked.
+/// A calibration to check.
 struct CheckedProblem {
   BoardObservations observations;  ///< without outliers
-  BoardState start;                ///< where every solver starts
-  BoardState state;                ///< what was calibrated
-  ReprojectionProblem problem;     ///< held parameters, priors, warp, σ
+  BoardState start;                ///< initial value of all solvers
+  BoardState state;                ///< the solution
+  ReprojectionProblem problem;     ///< fixed parameters, priors, warp, σ
   Eigen::MatrixXd bound;           ///< its minimum variance bound, full size
 };
 
-/// The same problem by mrcal: its parameters, covariance, projection and triangulation uncertainty
-/// and solving time beside ours, against the gates.
+/// Solves the same problem with mrcal and compares parameters, covariance, and projection and
+/// triangulation uncertainty with ours, with tolerances; also reports both solve times.
 CheckSection check_by_mrcal(const CheckedProblem& problem, const Session& session);
 
-/// Noisy copies of the calibration, solved again: errors against the covariance.
+/// Monte Carlo check: solves the calibration with simulated noise and compares the errors with the
+/// covariance.
 struct MonteCarloResult {
   int trials = 200, threads = 0;
   std::uint64_t seed = 1;

@@ -9,15 +9,15 @@
 
 namespace vernier::cli {
 
-/// One part of `vernier check`.
+/// One section of the output of `vernier check`.
 struct CheckSection {
-  Json json;                          ///< null where it could not be done
-  std::string text;                   ///< its table, or the line that says why there is none
-  std::string reason;                 ///< why there is none, else empty
-  std::vector<std::string> failures;  ///< gates that do not hold
+  Json json;                          ///< null if the check was skipped
+  std::string text;                   ///< the table, or a line with the reason why it was skipped
+  std::string reason;                 ///< why the check was skipped, otherwise empty
+  std::vector<std::string> failures;  ///< exceeded tolerances
 };
 
-/// A difference and how large it may be. One that is not a number does not hold.
+/// A difference and its tolerance. NaN exceeds any tolerance.
 struct ToleranceCheck {
   std::string what, key, where;
   double value = 0, limit = 0;
@@ -25,8 +25,8 @@ struct ToleranceCheck {
   bool holds() const { return value <= limit; }
 };
 
-/// Adds a table of the gates, its first line `title`, their values under their keys, and a failure
-/// for each that does not hold, as "WHAT differ from OTHER by …".
+/// Adds a table of the differences with the first line `title`, their values under their JSON keys,
+/// and a failure "WHAT differ from OTHER by …" for each one above its tolerance.
 void add_gates(const std::string& title,
                const std::string& other,
                const std::vector<ToleranceCheck>& gates,

@@ -51,7 +51,7 @@ std::vector<CombineInput> load(const CombineArguments& options, Session& session
       continue;
     }
     RigFile file = read_rig(find_rig(name));
-    for (const std::string& warning : file.warnings) {  // its doubts come with the result
+    for (const std::string& warning : file.warnings) {  // stored warnings come with the result
       if (!warning.starts_with(stored_warning_prefix(find_rig(name).string())))
         session.warn(warning);
     }
@@ -69,26 +69,27 @@ std::string input_table(const Combination& combination) {
   }
   std::string text =
       fmt::format("{:<{}} {:>15} {:>10} {:>5} {:>8} {:>10}  {}\n", "input", width, "kind", "chi²",
-                  "dof", "clusters", "p", "most against what stood before");
+                  "dof", "clusters", "p", "largest inconsistency with previous inputs");
   for (const CombinedInput& input : combination.inputs) {
     const PriorConsistency& a = input.agreement;
     text += fmt::format("{:<{}} {:>15} ", input.name, width, input.kind);
-    const std::string out = input.used ? "" : "LEFT OUT: ";
+    const std::string excluded = input.used ? "" : "EXCLUDED: ";
     if (&input == &combination.inputs.front()) {
-      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  stands first\n", "", "", "", "");
+      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  first input\n", "", "", "", "");
     } else if (a.dof == 0) {
-      text += fmt::format("{:>10} {:>5} {:>8} {:>10}  {}{}\n", "", "", "", "", out, a.description);
+      text +=
+          fmt::format("{:>10} {:>5} {:>8} {:>10}  {}{}\n", "", "", "", "", excluded, a.description);
     } else {
-      text += fmt::format("{:>10.1f} {:>5} {:>8} {:>10.2g}  {}{:.1f} sigma where {}\n", a.chi2,
+      text += fmt::format("{:>10.1f} {:>5} {:>8} {:>10.2g}  {}{:.1f} sigma along {}\n", a.chi2,
                           a.dof, a.clusters > 0 ? fmt::format("{}", a.clusters) : "-", a.p_value,
-                          out, a.in_sigma, a.description);
+                          excluded, a.in_sigma, a.description);
     }
   }
   if (by_f) {
     text +=
-        "(clusters: image pairs, or parts of them, from which the scatter of the pairs was "
-        "estimated; few of them make chi² large by chance, so p is of Fisher's F with clusters - 1 "
-        "degrees of freedom below)\n";
+        "(clusters: image pairs, or parts of them, used to estimate the covariance of the pairs; "
+        "chi² is inflated for few clusters, so p is from an F distribution with clusters - 1 "
+        "denominator degrees of freedom)\n";
   }
   return text;
 }
@@ -109,7 +110,7 @@ Json inputs_json(const Combination& combination) {
   return json;
 }
 
-/// What was known before any pairs, as a covariance of the combined rig.
+/// The covariance of the combined rig without any pairs.
 Eigen::MatrixXd covariance_before(const Combination& combination) {
   JointEvidence before = combination.evidence;
   before.pairs = {};
@@ -117,7 +118,7 @@ Eigen::MatrixXd covariance_before(const Combination& combination) {
       .estimate.covariance->matrix;
 }
 
-/// The parameter of a batch that drifted most, in standard deviations.
+/// The largest drift of a batch in standard deviations, with the index of its parameter.
 std::pair<double, std::size_t> worst_drift(const MonitoredBatch& batch) {
   std::pair<double, std::size_t> worst{0, 0};
   for (Eigen::Index i = 0; i < batch.offset.size(); ++i) {
@@ -131,13 +132,13 @@ std::pair<double, std::size_t> worst_drift(const MonitoredBatch& batch) {
 std::string drift_table(const std::vector<MonitoredBatch>& batches,
                         const std::vector<std::string>& names) {
   std::string text = fmt::format(
-      "drift, every batch alone against all together:\n{:<32} {:>8} {:>8} {:>9} {:>10}"
+      "drift of each batch relative to the combined solution:\n{:<32} {:>8} {:>8} {:>9} {:>10}"
       "  {}\n",
-      "batch", "pairs", "outliers", "rms px", "p", "largest drift of all parameters");
+      "batch", "pairs", "outliers", "rms px", "p", "parameter with the largest drift");
   for (const MonitoredBatch& batch : batches) {
     const auto [z, i] = worst_drift(batch);
     if (batch.is_all) {
-      text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  all there is\n", batch.name,
+      text += fmt::format("{:<32} {:>8} {:>8} {:>9.4f} {:>10.2g}  combined solution\n", batch.name,
                           batch.pairs, batch.outliers, batch.rms_px, batch.agreement.p_value);
       continue;
     }
@@ -150,7 +151,7 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
   return text;
 }
 
-/// One line a batch and parameter: batch,parameter,offset,sigma.
+/// One line per batch and parameter: batch,name,parameter,offset,sigma.
 void write_drift(const std::vector<MonitoredBatch>& batches,
                  const std::vector<std::string>& names,
                  const std::string& file) {
@@ -184,22 +185,22 @@ Json drift_json(const std::vector<MonitoredBatch>& batches) {
   return json;
 }
 
-void say_filter(const InformationFilterResult& filtered,
-                Json& json,
-                std::string& text,
-                Session& session) {
+void report_filter(const InformationFilterResult& filtered,
+                   Json& json,
+                   std::string& text,
+                   Session& session) {
   text += fmt::format(
-      "information filter: {} ends {:.2g} of the batch solution's standard deviations from it; "
-      "parameters and covariance above are the filter's, residuals and what the pairs brought the "
-      "batch solution's\n",
+      "information filter: {} differs most from the batch solution, by {:.2g} of its standard "
+      "deviations; parameters and covariance above are from the filter, residuals and information "
+      "gain from the batch solution\n",
       filtered.worst_parameter.empty() ? "no parameter" : filtered.worst_parameter,
       filtered.worst_in_sigma);
   constexpr double overconfident = 0.8;
   if (filtered.min_sigma_ratio < overconfident) {
-    session.warn(fmt::format(
-        "the filter states {:.2g} times the batch solution's sigma for {}: it takes noise for "
-        "white and its linearisations for exact",
-        filtered.min_sigma_ratio, filtered.min_parameter));
+    session.warn(
+        fmt::format("the filter's sigma is {:.2g} times the batch solution's for {}: the filter "
+                    "assumes white noise and exact linearisation",
+                    filtered.min_sigma_ratio, filtered.min_parameter));
   }
   json["information_filter"] = {{"worst_in_sigma", filtered.worst_in_sigma},
                                 {"worst_parameter", filtered.worst_parameter},
@@ -225,7 +226,7 @@ void run(const CombineArguments& options, Session& session) {
   std::string text = input_table(combination), tail;
   if (options.mode == "information") {
     const InformationFilterResult filtered = information_filter(inputs, combination, how);
-    say_filter(filtered, json, tail, session);
+    report_filter(filtered, json, tail, session);
     estimate.rig = filtered.rig;
     estimate.covariance = full_covariance({filtered.rig, filtered.covariance});
     estimate.covariance->kind = CovarianceKind::combined;
@@ -263,29 +264,29 @@ void run(const CombineArguments& options, Session& session) {
 
 void add_combine(CLI::App& app, Session& session) {
   auto o = std::make_shared<CombineArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "combine",
-               "one calibration from several: boards, batches of matched pairs, priors",
-               "vernier combine --prior datasheet.json monday.csv tuesday.csv -o rig.json\n"
-               "  vernier combine board.json monday.csv tuesday.csv --monitor --drift drift.csv "
-               "-o rig.json");
+  CLI::App* verb = add_verb(
+      app, session, "combine",
+      "combine board calibrations, batches of matched pairs and priors into one calibration",
+      "vernier combine --prior datasheet.json monday.csv tuesday.csv -o rig.json\n"
+      "  vernier combine board.json monday.csv tuesday.csv --monitor --drift drift.csv "
+      "-o rig.json");
   verb->add_option("INPUT", o->inputs,
-                   "rig files and pairs files (*.csv) in the order of time; the first rig file, or "
-                   "--prior, stands first")
+                   "rig files and pairs files (*.csv) in chronological order; --prior, or else the "
+                   "first rig file, is processed first")
       ->required();
-  verb->add_option("--prior", o->prior, "a rig file that stands before all others");
+  verb->add_option("--prior", o->prior, "rig file to process before all other inputs");
   verb->add_option("--mode", o->mode,
-                   "batch: all raw data as one problem; information: a filter that keeps a mean "
-                   "and a covariance only, with its distance from the batch solution")
+                   "batch: solve all raw data jointly; information: filter that keeps only mean "
+                   "and covariance, compared with the batch solution")
       ->check(CLI::IsMember({"batch", "information"}))
       ->capture_default_str();
   verb->add_flag("--keep-disagreeing", o->keep_disagreeing,
-                 "average in what disagrees with what stands before it (p below 1e-4)");
-  verb->add_flag("--keep-outliers", o->keep_outliers, "leave no pair out");
-  verb->add_flag("--monitor", o->monitor, "how the rig drifts from batch to batch");
-  verb->add_option("--drift", o->drift, "CSV of every batch's offsets (with --monitor)")
+                 "keep inputs that are inconsistent with the previous ones (p below 1e-4)");
+  verb->add_flag("--keep-outliers", o->keep_outliers, "do not reject outlier pairs");
+  verb->add_flag("--monitor", o->monitor, "report the drift of the rig from batch to batch");
+  verb->add_option("--drift", o->drift, "CSV file with the offsets of every batch (with --monitor)")
       ->needs("--monitor");
-  verb->add_flag("--no-evidence", o->no_evidence, "leave corners and pairs out of the rig file");
+  verb->add_flag("--no-evidence", o->no_evidence, "do not store corners and pairs in the rig file");
   verb->add_option("-o,--output", o->output, "rig file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

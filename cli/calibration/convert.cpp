@@ -24,7 +24,7 @@
 namespace vernier::cli {
 namespace {
 
-/// A camera farther than this from the first is likely in millimetres.
+/// A larger distance from the first camera suggests a file in millimetres.
 constexpr double far_m = 10;
 
 using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>;
@@ -52,13 +52,13 @@ RigFormat format_of(const std::vector<std::filesystem::path>& inputs, const std:
   for (const std::filesystem::path& input : inputs) {
     if (input_format(input) == format) continue;
     throw Error(input.string(),
-                fmt::format("is no {} file as {} is", name(format), inputs[0].string()),
-                "give files of one format, or --from");
+                fmt::format("is not a {} file like {}", name(format), inputs[0].string()),
+                "give files of one format, or set --from");
   }
   return format;
 }
 
-/// "left,right".
+/// Renames the cameras from a list such as "left,right".
 void rename(RigEstimate& estimate, const std::string& list) {
   if (list.empty()) return;
   std::vector<std::string> names;
@@ -67,11 +67,11 @@ void rename(RigEstimate& estimate, const std::string& list) {
   try {
     rename_cameras(estimate, names);
   } catch (const Error& error) {
-    throw Error("--names " + list, error.fault(), error.remedy() + ", with commas between");
+    throw Error("--names " + list, error.fault(), error.remedy() + ", separated by commas");
   }
 }
 
-/// The inputs and what lies beside them and is read with them (COLMAP's files).
+/// The inputs and the files read along with them (COLMAP).
 std::vector<std::filesystem::path> files_read(RigFormat from,
                                               std::vector<std::filesystem::path> inputs) {
   if (from == RigFormat::vernier) inputs[0] = find_rig(inputs[0].string());
@@ -85,19 +85,19 @@ std::vector<std::filesystem::path> files_read(RigFormat from,
   return inputs;
 }
 
-/// ConvertArguments that say what the input itself says.
+/// Throws Error for options whose value the input already contains.
 void check_options(const ConvertArguments& options, RigFormat from) {
   if (!options.size.empty() && from != RigFormat::opencv) {
-    throw Error("--size", fmt::format("the files of {} say how large the images are", name(from)),
+    throw Error("--size", fmt::format("{} files contain the image size", name(from)),
                 "leave it out");
   }
   if (options.unit_m != 1 && from == RigFormat::vernier) {
-    throw Error("--unit-m", "a rig.json is in metres", "leave it out");
+    throw Error("--unit-m", "rig.json files are in metres", "leave it out");
   }
 }
 
-/// COLMAP's files have fixed names: those of a reconstruction must not be lost to a rig's.
-void spare_reconstruction(const NamedContents& files) {
+/// COLMAP files have fixed names: do not overwrite those of a reconstruction.
+void check_no_reconstruction(const NamedContents& files) {
   const std::filesystem::path folder = files[0].first.parent_path();
   bool reconstruction = false;
   for (const char* name : {"cameras.bin", "images.bin", "rigs.txt", "rigs.bin"}) {
@@ -108,12 +108,12 @@ void spare_reconstruction(const NamedContents& files) {
     reconstruction = reconstruction || read_whole(file) != content;
   }
   if (reconstruction) {
-    throw Error(folder.string(), "holds a reconstruction, whose files would be replaced",
-                "name another folder");
+    throw Error(folder.string(), "contains a COLMAP reconstruction that would be overwritten",
+                "give another folder");
   }
 }
 
-/// All files or none; a folder that the output names by its slash is made for them.
+/// Writes all files or none; creates the output folder if the output ends in a slash.
 void write_all(const NamedContents& files, const std::filesystem::path& output) {
   const std::filesystem::path folder = files[0].first.parent_path();
   std::error_code error;
@@ -126,21 +126,21 @@ void write_all(const NamedContents& files, const std::filesystem::path& output) 
   }
 }
 
-void say_all(const ReadRig& read,
-             RigFormat from,
-             const std::vector<std::string>& losses,
-             const Session& session) {
-  for (const std::string& note : read.notes) session.say(note);
+void report_notes(const ReadRig& read,
+                  RigFormat from,
+                  const std::vector<std::string>& losses,
+                  const Session& session) {
+  for (const std::string& note : read.notes) session.info(note);
   const Rig& rig = read.estimate.rig;
   for (std::size_t i = 0; from != RigFormat::vernier && i < rig.cameras.size(); ++i) {
     const double distance_m = rig.T_camera_first[i].t.norm();
     if (distance_m < far_m) continue;
     session.warn(
-        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in "
-                    "millimetres, add --unit-m 0.001",
+        fmt::format("camera \"{}\" is {:.4g} m from the first; if the file is in millimetres, add "
+                    "--unit-m 0.001",
                     rig.cameras[i].name, distance_m));
   }
-  for (const std::string& line : losses) session.say(line);
+  for (const std::string& line : losses) session.info(line);
 }
 
 void run(const ConvertArguments& options, Session& session) {
@@ -155,10 +155,10 @@ void run(const ConvertArguments& options, Session& session) {
   const auto files = files_of(to, read.estimate, options.output);
   for (const auto& [file, content] : files)
     check_output_is_not_input(files_read(from, inputs), file);
-  if (to == RigFormat::colmap) spare_reconstruction(files);
+  if (to == RigFormat::colmap) check_no_reconstruction(files);
   write_all(files, options.output);
   const std::vector<std::string> losses = lost(to, read.estimate);
-  say_all(read, from, losses, session);
+  report_notes(read, from, losses, session);
 
   Json cameras = Json::array(), written = Json::array();
   std::string text;
@@ -188,25 +188,26 @@ void run(const ConvertArguments& options, Session& session) {
 void add_convert(CLI::App& app, Session& session) {
   auto o = std::make_shared<ConvertArguments>();
   CLI::App* verb = add_verb(
-      app, session, "convert", "rigs to and from mrcal, OpenCV, Kalibr, ROS and COLMAP",
+      app, session, "convert",
+      "convert rigs between Vernier, mrcal, OpenCV, Kalibr, ROS and COLMAP",
       "vernier convert rig.json --to mrcal -o models/\n"
       "  vernier convert models/left.cameramodel models/right.cameramodel -o rig.json\n"
       "  vernier convert intrinsics.yml extrinsics.yml --size 640x480 --unit-m 0.001 -o rig.json");
   const std::string formats = std::string("one of ") + rig_format_names;
   verb->add_option("input", o->inputs,
-                   "file, or files that are one rig (mrcal and ROS: one a camera, the left one "
-                   "first), or COLMAP's folder")
+                   "file or files of one rig (mrcal and ROS: one per camera, left first), or a "
+                   "COLMAP folder")
       ->required();
   verb->add_option("-o,--output", o->output,
-                   "file, or a folder (with a slash at its end) for formats of several files")
+                   "file, or folder (with a trailing slash) for formats with several files")
       ->required();
-  verb->add_option("--from", o->from, formats + "; by name and content unless given");
-  verb->add_option("--to", o->to, formats + "; by the output's name unless given");
+  verb->add_option("--from", o->from, formats + " (default: from file name and content)");
+  verb->add_option("--to", o->to, formats + " (default: from the output name)");
   verb->add_option("--model", o->model,
-                   "camera model, instead of the smallest that holds the input exactly");
-  verb->add_option("--names", o->names, "of the cameras, like left,right");
-  verb->add_option("--size", o->size, "of the images, like 640x480, where an OpenCV file lacks it");
-  verb->add_option("--unit-m", o->unit_m, "the input's unit of length in metres (0.001: mm)")
+                   "camera model (default: the smallest that represents the input exactly)");
+  verb->add_option("--names", o->names, "camera names, such as left,right");
+  verb->add_option("--size", o->size, "image size, such as 640x480, if missing in an OpenCV file");
+  verb->add_option("--unit-m", o->unit_m, "unit of length of the input, in metres (0.001: mm)")
       ->check(finite_and_positive)
       ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

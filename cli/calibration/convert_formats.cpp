@@ -31,12 +31,12 @@ namespace {
 constexpr std::array<RigFormat, 6> formats{RigFormat::vernier, RigFormat::mrcal, RigFormat::opencv,
                                            RigFormat::kalibr,  RigFormat::ros,   RigFormat::colmap};
 
-/// Whether a line of the text begins with the key.
+/// Whether a line of the text starts with the key.
 bool has_key(const std::string& text, const std::string& key) {
   return text.rfind(key + ":", 0) == 0 || text.find("\n" + key + ":") != std::string::npos;
 }
 
-/// What tells the three kinds of YAML apart.
+/// Distinguishes the three YAML formats by their keys.
 RigFormat yaml_format(const std::filesystem::path& file) {
   const std::string text = read_whole(file);
   if (text.find("opencv-matrix") != std::string::npos) return RigFormat::opencv;
@@ -45,20 +45,20 @@ RigFormat yaml_format(const std::filesystem::path& file) {
     return RigFormat::ros;
   }
   if (text.rfind("%YAML:", 0) == 0) return RigFormat::opencv;
-  throw Error(file.string(), "its keys are not those of OpenCV's, Kalibr's or ROS's files",
-              "say what it is with --from opencv, kalibr or ros");
+  throw Error(file.string(), "unknown format: its keys match no OpenCV, Kalibr or ROS file",
+              "set --from to opencv, kalibr or ros");
 }
 
 const std::filesystem::path& only(const std::vector<std::filesystem::path>& inputs,
                                   std::string_view format) {
   if (inputs.size() > 1) {
-    throw Error(inputs[1].string(), fmt::format("a rig of {} is one input", format),
-                "name one; mrcal's, OpenCV's and ROS's may be several");
+    throw Error(inputs[1].string(), fmt::format("a {} rig is a single input", format),
+                "give one; only mrcal, OpenCV and ROS rigs may have several files");
   }
   return inputs[0];
 }
 
-/// A rig.json keeps all it knows as long as its models stay.
+/// Keeps everything in a rig.json unless a camera model changes.
 ReadRig read_vernier(const std::filesystem::path& input, const ImportOptions& options) {
   RigFile file = read_rig(find_rig(input.string()));
   ReadRig read{std::move(file.estimate), std::move(file.warnings)};
@@ -73,7 +73,7 @@ ReadRig read_vernier(const std::filesystem::path& input, const ImportOptions& op
   }
   if (changed) {
     const bool known = read.estimate.covariance || read.estimate.covariance_mvb;
-    if (known) read.notes.push_back("the covariance is of another model and is left behind");
+    if (known) read.notes.push_back("the covariance belongs to another model and is dropped");
     read.estimate = {read.estimate.rig, {}, {}, {}, {}, read.estimate.other_keys};
   }
   return read;
@@ -118,8 +118,8 @@ RigFormat rig_format(const std::string& text, const std::string& option) {
   for (const RigFormat format : formats) {
     if (name(format) == text) return format;
   }
-  throw Error(option, "there is no format \"" + text + "\"",
-              std::string("known are ") + rig_format_names);
+  throw Error(option, "unknown format \"" + text + "\"",
+              std::string("supported: ") + rig_format_names);
 }
 
 RigFormat input_format(const std::filesystem::path& input) {
@@ -128,12 +128,12 @@ RigFormat input_format(const std::filesystem::path& input) {
   if (file == "cameras.txt" || file == "rig_config.json") return RigFormat::colmap;
   if (std::filesystem::is_directory(input)) {
     if (std::filesystem::exists(input / "cameras.txt")) return RigFormat::colmap;
-    throw Error(input.string(), "is a folder without a cameras.txt", "name the files in it");
+    throw Error(input.string(), "is a folder without a cameras.txt", "give files inside it");
   }
   if (end == ".cameramodel") return RigFormat::mrcal;
   if (end == ".yaml" || end == ".yml") return yaml_format(input);
   if (end == ".json" || end.empty()) return RigFormat::vernier;
-  throw Error(input.string(), "its name does not say what it is",
+  throw Error(input.string(), "cannot tell the format from the file name",
               std::string("add --from, one of ") + rig_format_names);
 }
 
@@ -142,7 +142,7 @@ RigFormat output_format(const std::filesystem::path& output) {
   if (output.filename() == "cameras.txt") return RigFormat::colmap;
   if (end == ".json") return RigFormat::vernier;
   if (end == ".cameramodel") return RigFormat::mrcal;
-  throw Error(output.string(), "its name does not say which format is wanted",
+  throw Error(output.string(), "cannot tell the output format from the file name",
               std::string("add --to, one of ") + rig_format_names);
 }
 
@@ -186,8 +186,8 @@ std::vector<std::pair<std::filesystem::path, std::string>> files_of(
   const bool beside = format == RigFormat::colmap && output.filename() == "cameras.txt";
   if (files.size() > 1 && !folder && !beside) {
     throw Error(output.string(),
-                fmt::format("{} keeps this rig in {} files", name(format), files.size()),
-                "name a folder, with a slash at its end if it is not there yet");
+                fmt::format("{} stores this rig in {} files", name(format), files.size()),
+                "give a folder, with a trailing slash if it does not exist yet");
   }
   for (const ExportedFile& file : files) {
     named.emplace_back(folder   ? output / file.name
@@ -202,22 +202,22 @@ std::vector<std::string> lost(RigFormat format, const RigEstimate& estimate) {
   std::vector<std::string> lines;
   if (format == RigFormat::vernier) return lines;
   const auto add = [&](const std::string& what) {
-    lines.push_back(fmt::format("{} has no place for {}", name(format), what));
+    lines.push_back(fmt::format("{} cannot store {}", name(format), what));
   };
   if (estimate.covariance || estimate.covariance_mvb) {
-    add("the covariance; only rig.json keeps how wrong the rig is");
+    add("the covariance; only rig.json stores uncertainty");
   }
   if (estimate.calibration || estimate.evidence) {
-    add("what the rig was calibrated from (calibration, evidence)");
+    add("the calibration data (calibration, evidence)");
   }
-  if (!estimate.other_keys.empty()) add("the keys of the file that are not Vernier's");
+  if (!estimate.other_keys.empty()) add("additional keys of the file");
   const Rig& rig = estimate.rig;
   for (std::size_t i = 0; format == RigFormat::opencv && i < rig.cameras.size(); ++i) {
     if (rig.cameras[i].name == default_camera_name(i)) continue;
     add(fmt::format("names: camera \"{}\" is number {}", rig.cameras[i].name, i + 1));
   }
   if (format == RigFormat::ros && rig.cameras.size() > 2) {
-    add("the poses of three cameras or more: each file stands for its camera alone");
+    add("poses of more than two cameras: each file describes one camera only");
   }
   return lines;
 }

@@ -23,15 +23,15 @@ std::string_view name(RigFormat format);
 /// Throws Error (`option`) for a name that is none of the above.
 RigFormat rig_format(const std::string& name, const std::string& option);
 
-/// The format of an input by its name and, for .yaml and .yml, its keys. Throws Error where these
-/// do not say.
+/// The format of an input from its name and, for .yaml and .yml, its keys. Throws Error if
+/// undetermined.
 RigFormat input_format(const std::filesystem::path& input);
 
-/// The format of an output by its name: .json, .cameramodel, cameras.txt. Throws Error for all
+/// The format of an output from its name: .json, .cameramodel, cameras.txt. Throws Error for all
 /// others.
 RigFormat output_format(const std::filesystem::path& output);
 
-/// What was read, with what is to be said of it.
+/// The rig that was read, with notes for the user.
 struct ReadRig {
   RigEstimate estimate;
   std::vector<std::string> notes;
@@ -41,12 +41,12 @@ ReadRig read_rig_as(RigFormat format,
                     const std::vector<std::filesystem::path>& inputs,
                     const ImportOptions& options);
 
-/// The files of a rig, one of them named by `output` where one is enough and it is no folder. A
-/// folder is an existing one, or a name that ends in a slash.
+/// The file contents of a rig. A single file is named `output` unless that is a folder: an existing
+/// one, or a name with a trailing slash.
 std::vector<std::pair<std::filesystem::path, std::string>> files_of(
     RigFormat format, const RigEstimate& estimate, const std::filesystem::path& output);
 
-/// What `format` has no place for, one line each.
+/// The information that `format` cannot store, one line each.
 std::vector<std::string> lost(RigFormat format, const RigEstimate& estimate);
 
 }  // namespace vernier::cli

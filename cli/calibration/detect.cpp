@@ -30,9 +30,10 @@ Json corners_json(const BoardDetection& image) {
           {"refused_corners", refused}};
 }
 
-/// The board; lengths that do not matter to detection need not be given.
+/// The board; lengths that detection does not need are optional.
 BoardTarget shape_of(BoardInput input) {
-  const bool charuco = input.board.rfind("charuco:", 0) == 0;  // needs marker against square
+  const bool charuco =
+      input.board.rfind("charuco:", 0) == 0;  // needs the ratio of marker to square
   if (!(input.square_m > 0) && !charuco) input.square_m = 1;
   if (!(input.tag_m > 0)) input.tag_m = 1;
   return target_of(input);
@@ -45,17 +46,18 @@ void run(const DetectArguments& options, Session& session) {
   const ImageDetections found = detect_images(image_patterns(options.input), target);
   write_corners(found, target, options.output);
   Json used = Json::array(), refused = Json::array();
-  std::string text = fmt::format("{} boards found in {} frames, written to {}\n", found.used.size(),
-                                 frames_of(found.observations).size(), options.output);
+  std::string text =
+      fmt::format("{} boards detected in {} frames, written to {}\n", found.used.size(),
+                  frames_of(found.observations).size(), options.output);
   for (const BoardDetection& image : found.used) {
     used.push_back(corners_json(image));
     if (image.rejected_corners.empty()) continue;
-    text += fmt::format("  {}: {} corners used; not used: {}\n", image.image.string(),
+    text += fmt::format("  {}: {} corners used; rejected: {}\n", image.image.string(),
                         image.ids.size(), rejected_corners_text(image));
   }
   for (const BoardDetection& image : found.refused) {
     refused.push_back({{"image", image.image.string()}, {"reason", image.reason}});
-    text += fmt::format("  not used: {}: {}\n", image.image.string(), image.reason);
+    text += fmt::format("  rejected: {}: {}\n", image.image.string(), image.reason);
   }
   session.result({{"boards", found.used.size()},
                   {"frames", frames_of(found.observations).size()},
@@ -71,7 +73,7 @@ void run(const DetectArguments& options, Session& session) {
 void add_detect(CLI::App& app, Session& session) {
   auto options = std::make_shared<DetectArguments>();
   CLI::App* verb =
-      add_verb(app, session, "detect", "find the corners of a board in images",
+      add_verb(app, session, "detect", "detect board corners in images",
                "vernier detect --left 'left*.png' --right 'right*.png' --board 9x6 "
                "-o corners.vnl\n"
                "  vernier detect --left 'left*.png' --board charuco:8x6 --square-m 0.03 "

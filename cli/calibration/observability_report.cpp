@@ -17,9 +17,9 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double range_m = 3;  // where disparity and depth are told
+constexpr double range_m = 3;  // at which disparity and depth uncertainty are reported
 
-/// Uncertainty downstream of a covariance of the rig.
+/// Effect of the rig's covariance on disparity and depth.
 struct Downstream {
   double vertical_disparity_px = 0, depth_m = 0;
 };
@@ -42,18 +42,19 @@ ObservabilityReport report_observability(const JointCalibration& joint,
   const Downstream before = downstream(rig, covariance_before);
   const Downstream after = downstream(rig, joint.estimate.covariance->matrix);
   std::string& text = report.text;
-  text += "what the pairs brought (standard deviation after over before; 1 is nothing):\n";
+  text += "information from the pairs (ratio of standard deviations after / before; 1: none):\n";
   for (const ObservedDirection& d : o.directions) {
     text += fmt::format("  {:8.4f}  {}\n", d.sd_ratio, d.description);
   }
   text += fmt::format(
-      "the pairs determine {:.1f} of {} parameters: {} directions are known at least twice as well "
-      "as before, {} are as they were\n",
+      "the pairs determine {:.1f} of {} parameters: sigma at least halved in {} directions, "
+      "unchanged in {}\n",
       std::max(0.0, o.from_data), o.directions.size(), o.improved, o.unchanged);
-  text += fmt::format("noise of the pairs: {:.3g} times what they state\n", joint.pair_sigma_scale);
+  text += fmt::format("noise of the pairs: {:.3g} times the value in the pairs file\n",
+                      joint.pair_sigma_scale);
   text += fmt::format(
-      "no pair sees the length of the baseline: its sigma, by the bound, was {:.4g} mm and is "
-      "{:.4g} mm; all depths scale with it\n",
+      "the baseline length is not observable from pairs: its sigma (bound) is {:.4g} mm before and "
+      "{:.4g} mm after; all depths scale with it\n",
       1e3 * o.baseline_sd_before_m, 1e3 * o.baseline_sd_after_m);
   text += fmt::format(
       "at {:g} m: vertical disparity {:.3g} px rms before, {:.3g} px after; depth sigma {:.3g} m "

@@ -9,8 +9,8 @@
 
 namespace vernier::cli {
 
-/// What matched pairs brought to a rig beyond what was known before them, in words and figures: the
-/// spectrum, the scale, vertical disparity and depth before and after.
+/// Information gained from matched pairs relative to the prior, as text and JSON: spectrum, scale,
+/// vertical disparity and depth before and after.
 struct ObservabilityReport {
   std::string text;
   Json json;

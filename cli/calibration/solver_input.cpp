@@ -23,23 +23,22 @@ namespace {
 
 double number(const std::string& text, const std::string& option) {
   if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
-  throw Error(option, fmt::format("\"{}\" is not a finite number", text),
-              "write it like left.ax=1");
+  throw Error(option, fmt::format("\"{}\" is not a finite number", text), "use the form left.ax=1");
 }
 
-/// "left.ax=1" or "left.ax".
+/// Parses "left.ax=1" or "left.ax".
 HeldParameter held_parameter(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) return {text, {}};
   return {text.substr(0, equals), number(text.substr(equals + 1), "--hold " + text)};
 }
 
-/// "left.f_px=525,3".
+/// Parses "left.f_px=525,3".
 ParameterPrior known_parameter(const std::string& text) {
   const std::size_t equals = text.find('='), comma = text.find(',');
   const std::string option = "--know " + text;
   if (equals == std::string::npos || comma == std::string::npos || comma < equals) {
-    throw Error(option, "is not NAME=VALUE,SIGMA", "write it like left.f_px=525,3");
+    throw Error(option, "is not NAME=VALUE,SIGMA", "use the form left.f_px=525,3");
   }
   return {text.substr(0, equals), number(text.substr(equals + 1, comma - equals - 1), option),
           number(text.substr(comma + 1), option)};
@@ -57,25 +56,25 @@ std::vector<CameraModel> models_named(const std::string& text) {
 
 void add_solver_options(CLI::App* verb, SolverInput& input) {
   verb->add_option("--model", input.model,
-                   "pinhole, radial1, opencv4, opencv5, opencv8 or fisheye4; one, or one a camera "
-                   "with commas between")
+                   "lens model: pinhole, radial1, opencv4, opencv5, opencv8 or fisheye4; one for "
+                   "all cameras, or one per camera separated by commas")
       ->capture_default_str();
   verb->add_option("--pixel-sigma", input.pixel_sigma_px,
-                   "noise of a pixel coordinate (else estimated from the residuals)")
+                   "noise of a pixel coordinate (default: estimated from the residuals)")
       ->check(finite_and_positive);
   verb->add_option("--hold", input.held,
-                   "do not estimate this parameter: NAME keeps its start, NAME=VALUE (repeatable)")
+                   "fix a parameter: NAME at its initial value, or NAME=VALUE (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--know", input.known,
-                   "this parameter is known beforehand: NAME=VALUE,SIGMA (repeatable)")
+                   "Gaussian prior of a parameter: NAME=VALUE,SIGMA (repeatable)")
       ->expected(1)
       ->delimiter('\0')
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--prior", input.prior,
-                   "a rig file whose covariance says what is known of the parameters it lists");
-  verb->add_flag("--warp", input.warp, "estimate how the board is bent as well");
-  verb->add_flag("--keep-outliers", input.keep_outliers, "leave no corner out");
+                   "rig file whose parameters and covariance are used as a prior");
+  verb->add_flag("--warp", input.warp, "also estimate the board warp");
+  verb->add_flag("--keep-outliers", input.keep_outliers, "do not reject outlier corners");
 }
 
 GaussianRigPrior usable_prior(const RigFile& file, const std::string& place) {

@@ -14,9 +14,9 @@
 
 namespace vernier::cli {
 
-/// What the command line says of how to solve. The verbs that calibrate share it.
+/// Solver settings from the command line. Shared by the calibrating verbs.
 struct SolverInput {
-  std::string model = "radial1";  ///< one, or one a camera with commas between
+  std::string model = "radial1";  ///< one, or one per camera separated by commas
   double pixel_sigma_px = 0;
   std::vector<std::string> held;   ///< NAME or NAME=VALUE
   std::vector<std::string> known;  ///< NAME=VALUE,SIGMA
@@ -24,18 +24,18 @@ struct SolverInput {
   bool warp = false, keep_outliers = false;
 };
 
-/// `input` must outlive the parsing.
+/// Adds the solver options. `input` must outlive the parsing.
 void add_solver_options(CLI::App* verb, SolverInput& input);
 
-/// The names of all these.
+/// The names of all these options.
 inline constexpr std::array solver_options{"--model", "--pixel-sigma", "--hold",         "--know",
                                            "--prior", "--warp",        "--keep-outliers"};
 
-/// Throws Error naming the option that cannot be read.
+/// Converts to calibration options. Throws Error naming an option that cannot be parsed.
 CalibrationOptions calibration_options(const SolverInput& input, Session& session);
 
-/// What a rig file says as a prior. Throws Error, naming the file at `place`, where it can be none:
-/// no covariance, or one that is not positive semi-definite or is singular.
+/// The prior from a rig file. Throws Error, naming the file `place`, if it has no covariance or one
+/// that is not positive semi-definite or is singular.
 GaussianRigPrior usable_prior(const RigFile& file, const std::string& place);
 
 }  // namespace vernier::cli

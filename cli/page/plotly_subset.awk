@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # awk -f plotly_subset.awk pass=1 plotly.js pass=2 LICENCE plotly.js
-#
-# Of a plotly.js that browserify bundled, what the report's page draws with: scatter, bar, heatmap
-# and contour. The bundle is an object of modules, number: [function, {name: number}]; those that
-# its entry does not reach any more are left out. A bundle of another make stays whole.
+# Extracts what the report page needs (scatter, bar, heatmap, contour) from a plotly.js bundled with
+# browserify. The bundle is an object of modules, number: [function, {name: number}]; modules that are
+# no longer reachable from its entry are removed. Other bundles are left unchanged.
 
 function is_edge(line) {  # between two modules
   return line ~ /^},\{.*\}\],[0-9]+:\[function\(_dereq_,module,exports\)\{$/
@@ -58,7 +57,7 @@ pass == 1 {
   if (module && is_edge($0)) {
     uses[module] = uses_before($0)
     module = number_after($0)
-  } else if (module && is_end($0)) {  # bundles within it have ends too: the last one counts
+  } else if (module && is_end($0)) {  # nested bundles have ends too: use the last one
     uses[module] = uses_before($0)
     entry = $0
     gsub(/^.*\(|\)$/, "", entry)
@@ -73,7 +72,7 @@ pass == 1 {
   whole = !last
   if (!whole) find_reached()
 }
-/^\/\/.*(Copyright|License)/ { sub(/^\/\//, "//!") }  # what //! begins, esbuild keeps
+/^\/\/.*(Copyright|License)/ { sub(/^\/\//, "//!") }  # esbuild keeps comments that begin with //!
 FNR == 1 && /^\/\*\*$/ { sub(/\*$/, "!") }
 whole { print; next }
 !module && match($0, first) {

@@ -20,9 +20,9 @@ GreyLevels read_of(const Camera& camera,
   if (Eigen::Vector2i(image.width_px, image.height_px) != camera.size_px) {
     throw Error(
         file,
-        fmt::format("its size {}x{} is not that of the camera \"{}\" of {}, {}x{}", image.width_px,
+        fmt::format("image size {}x{} differs from camera \"{}\" of {}, {}x{}", image.width_px,
                     image.height_px, camera.name, rig_name, camera.size_px[0], camera.size_px[1]),
-        "give images as the rig's cameras take them, or the rig of these");
+        "give unmodified images of this rig's cameras, or the rig that took these");
   }
   return image;
 }
@@ -32,7 +32,7 @@ GreyLevels read_of(const Camera& camera,
 GreyLevels read_image(const std::string& file, Session& session) {
   std::string remark;
   GreyLevels image = read_grey_levels(file, &remark);
-  if (!remark.empty()) session.say(file + ": " + remark);
+  if (!remark.empty()) session.info(file + ": " + remark);
   return image;
 }
 
@@ -40,7 +40,7 @@ void check_two_images(const RectifiedPair& pair,
                       const std::string& left,
                       const std::string& right) {
   if (pair.left.values != pair.right.values) return;
-  throw Error(right, "it is the same image as " + left,
+  throw Error(right, "same image as " + left,
               "give the image that the right camera took at the same time");
 }
 
@@ -51,8 +51,8 @@ RectifiedPair read_camera_images(const Rig& rig,
                                  Session& session) {
   if (rig.cameras.size() != 2) {
     throw Error(rig_name,
-                fmt::format("it is a rig of {} cameras; a pair is rectified", rig.cameras.size()),
-                "give the rig of the two that took the images");
+                fmt::format("the rig has {} cameras; rectification needs two", rig.cameras.size()),
+                "give the two-camera rig that took the images");
   }
   RectifiedPair raw;
   raw.left = read_of(rig.cameras[0], rig_name, left, session);

@@ -11,14 +11,14 @@
 
 namespace vernier::cli {
 
-/// An image as grey levels; what was done to colour or more than 8 bits is said.
+/// Reads an image as grey levels; reports conversions from colour or from more than 8 bits.
 GreyLevels read_image(const std::string& file, Session& session);
 
-/// Throws Error where both images are the same one.
+/// Throws Error if both images are identical.
 void check_two_images(const RectifiedPair& pair, const std::string& left, const std::string& right);
 
-/// The raw images of a pair of cameras. Throws Error where the rig (`rig_name`) is none, a file is
-/// not of its camera's size or both are the same image.
+/// Reads the raw images of a stereo pair. Throws Error if the rig (`rig_name`) does not have two
+/// cameras, an image size differs from its camera's, or both images are identical.
 RectifiedPair read_camera_images(const Rig& rig,
                                  const std::string& rig_name,
                                  const std::string& left,

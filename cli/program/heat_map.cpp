@@ -18,7 +18,7 @@ namespace {
 constexpr double left = 62, top = 46, width = 560, bar = 18, gap = 24;
 constexpr int shades = 128;
 
-/// Dark blue over green to yellow in even steps of lightness (five anchors of viridis).
+/// Five anchor colours of viridis: dark blue, green, yellow, with uniform lightness steps.
 std::string colour(double share) {
   static constexpr std::array<std::array<double, 3>, 5> anchors{
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
@@ -46,7 +46,7 @@ std::string escaped(const std::string& words) {
   return out;
 }
 
-/// 1, 2 or 5 times a power of ten, about a fifth of the extent; 1 where there is none.
+/// Tick step: 1, 2 or 5 times a power of ten, about a fifth of the extent; 1 if the extent is 0.
 double nice_step(double extent) {
   if (!(extent > 0)) return 1;
   const double rough = extent / 5, power = std::pow(10, std::floor(std::log10(rough)));
@@ -54,8 +54,8 @@ double nice_step(double extent) {
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
-/// From values to shares of the colour scale; logarithmic where a few large values would leave
-/// everything else in one colour.
+/// Maps values to [0, 1] on the colour scale; logarithmic if a few large values would otherwise use
+/// up the scale.
 struct Scale {
   double least, greatest;
 
@@ -81,7 +81,7 @@ Scale scale_of(const std::vector<double>& values) {
   return scale;
 }
 
-/// Cells of one row, neighbours of one shade drawn as one.
+/// Draws the cells of one row; merges neighbours of the same shade.
 std::string row_of_cells(const HeatMap& map, std::size_t row, double height, const Scale& scale) {
   const std::size_t columns = map.x_px.size();
   const double w = width / columns, h = height / map.y_px.size();
@@ -102,7 +102,7 @@ std::string row_of_cells(const HeatMap& map, std::size_t row, double height, con
 
 std::string axes(const HeatMap& map, double height) {
   std::string svg;
-  // A cell's middle is its pixel, so the outer pixels stand half a cell inside the frame.
+  // A cell is centred on its pixel, so the outer pixels are half a cell inside the frame.
   const auto place = [](const std::vector<double>& at, double value, double start, double length) {
     const double cell = length / at.size();
     const double extent = at.back() - at.front();
@@ -152,8 +152,9 @@ std::string colour_bar(const HeatMap& map, double height, const Scale& scale) {
 std::string heat_map_svg(const HeatMap& map) {
   const std::size_t columns = map.x_px.size(), rows = map.y_px.size();
   if (columns < 2 || rows < 2 || map.values.size() != columns * rows) {
-    throw Error("heat map", "its values are not columns x rows of at least 2x2",
-                "give one value a cell");
+    throw Error("heat map",
+                "the number of values is not columns x rows, or the grid is smaller than 2x2",
+                "give one value per cell");
   }
   const double height =
       width * (map.y_px.back() - map.y_px.front() + 1) / (map.x_px.back() - map.x_px.front() + 1);
@@ -173,7 +174,7 @@ std::string heat_map_svg(const HeatMap& map) {
   if (std::isfinite(scale.least)) svg += colour_bar(map, height, scale);
   const bool missing =
       std::any_of(map.values.begin(), map.values.end(), [](double v) { return !std::isfinite(v); });
-  if (missing) svg += text(left + width, top + height + 36, "end", "grey: no ray, or not seen");
+  if (missing) svg += text(left + width, top + height + 36, "end", "grey: no ray or not visible");
   return svg + "</svg>\n";
 }
 

@@ -9,7 +9,7 @@ namespace vernier::sim::internal {}
 
 namespace vernier::cli {
 
-// The program uses all of the library, internals included.
+// The program uses the whole library, including internals.
 using namespace vernier::internal;
 using namespace vernier::stereo;
 using namespace vernier::stereo::internal;

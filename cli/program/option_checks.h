@@ -10,9 +10,9 @@
 
 namespace vernier::cli {
 
-/// Checks of options for CLI11: what is wrong with the text, or nothing.
+/// Option validators for CLI11: return an error message, or an empty string if valid.
 
-/// CLI::NonNegativeNumber and CLI::PositiveNumber let "nan" and "inf" pass.
+/// CLI::NonNegativeNumber and CLI::PositiveNumber accept "nan" and "inf".
 std::string finite_and_not_negative(const std::string& text);
 std::string finite_and_positive(const std::string& text);
 std::string finite(const std::string& text);
@@ -22,11 +22,11 @@ std::string png_name(const std::string& text);
 
 std::string not_empty(const std::string& text);
 
-/// Without it -1 would wrap round to the largest seed.
+/// Without this check, -1 would wrap around to the largest seed.
 std::string not_negative(const std::string& text);
 
-/// Throws Error for the first of the options that the command line gives: nothing would come of it.
-/// `why` says so, such as "a rig file says this itself".
+/// Throws Error for the first of the options given on the command line, because it would have no
+/// effect. `why` is the reason, such as "the rig file already defines it".
 void refuse_options(const CLI::App& verb,
                     std::span<const char* const> options,
                     const std::string& why,

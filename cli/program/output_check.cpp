@@ -11,8 +11,7 @@ void check_output_is_not_input(const std::vector<std::filesystem::path>& inputs,
   for (const std::filesystem::path& input : inputs) {
     std::error_code not_there;
     if (!std::filesystem::equivalent(input, output, not_there)) continue;
-    throw Error(output.string(), "is an input, which the output would replace",
-                "name another output");
+    throw Error(output.string(), "is an input and would be overwritten", "name another output");
   }
 }
 
@@ -24,7 +23,7 @@ void check_different(const std::string& option,
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
   };
   if (whole(file) != whole(other)) return;
-  throw Error(option, file.string() + " is the file of another output", "name another file");
+  throw Error(option, file.string() + " is already used by another output", "name another file");
 }
 
 }  // namespace vernier::cli

@@ -10,12 +10,12 @@
 
 namespace vernier::cli {
 
-/// Throws Error where writing `output` would replace one of the files that were read, by whatever
-/// name or link. Inputs that are not there are passed over.
+/// Throws Error if writing `output` would overwrite an input file, also through a link. Missing
+/// inputs are ignored.
 void check_output_is_not_input(const std::vector<std::filesystem::path>& inputs,
                                const std::filesystem::path& output);
 
-/// Throws Error where the file of `option` is, by whatever name, the file `other` too.
+/// Throws Error if the file of `option` and `other` are the same file, also through a link.
 void check_different(const std::string& option,
                      const std::filesystem::path& file,
                      const std::filesystem::path& other);

@@ -10,13 +10,13 @@
 
 namespace vernier::cli {
 
-/// From blue for 0 over green to red for 1, blue-green-red.
+/// Colour map: 0 is blue, 0.5 green, 1 red. Channel order BGR.
 cv::Scalar blue_to_red(double share);
 
-/// The bytes of a PNG.
+/// Encodes a picture as PNG.
 std::string png_of(const cv::Mat& picture);
 
-/// A picture as a PNG, which appears whole or not at all.
+/// Writes a picture as PNG, atomically.
 void write_png(const cv::Mat& picture, const std::filesystem::path& file);
 
 }  // namespace vernier::cli

@@ -23,7 +23,7 @@ Eigen::VectorXd deviations(const Eigen::MatrixXd& covariance) {
   return covariance.diagonal().cwiseMax(0).cwiseSqrt();
 }
 
-/// The worst of the pairs left out.
+/// The rejected pairs with the largest residuals.
 std::string pair_outlier_lines(std::vector<PairOutlier> outliers) {
   constexpr std::size_t most = 10;
   std::stable_sort(outliers.begin(), outliers.end(), [](const auto& a, const auto& b) {
@@ -33,7 +33,7 @@ std::string pair_outlier_lines(std::vector<PairOutlier> outliers) {
   for (std::size_t i = 0; i < std::min(most, outliers.size()); ++i) {
     const PairOutlier& o = outliers[i];
     text += fmt::format(
-        "left out: ({:.1f}, {:.1f}) with ({:.1f}, {:.1f}) of image pair {}, {:.1f} px from its "
+        "rejected: ({:.1f}, {:.1f}) with ({:.1f}, {:.1f}) of image pair {}, {:.1f} px from its "
         "epipolar line\n",
         o.pixels_px[0], o.pixels_px[1], o.pixels_px[2], o.pixels_px[3], o.image_pair,
         std::abs(o.residual_px));
@@ -42,7 +42,7 @@ std::string pair_outlier_lines(std::vector<PairOutlier> outliers) {
   return text;
 }
 
-/// How the board is bent, where that was estimated.
+/// The estimated board warp, if any.
 std::optional<Eigen::Vector2d> estimated_warp_m(const RigEstimate& estimate) {
   if (!estimate.evidence || estimate.evidence->warp_m.isZero(0)) return {};
   return estimate.evidence->warp_m;
@@ -53,12 +53,12 @@ std::string parameter_lines(const RigEstimate& estimate) {
   const Eigen::VectorXd values = parameters(estimate.rig);
   const std::vector<bool> held = held_parameters(estimate);
   std::string text =
-      fmt::format("{:<14} {:>14} {:>12} {:>12}\n", "parameter", "value", "sigma", "bound's sigma");
+      fmt::format("{:<14} {:>14} {:>12} {:>12}\n", "parameter", "value", "sigma", "bound sigma");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const auto sigma = [&](const Eigen::MatrixXd* C) {
       if (!C) return std::string("unknown");
-      return held[i] ? "held" : fmt::format("{:.3g}", std::sqrt((*C)(k, k)));
+      return held[i] ? "fixed" : fmt::format("{:.3g}", std::sqrt((*C)(k, k)));
     };
     text += fmt::format("{:<14} {:>14.8g} {:>12} {:>12}\n", names[i], values[k],
                         sigma(estimate.covariance ? &estimate.covariance->matrix : nullptr),
@@ -89,18 +89,18 @@ std::string rig_table(const RigEstimate& estimate) {
         s.source == "board"   ? "views"
         : s.source == "pairs" ? (s.views == 1 ? "image pair" : "image pairs")
                               : "board frames and image pairs",
-        s.rms_px, s.source == "pairs" ? " from the epipolar line" : " a coordinate",
+        s.rms_px, s.source == "pairs" ? " from the epipolar line" : " per coordinate",
         s.pixel_sigma_px, s.chi2, s.dof);
     if (s.prior_dof > 0) {
       text +=
-          fmt::format("prior: chi² {:.2f} for {} parameters it knows (p at most {:.2g})\n",
+          fmt::format("prior: chi² {:.2f} for {} parameters with prior (p at most {:.2g})\n",
                       s.prior_chi2, s.prior_dof, chi_squared_survival(s.prior_chi2, s.prior_dof));
     }
-    for (const std::string& line : outlier_lines(estimate)) text += "left out: " + line + "\n";
+    for (const std::string& line : outlier_lines(estimate)) text += "rejected: " + line + "\n";
     text += pair_outlier_lines(s.pair_outliers);
   }
   if (const auto warp_m = estimated_warp_m(estimate)) {
-    text += fmt::format("board bent by {:.3f} / {:.3f} mm along its x / y\n", 1e3 * warp_m->x(),
+    text += fmt::format("board warp: {:.3f} / {:.3f} mm along x / y\n", 1e3 * warp_m->x(),
                         1e3 * warp_m->y());
   }
   text += parameter_lines(estimate);

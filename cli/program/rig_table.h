@@ -11,12 +11,13 @@
 
 namespace vernier::cli {
 
-/// Calibration figures, every parameter with its standard deviations, and the directions of the
-/// scaled covariance in words.
+/// Calibration summary, all parameters with their standard deviations, and a description of the
+/// principal directions of the scaled covariance.
 std::string rig_table(const RigEstimate& estimate);
 Json rig_json(const RigEstimate& estimate);
 
-/// The first directions in words, one a line, with their share of the scaled variance.
+/// Describes the first principal directions, one per line, with their fraction of the scaled
+/// variance.
 std::string direction_lines(const ScaledDecomposition& decomposition, std::size_t most = 5);
 
 }  // namespace vernier::cli

@@ -21,31 +21,31 @@ namespace vernier::cli {
 
 namespace {
 
-/// Throws Error where standard output does not take it all.
+/// Throws Error if the text cannot be written completely to standard output.
 void print_whole(const std::string& text) {
   const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (all && std::fflush(stdout) == 0) return;
   const std::string why = std::strerror(errno);
-  throw Error("standard output", "it cannot be written: " + why,
-              "make room where it goes; the files named as outputs are there");
+  throw Error("standard output", "cannot be written: " + why,
+              "free space at its destination; the output files have been written");
 }
 
 }  // namespace
 
-void Session::say(const std::string& line) const {
+void Session::info(const std::string& line) const {
   if (!quiet) fmt::print(stderr, "{}\n", line);
 }
 
 void Session::add_trust_warning(const std::string& reason) {
   trust_warnings_.push_back(reason);
-  fmt::print(stderr, "vernier: doubtful: {}\n", reason);
+  fmt::print(stderr, "vernier: not trustworthy: {}\n", reason);
 }
 
 void Session::result(const Json& object, const std::string& text) const {
   if (json) {
     Json out = object;
     if (!trust_warnings_.empty()) out["doubts"] = trust_warnings_;
-    // a file name may hold any bytes
+    // a file name may contain invalid UTF-8
     print_whole(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   } else {
     print_whole(text);
@@ -95,7 +95,7 @@ CLI::App* add_verb(CLI::App& app,
                    const std::string& about,
                    const std::string& example) {
   CLI::App* verb = app.add_subcommand(name, about);
-  verb->add_flag("-q,--quiet", session.quiet, "no progress or messages on standard error");
+  verb->add_flag("-q,--quiet", session.quiet, "no progress or notes on standard error");
   verb->add_flag("--json", session.json, "print one JSON object on standard output");
   verb->footer("Example:\n  " + example);
   return verb;
@@ -129,7 +129,7 @@ std::pair<int, int> parse_size(const std::string& text, const std::string& optio
   }
   if (!good) {
     throw Error(option, "\"" + text + "\" is not two whole numbers",
-                option == "--size" ? "write it like 640x480" : "write it like 9x6");
+                option == "--size" ? "use the form 640x480" : "use the form 9x6");
   }
   return {a, b};
 }
@@ -138,7 +138,7 @@ std::pair<int, int> parse_grid(const std::string& text, const std::string& optio
   constexpr int most = 1000;
   const std::pair<int, int> size = parse_size(text, option);
   if (size.first > most || size.second > most) {
-    throw Error(option, "\"" + text + "\" has more than 1000 on a side", "give fewer");
+    throw Error(option, "\"" + text + "\" has a side above 1000", "give a smaller grid");
   }
   return size;
 }
@@ -149,10 +149,10 @@ std::vector<double> parse_distances(const std::string& text, const std::string& 
     const std::size_t comma = std::min(text.find(',', at), text.size());
     const char *word = text.data() + at, *end = text.data() + comma;
     double value = 0;
-    const auto parsed = std::from_chars(word, end, value);  // reads inf too
+    const auto parsed = std::from_chars(word, end, value);  // accepts inf
     if (parsed.ec != std::errc() || parsed.ptr != end || !(value > 0)) {
-      throw Error(option, "\"" + text + "\" is not a list of distances above 0",
-                  "separate metres by commas, such as 1,5,inf");
+      throw Error(option, "\"" + text + "\" is not a list of positive distances",
+                  "give metres separated by commas, for example 1,5,inf");
     }
     if (std::find(distances.begin(), distances.end(), value) == distances.end()) {
       distances.push_back(value);
@@ -186,7 +186,7 @@ std::vector<double> parse_numbers(const std::string& text,
     throw Error(option,
                 "\"" + text + "\" is not " +
                     (n == 1 ? std::string("a number") : std::to_string(n) + " numbers"),
-                "separate numbers by commas");
+                "separate the numbers by commas");
   }
   return values;
 }

@@ -42,10 +42,10 @@ fs::path find(const std::string& name,
   }
   for (const fs::path& path : tried) {
     if (fs::is_directory(path)) {
-      throw Error(kind + " \"" + name + "\"", "is a folder", "name the file in it");
+      throw Error(kind + " \"" + name + "\"", "is a folder", "give a file inside it");
     }
   }
-  throw Error(kind + " \"" + name + "\"", "there is no such file and no shipped one of this name",
+  throw Error(kind + " \"" + name + "\"", "no such file, and no shipped one of this name",
               "shipped: " + shipped_names(kind, ending));
 }
 

@@ -33,7 +33,7 @@ struct ReportArguments {
   bool no_proof = false;
 };
 
-/// What the page is of: at most one study, one evaluation of matchers, and rig files.
+/// Inputs of the page: at most one study, at most one evaluation of matchers, and rig files.
 struct Inputs {
   std::string study, evaluation;
   std::vector<std::string> rigs;
@@ -46,16 +46,16 @@ Inputs inputs_of(const ReportArguments& options) {
       inputs.rigs.push_back(name);
     } else if (is_evaluation(name)) {
       if (!inputs.evaluation.empty()) {
-        throw Error(name, "is a second evaluation", "give one a page");
+        throw Error(name, "is a second evaluation", "give one per page");
       }
       inputs.evaluation = name;
     } else if (!fs::exists(fs::path(name) / "study.toml")) {
-      throw Error(name, "is neither the folder of a study nor of an evaluation",
-                  "give what vernier study or vernier evaluate wrote with -o");
+      throw Error(name, "is neither a study folder nor an evaluation folder",
+                  "give a folder written by vernier study -o or vernier evaluate -o");
     } else if (inputs.study.empty()) {
       inputs.study = name;
     } else {
-      throw Error(name, "is a second folder of a study", "give one study a page");
+      throw Error(name, "is a second study", "give one per page");
     }
   }
   inputs.rigs.insert(inputs.rigs.end(), options.calibrations.begin(), options.calibrations.end());
@@ -66,7 +66,7 @@ void add_study(const std::string& folder, Session& session, Validation proof, Js
   const Study study = open_folder(folder, session);
   const StudyResults results = study_results(study, folder);
   if (results.blocks_done == 0) {
-    throw Error(folder, "holds no finished block", "run the study first");
+    throw Error(folder, "contains no finished block", "run the study first");
   }
   if (results.blocks_done < results.blocks_total) {
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
@@ -83,7 +83,7 @@ struct NamedRig {
   RigEstimate estimate;
 };
 
-/// Every file that the page is made from.
+/// All input files of the page.
 std::vector<fs::path> files_read(const Inputs& inputs) {
   std::vector<fs::path> files;
   if (!inputs.study.empty()) {
@@ -100,7 +100,7 @@ std::vector<fs::path> files_read(const Inputs& inputs) {
   return files;
 }
 
-/// All of them before any work is done, so that a bad file is told of at once.
+/// Reads all rigs before any computation, so that errors are reported immediately.
 std::vector<NamedRig> read_rigs(const std::vector<std::string>& names, Session& session) {
   std::vector<NamedRig> rigs;
   for (const std::string& name : names) {
@@ -116,7 +116,7 @@ void add_rig(const NamedRig& rig, const Session& session, Validation proof, Json
   data["rigs"].push_back(report_rig(rig.estimate, rig.file, proof, session));
   const Json& calibration = data["rigs"].back()["calibration"];
   if (!calibration.is_object()) return;
-  for (const Json& words : calibration["warnings"]) {  // its doubts were said on reading
+  for (const Json& words : calibration["warnings"]) {  // trust warnings were printed on reading
     session.warn(rig.file + ": " + words.get<std::string>());
   }
 }
@@ -125,15 +125,15 @@ std::string title_of(const ReportArguments& options, const Inputs& inputs) {
   if (!options.title.empty()) return options.title;
   if (!inputs.study.empty()) return "Localisation under calibration error";
   if (!inputs.evaluation.empty()) return "Stereo matchers at edges";
-  return inputs.rigs.size() > 1 ? "Calibrations and how well they are known"
-                                : "A calibration and how well it is known";
+  return inputs.rigs.size() > 1 ? "Calibrations and their uncertainty"
+                                : "Calibration and its uncertainty";
 }
 
 void run(const ReportArguments& options, Session& session) {
   const fs::path page_folder = shipped_file("page/report.html").parent_path();
   if (page_folder.empty()) {
-    throw Error("report", "the page's files are not installed beside the program",
-                "set VERNIER_SHARE to the folder share/vernier of an installation");
+    throw Error("report", "the page template is not installed with the program",
+                "set VERNIER_SHARE to share/vernier of an installation");
   }
   check_script(page_folder);  // before minutes of work
   const Inputs inputs = inputs_of(options);
@@ -152,11 +152,12 @@ void run(const ReportArguments& options, Session& session) {
   const bool plots = has_plots(page_folder);
   write_atomically(options.output, page);
   if (!plots) {
-    session.warn("the page has tables only, no plots: vernier was built without them (see doctor)");
+    session.warn(
+        "the page has tables but no plots: vernier was built without plots (see vernier doctor)");
   }
   session.result(
       {{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}, {"plots", plots}},
-      fmt::format("{} ({:.1f} MB, opens without network{})\n", options.output,
+      fmt::format("{} ({:.1f} MB, self-contained{})\n", options.output,
                   static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
 }
 
@@ -166,17 +167,16 @@ void add_report(CLI::App& app, Session& session) {
   auto o = std::make_shared<ReportArguments>();
   CLI::App* verb =
       add_verb(app, session, "report",
-               "one self-contained HTML page of a study, an evaluation or calibrations",
+               "write a self-contained HTML report of a study, an evaluation or calibrations",
                "vernier report rig.json -o report.html");
   verb->add_option("input", o->inputs,
-                   "folder of a study or of an evaluation, rig files, or several of them")
+                   "study folder, evaluation folder, or rig files; several are allowed")
       ->required();
-  verb->add_option("--calibration", o->calibrations,
-                   "a rig file whose calibration is shown too (may be repeated)");
+  verb->add_option("--calibration", o->calibrations, "additional rig file to show (repeatable)");
   verb->add_flag(
       "--no-proof", o->no_proof,
-      "neither compare lens models nor leave boards out, which takes some seconds a rig");
-  verb->add_option("--title", o->title, "heading of the page");
+      "skip cross-validation (lens models and held-out boards), which takes some seconds per rig");
+  verb->add_option("--title", o->title, "page title");
   verb->add_option("-o,--output", o->output, "HTML file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

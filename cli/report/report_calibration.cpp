@@ -34,7 +34,7 @@ Json depth_json(const RigEstimate& estimate) {
   return rows;
 }
 
-/// Correlations of the parameters that have a variance, with their names.
+/// Correlation matrix of the estimated parameters, with their names.
 void add_correlation(const Covariance& covariance, Json& json) {
   const Eigen::VectorXd sd = covariance.matrix.diagonal().cwiseMax(0).cwiseSqrt();
   json["correlation_names"] = Json::array();
@@ -90,11 +90,11 @@ void add_covariance(const RigEstimate& estimate, Json& json) {
   if (estimate.rig.cameras.size() == 2) json["depth"] = depth_json(estimate);
 }
 
-/// Whether the covariance is the bound and the views scatter as white noise does: then it is true.
-/// So it is of simulated views; those of real images pull harder.
+/// Whether the covariance is the bound and the scatter of the views agrees with white noise, so
+/// that the bound is valid. True for simulated views, usually not for real images.
 bool is_true_bound(const RigEstimate& estimate, const Json& views) {
   if (!estimate.covariance || estimate.covariance->kind != CovarianceKind::mvb) return false;
-  double pull = 0, noise = 0;  // squared; the page says their ratio
+  double pull = 0, noise = 0;  // squared; the page shows their ratio
   for (const Json& view : views) {
     if (!view["influence"].is_number() || !view["influence_noise"].is_number()) return false;
     pull += std::pow(view["influence"].get<double>(), 2);
@@ -103,7 +103,7 @@ bool is_true_bound(const RigEstimate& estimate, const Json& views) {
   return noise > 0 && pull < 1.2 * 1.2 * noise;
 }
 
-/// A rig file of before warns of any bound.
+/// Removes the warning that older rig files contain for every bound.
 void drop_warning_of_bound(Json& warnings) {
   Json kept = Json::array();
   for (Json& one : warnings) {
@@ -114,7 +114,7 @@ void drop_warning_of_bound(Json& warnings) {
   warnings = std::move(kept);
 }
 
-/// Puts warnings there that are not there yet.
+/// Appends warnings, without duplicates.
 void add_warnings(const Json& more, Json& warnings) {
   for (const Json& one : more) {
     if (std::find(warnings.begin(), warnings.end(), one) == warnings.end()) warnings.push_back(one);
@@ -143,9 +143,9 @@ Json report_rig(const RigEstimate& estimate,
   if (estimate.covariance) add_covariance(estimate, json);
   if (!estimate.evidence || !estimate.calibration || estimate.evidence->frames.empty()) {
     json["missing"] =
-        "This rig file holds no evidence of its calibration (it was written by hand, or with "
-        "--no-evidence): corners, residuals, projection uncertainty, the influence of views and "
-        "the proofs on views left out cannot be shown.";
+        "This rig file does not contain its calibration data (it was written by hand or with "
+        "--no-evidence): corners, residuals, projection uncertainty, view influence and "
+        "cross-validation cannot be shown.";
     return json;
   }
   json["corners"] = report_corners(estimate);

@@ -9,24 +9,24 @@
 
 namespace vernier::cli {
 
-/// Whether models are compared and boards left out for the page, which calibrates many times.
+/// Whether to run the cross-validation of models and boards, which calibrates many times.
 enum class Validation { make, skip };
 
-/// One rig for the report's page: parameters, covariance, and all that its evidence shows of the
-/// calibration. Where there is no evidence, "missing" says so.
+/// One rig for the report page: parameters, covariance, and calibration details from its evidence.
+/// Without evidence, "missing" gives the reason.
 Json report_rig(const RigEstimate& estimate,
                 const std::string& file,
                 Validation proof,
                 const Session& session);
 
-/// Its parts, from the evidence. Corners and residuals, a list a camera.
+/// Parts derived from the evidence. Corners and residuals, one entry per camera.
 Json report_corners(const RigEstimate& estimate);
-/// Maps of the projection uncertainty, a list a camera, and its figures in numbers.
+/// Maps and summary values of the projection uncertainty, one entry per camera.
 Json report_projection(const RigEstimate& estimate);
-/// What each frame did to the estimate.
+/// Influence of each frame on the estimate.
 Json report_views(const RigEstimate& estimate);
-/// Richer lens models on views left out, and lengths on boards left out; notes say why one is
-/// missing.
+/// Cross-validation: richer lens models on held-out views, lengths on held-out boards; notes give
+/// the reason for missing parts.
 Json report_validation(const RigEstimate& estimate,
                        const std::string& file,
                        const Session& session);

@@ -43,7 +43,7 @@ Json trial_json(const TrialResult& t) {
   return row;
 }
 
-/// Fills the template's marks in one pass, so that what is put in is never searched again.
+/// Replaces the template's placeholders in one pass; inserted text is not searched again.
 std::string fill(const std::string& page,
                  const std::vector<std::pair<std::string, std::string>>& parts) {
   std::string filled;
@@ -134,7 +134,7 @@ Json report_view(const Study& study) {
   const Sensor sensor(study.rig.rig, settings.sources);
   const StereoObservation sighting = sensor.sense(seen, settings.seed, 0, 0);
   const Json both = sighting_json(study.rig.rig, seen, sighting);
-  // A line counts as mismatched where its true and sensed disparity differ by more than shifts do.
+  // A line counts as mismatched if true and sensed disparity differ by more than shifts explain.
   Json sensed = Json::array();
   for (std::size_t i = 0; i < sighting.segments.size(); ++i) {
     SensedEdge exact;
@@ -147,15 +147,14 @@ Json report_view(const Study& study) {
     row.push_back(std::abs(disparity - truth) > 2 ? 1 : 0);
     sensed.push_back(std::move(row));
   }
-  return {
-      {"camera_size_px", both["camera_size_px"]},
-      {"pose", both["pose"]},
-      {"true", both["true"]["left"]},
-      {"sensed", sensed},
-      {"corners", both["corners"]["left"]},
-      {"words", fmt::format("The left view of trial 0: {} edges in view of both eyes, {} sensed "
-                            "after all sources have acted.",
-                            seen.edges.size(), sighting.segments.size())}};
+  return {{"camera_size_px", both["camera_size_px"]},
+          {"pose", both["pose"]},
+          {"true", both["true"]["left"]},
+          {"sensed", sensed},
+          {"corners", both["corners"]["left"]},
+          {"words", fmt::format("Left view of trial 0: {} edges visible in both cameras, {} sensed "
+                                "after applying all error sources.",
+                                seen.edges.size(), sighting.segments.size())}};
 }
 
 bool has_script(const fs::path& folder) { return fs::is_regular_file(folder / script_file); }
@@ -164,13 +163,13 @@ bool has_plots(const fs::path& folder) { return fs::is_regular_file(folder / plo
 
 void check_script(const fs::path& folder) {
   if (has_script(folder)) return;
-  throw Error("report", "this build has no script for the page, because esbuild was missing",
-              "run scripts/install_packages.sh, then configure and build again");
+  throw Error("report", "this build has no page script because esbuild was missing",
+              "run scripts/install_packages.sh, reconfigure and rebuild");
 }
 
 std::string assemble_page(const fs::path& folder, const Json& data) {
   std::string json;
-  // a file name may hold any bytes, and no "<" may end or open anything in the page
+  // file names may contain invalid UTF-8; "<" is escaped so that it cannot open or close a tag
   for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {
       json += "\\u003c";

@@ -12,21 +12,21 @@
 
 namespace vernier::cli {
 
-/// The parts of the report page's data (cli/report/report_calibration.h has those of a rig).
+/// Data of the report page (for rigs, see cli/report/report_calibration.h).
 Json report_study(const Study& study, const StudyResults& results);
 Json report_world(const World& world);
-/// The view of the first trial of a study's middle cell.
+/// The view of the first trial in a study's middle cell.
 Json report_view(const Study& study);
 
-/// Whether the folder has the page's script and plots. Both are made when Vernier is built, the one
-/// by esbuild, the other by esbuild from plotly.js.
+/// Whether the folder has the page's script and the plots. Both are made by esbuild when Vernier is
+/// built, the plots from plotly.js.
 bool has_script(const std::filesystem::path& folder);
 bool has_plots(const std::filesystem::path& folder);
 
-/// Throws Error where the folder has no script, without which there can be no page.
+/// Throws Error if the folder has no script, which every page needs.
 void check_script(const std::filesystem::path& folder);
 
-/// Fills the page's template. A page without plots says so and holds tables only.
+/// Fills the page template. Without plots, the page has tables only and a notice.
 std::string assemble_page(const std::filesystem::path& folder, const Json& data);
 
 }  // namespace vernier::cli

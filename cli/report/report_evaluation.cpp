@@ -48,10 +48,10 @@ Json read(const fs::path& folder) {
                      json["scenes"].is_array() && !json["scenes"].empty() &&
                      std::all_of(json["scenes"].begin(), json["scenes"].end(), is_scene);
   if (whole) return json;
-  throw Error(file.string(), "is no evaluation", "write it anew with vernier evaluate -o");
+  throw Error(file.string(), "is not an evaluation", "create it again with vernier evaluate -o");
 }
 
-/// Names of a scene's two pictures; none where it has no such.
+/// File names of a scene's two pictures; empty if it has none.
 std::vector<std::string> pictures_of(const Json& scene) {
   std::vector<std::string> names;
   if (!scene.contains("pictures")) return names;
@@ -59,7 +59,7 @@ std::vector<std::string> pictures_of(const Json& scene) {
     const Json& name = scene["pictures"].value(key, Json());
     if (!name.is_string()) continue;
     const fs::path file = name.get<std::string>();
-    if (file.filename() == file) names.push_back(file.string());  // beside it and nowhere else
+    if (file.filename() == file) names.push_back(file.string());  // only files in the same folder
   }
   return names;
 }

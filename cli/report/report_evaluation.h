@@ -9,14 +9,14 @@
 
 namespace vernier::cli {
 
-/// Whether a folder holds an evaluation.
+/// Whether a folder contains an evaluation.
 bool is_evaluation(const std::filesystem::path& folder);
 
-/// The evaluation's part of the report page's data: its file, pictures as data addresses in it.
-/// Throws Error naming a file that is not what it should be.
+/// Evaluation data for the report page, with pictures embedded as data URLs. Throws Error naming an
+/// invalid file.
 Json report_evaluation(const std::filesystem::path& folder);
 
-/// The files that it reads.
+/// The files that report_evaluation() reads.
 std::vector<std::filesystem::path> evaluation_files(const std::filesystem::path& folder);
 
 }  // namespace vernier::cli

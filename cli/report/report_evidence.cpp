@@ -30,22 +30,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// With so many decimals; null where it is no number.
+/// Rounds to the given number of decimals; null if not finite.
 Json rounded(double x, int decimals) {
   const double k = std::pow(10, decimals);
   return std::isfinite(x) ? Json(std::round(x * k) / k) : Json(nullptr);
 }
 
-/// To four significant digits.
+/// Rounds to four significant digits.
 Json short_number(double x) {
   if (!std::isfinite(x)) return nullptr;
   if (x == 0) return 0;
   return Json::parse(fmt::format("{:.4g}", x));
 }
 
-/// Some of many, spread evenly whatever their order repeats (multiples of the golden ratio).
+/// Selects an evenly spread subset, independent of periodic order (multiples of the golden ratio).
 bool is_shown(std::size_t i, std::size_t all) {
-  constexpr std::size_t most = 2000;  // strokes a picture can take
+  constexpr std::size_t most = 2000;  // strokes per picture
   if (all <= most) return true;
   const double place = static_cast<double>(i) * 0.6180339887498949;
   return place - std::floor(place) < static_cast<double>(most) / static_cast<double>(all);
@@ -71,7 +71,7 @@ Json structure_json(const ResidualStructure& s) {
   return json;
 }
 
-/// Cells that are as good as square, a dozen across the longer side.
+/// Approximately square cells, twelve along the longer side.
 std::pair<int, int> cells_of(const Eigen::Vector2i& size_px) {
   const double side = size_px.maxCoeff() / 12.0;
   return {std::max(1L, std::lround(size_px.x() / side)),
@@ -88,7 +88,7 @@ Json outliers_json(const RigEstimate& estimate, int camera) {
   return json;
 }
 
-/// Median, largest and middle standard deviation of a map.
+/// Central, median and largest standard deviation of a map.
 struct MapFigures {
   double centre = 0, median = 0, worst = 0;
 };
@@ -119,7 +119,7 @@ Json map_json(const ProjectionGrid& grid, double distance_m) {
   return {{"distance_m", rounded(distance_m, 3)}, {"sd_px", rows}};
 }
 
-/// Ranges of the boards' middles from the first camera: nearest, median, farthest.
+/// Distances of the board centres from the first camera: minimum, median, maximum.
 std::array<double, 3> board_ranges(const CalibrationEvidence& evidence) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& X : evidence.observations.target_m) middle += X;
@@ -163,7 +163,7 @@ Json camera_projection(const RigAndBoards& honest,
   return json;
 }
 
-/// The parameter that a view moves most, in its standard deviations.
+/// The parameter that a view changes most, in standard deviations.
 Json largest_move(const Eigen::VectorXd& move,
                   const Covariance& covariance,
                   const std::vector<std::string>& names) {

@@ -18,7 +18,7 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int max_frames = 60;  // evenly spaced ones stand for more
+constexpr int max_frames = 60;  // if there are more, an evenly spaced subset is used
 constexpr int splits = 30;
 
 Json models_json(const ModelComparison& comparison) {
@@ -41,13 +41,13 @@ Json models_json(const ModelComparison& comparison) {
 void add_models(const RigEstimate& estimate, const CalibrationOptions& options, Json& json) {
   const ModelComparison comparison = compare_models(estimate, options, max_frames);
   if (!comparison.not_compared.empty()) {
-    json["notes"].push_back("Models were not compared: " + comparison.not_compared + ".");
+    json["notes"].push_back("Lens models were not compared: " + comparison.not_compared + ".");
     return;
   }
   if (comparison.richer.empty()) {
     json["notes"].push_back(
-        "No richer lens model was compared: there is none, the views do not determine one, or "
-        "there are fewer than six frames.");
+        "No richer lens model was compared: none exists, the views do not determine one, or there "
+        "are fewer than six frames.");
     return;
   }
   json["models"] = models_json(comparison);
@@ -68,7 +68,7 @@ void add_left_out(const RigEstimate& estimate,
   const CalibrationEvidence& evidence = *estimate.evidence;
   const BoardObservations observations =
       at_frames(evidence.observations, evenly_spaced(evidence.frames, max_frames));
-  session.say(fmt::format("{}: calibrating {} times with boards left out", file, splits));
+  session.info(fmt::format("{}: calibrating {} times with held-out boards", file, splits));
   const HeldOutBoardsResult result =
       evaluate_held_out_boards(observations, {.splits = splits, .calibration = options});
   const auto frames = static_cast<int>(frames_of(observations).size());
@@ -81,14 +81,14 @@ void add_left_out(const RigEstimate& estimate,
                       {"training_frames", result.training_frames},
                       {"rows",
                        {named_coverage("lengths on the board", "m", result.edges),
-                        named_coverage("size of the board", "1", result.scale)}}};
-  // Splits share boards: with a dozen of them 0.8 lies about 2.5 deviations below 0.95.
+                        named_coverage("scale of the board", "1", result.scale)}}};
+  // Splits share boards: with a dozen boards, 0.8 is about 2.5 standard deviations below 0.95.
   for (const Json& row : json["left_out"]["rows"]) {
     if (row["coverage_honest"] >= 0.8) continue;
     json["warnings"].push_back(fmt::format(
-        "{} left out: only {:.0f} % lie inside their 95 % interval; the lens model, the board's "
-        "shape or its square is wrong, or views are too few",
-        row["what"] == "size of the board" ? "sizes of boards" : "lengths on boards",
+        "{} held-out boards: only {:.0f} % are inside their 95 % interval; the lens model, the "
+        "board shape or the square size is wrong, or there are too few views",
+        row["what"] == "scale of the board" ? "scale of" : "lengths on",
         100 * row["coverage_honest"].get<double>()));
   }
 }
@@ -101,24 +101,24 @@ Json report_validation(const RigEstimate& estimate,
   Json json{{"notes", Json::array()}, {"warnings", Json::array()}};
   const auto note = [&](const std::string& words) { json["notes"].push_back(words); };
   if (!estimate.covariance) {
-    note("Nothing was proved: the rig file has no covariance.");
+    note("No cross-validation: the rig file has no covariance.");
     return json;
   }
   if (estimate.calibration->prior_dof > 0 || estimate.calibration->source != "board") {
     note(
-        "Models and boards left out are shown for calibrations from boards alone: this one used "
-        "other knowledge too.");
+        "Cross-validation is only available for calibrations from boards alone; this one also used "
+        "a prior or matched pairs.");
     return json;
   }
   try {
     add_models(estimate, options_of_file(estimate), json);
   } catch (const Error& error) {
-    note(fmt::format("Models were not compared: {}.", error.what()));
+    note(fmt::format("Lens models were not compared: {}.", error.what()));
   }
   try {
     add_left_out(estimate, options_of_file(with_default_names(estimate)), file, session, json);
   } catch (const Error& error) {
-    note(fmt::format("No boards were left out: {}.", error.what()));
+    note(fmt::format("No boards were held out: {}.", error.what()));
   }
   return json;
 }

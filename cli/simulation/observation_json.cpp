@@ -25,7 +25,7 @@ Json segment_json(const ImageSegment& s) {
 
 Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
-/// Which edges were in view, and which of them every sensed segment is a piece of.
+/// The visible edges, and for each sensed segment the edge it belongs to.
 void add_identities(const NoiseFreeView& seen, const StereoObservation& sighting, Json& json) {
   Json &truth = json["true"], &sensed = json["sensed"];
   for (const char* key : {"feature", "segment", "object", "a_m", "b_m"}) truth[key] = Json::array();

@@ -12,14 +12,14 @@
 
 namespace vernier::cli {
 
-/// A view with its truth: segments as [u1, v1, u2, v2] in pixels of each eye, and which edge of the
-/// world each of them is (docs/file-formats.md).
+/// A view with ground truth: segments as [u1, v1, u2, v2] in pixels of each camera, with the index
+/// of their edge in the world (docs/file-formats.md).
 Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting);
 
-/// Cameras and poses of a rig, as `cameras` of a rig.json.
+/// Cameras and poses of a rig, as in `cameras` of a rig.json.
 Json cameras_json(const Rig& rig);
 
-/// Segments in space, in the left camera's frame of the rig that they were reconstructed with.
+/// 3D segments, in the left camera frame of the rig used for reconstruction.
 Json space_json(const std::vector<SpaceSegment>& lines);
 
 }  // namespace vernier::cli

@@ -41,28 +41,28 @@ struct SimulateArguments {
 
 const SourceParameter& source_named(const std::string& word) {
   const std::size_t equals = word.find('=');
-  std::string known = "none";
+  std::string names = "none";
   for (const SourceParameter& parameter : source_parameters()) {
     if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
-    known += ", " + std::string(parameter.name) + "=…";
+    names += ", " + std::string(parameter.name) + "=…";
   }
-  throw Error("--source " + word, "is no setting of a source", "use " + known);
+  throw Error("--source " + word, "unknown error source", "supported: " + names);
 }
 
-/// Refuses settings that change nothing: the reach of a source that is off.
+/// Refuses settings without effect: the range of a source that is off.
 void check_effect(const SourceSettings& settings, const std::set<std::string_view>& given) {
   const auto refuse = [&](std::string_view reach, std::string_view of, double share) {
     if (share > 0 || given.count(reach) == 0) return;
     throw Error("--source " + std::string(reach),
-                "has no effect where " + std::string(of) + " is 0",
-                "give --source " + std::string(of) + "=… too, or leave it out");
+                "has no effect while " + std::string(of) + " is 0",
+                "also give --source " + std::string(of) + "=…, or leave it out");
   };
   refuse("stereo_mismatch_px", "stereo_mismatch", settings.stereo_mismatch);
   refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
 }
 
-/// "edge_loss=0.2" settings over the defaults, "none" for all off. The rig's error is drawn only
-/// where it is asked for.
+/// Applies settings such as "edge_loss=0.2" to the defaults; "none" turns all sources off. The
+/// calibration error is off unless requested.
 SourceSettings sources_of(const std::vector<std::string>& words) {
   SourceSettings settings;
   settings.calibration = 0;
@@ -70,14 +70,14 @@ SourceSettings sources_of(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word == "none") {
       if (&word != &words.front()) {
-        throw Error("--source none", "would undo the sources before it", "give it first");
+        throw Error("--source none", "would override the sources given before it", "give it first");
       }
       settings = no_sources();
       continue;
     }
     const SourceParameter& chosen = source_named(word);
     if (!given.insert(chosen.name).second) {
-      throw Error("--source " + word, "is the second value of this source", "give one");
+      throw Error("--source " + word, "this source is given twice", "give one value");
     }
     settings.*chosen.value =
         parse_numbers(word.substr(word.find('=') + 1), 1, "--source " + word)[0];
@@ -100,14 +100,14 @@ void run(const SimulateArguments& options, Session& session) {
   if (const std::string fault = standing_fault(visibility, pose, options.height_m);
       !fault.empty()) {
     throw Error("--pose " + options.pose, fault,
-                "give a free place, or another --height-m (vernier world info has the size)");
+                "give a free position, or another --height-m (vernier world info prints the size)");
   }
   if (sources.calibration > 0) required_covariance(rig.estimate, options.rig);
   ExperimentSettings settings;
   settings.sources = sources;
   settings.seed = options.seed;
-  const Rig told = LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
-                       .estimator_rig(options.trial);
+  const Rig estimator_rig = LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
+                                .estimator_rig(options.trial);
   NoiseFreeViewOptions looking;
   looking.mount = {options.height_m, options.pitch_deg * degree};
   looking.with_corners = true;
@@ -116,17 +116,17 @@ void run(const SimulateArguments& options, Session& session) {
   const StereoObservation sighting = sensor.sense(seen, options.seed, options.trial, 0);
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
-  json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(told)}};
-  json["space"] = space_json(reconstruct(told, sighting, settings));
-  const std::string told_text =
+  json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(estimator_rig)}};
+  json["space"] = space_json(reconstruct(estimator_rig, sighting, settings));
+  const std::string estimator_text =
       sources.calibration > 0
-          ? fmt::format("the estimator is told a rig drawn at psi_c = {:g}\n", sources.calibration)
-          : "the estimator is told the true rig\n";
-  session.result(json, fmt::format("at ({:.2f}, {:.2f}) m heading {:.1f} deg: {} edges in view of "
-                                   "both eyes, {} sensed; {} corners, {} sensed\n{}"
-                                   "all of them with --json\n",
+          ? fmt::format("the estimator uses a rig sampled with psi_c = {:g}\n", sources.calibration)
+          : "the estimator uses the true rig\n";
+  session.result(json, fmt::format("at ({:.2f}, {:.2f}) m heading {:.1f} deg: {} edges visible in "
+                                   "both cameras, {} sensed; {} corners, {} sensed\n{}"
+                                   "use --json for the full list\n",
                                    at[0], at[1], at[2], seen.edges.size(), sighting.segments.size(),
-                                   seen.corners.size(), sighting.corners.size(), told_text));
+                                   seen.corners.size(), sighting.corners.size(), estimator_text));
 }
 
 }  // namespace
@@ -134,20 +134,23 @@ void run(const SimulateArguments& options, Session& session) {
 void add_simulate(CLI::App& app, Session& session) {
   auto o = std::make_shared<SimulateArguments>();
   CLI::App* verb =
-      add_verb(app, session, "simulate", "what a rig sees at a pose, through all sources of error",
+      add_verb(app, session, "simulate",
+               "simulate the features that a rig observes at a pose, with all error sources",
                "vernier simulate --world workshop --rig nominal --pose 10,7.5,0 "
                "--seed 1 --json");
   verb->add_option("--world", o->world, "world file or shipped name")->capture_default_str();
   verb->add_option("--rig", o->rig, "rig file or shipped name")->capture_default_str();
   verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)")->required();
-  verb->add_option("--height-m", o->height_m, "of the camera")
+  verb->add_option("--height-m", o->height_m, "camera height, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--pitch-deg", o->pitch_deg, "nose down")->check(finite)->capture_default_str();
+  verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
+      ->check(finite)
+      ->capture_default_str();
   verb->add_option("--source", o->sources,
-                   "a source's setting, such as edge_loss=0.2, or none (may be repeated)");
-  verb->add_option("--seed", o->seed, "of all draws")->check(not_negative)->capture_default_str();
-  verb->add_option("--trial", o->trial, "which draw under that seed")
+                   "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+  verb->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  verb->add_option("--trial", o->trial, "number of the random draw for this seed")
       ->check(not_negative)
       ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

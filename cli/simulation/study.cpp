@@ -34,7 +34,7 @@ int environment_number(const char* name, int otherwise) {
   return value;
 }
 
-/// "i/n", or the Slurm array's variables, or the whole.
+/// The shard from "i/n" or else from Slurm's array variables; without both, the whole study.
 Shard shard_of(const std::string& text) {
   if (text.empty()) {
     const int first = environment_number("SLURM_ARRAY_TASK_MIN", 0);
@@ -48,7 +48,7 @@ Shard shard_of(const std::string& text) {
   const auto count = slash ? std::from_chars(index.ptr + 1, end, shard.count) : index;
   if (!slash || count.ec != std::errc() || count.ptr != end || shard.count < 1 || shard.index < 0 ||
       shard.index >= shard.count) {
-    throw Error("--shard", "\"" + text + "\" is not i/n with 0 <= i < n", "write it like 0/4");
+    throw Error("--shard", "\"" + text + "\" is not i/n with 0 <= i < n", "use the form 0/4");
   }
   return shard;
 }
@@ -60,7 +60,7 @@ void print(const Study& study, const fs::path& folder, Session& session) {
 
 void run(const StudyArguments& options, Session& session) {
   if (options.folder.empty()) {
-    throw Error("study", "no folder for the results is given", "give -o DIR");
+    throw Error("study", "no output folder given", "give -o DIR");
   }
   const fs::path file = options.words[0];
   StudyRun job;
@@ -73,7 +73,7 @@ void run(const StudyArguments& options, Session& session) {
   {
     std::optional<Progress> ceilings, blocks;
     job.ceiling_progress = [&](int done, int total) {
-      if (!ceilings) ceilings.emplace(session, "study: queries of the world ceiling");
+      if (!ceilings) ceilings.emplace(session, "study: world ceiling queries");
       ceilings->update(done, total);
     };
     job.progress = [&](int done, int total) {
@@ -86,12 +86,12 @@ void run(const StudyArguments& options, Session& session) {
   print(study, job.folder, session);
 }
 
-/// The parts of a study must be of one: the same settings, world and rig.
+/// Throws Error unless all parts belong to the same study: same settings, world and rig.
 void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Session& session) {
   const Study first = open_folder(parts[0], session);
   for (const fs::path& part : parts) {
     if (fs::exists(target) && fs::equivalent(part, target)) {
-      throw Error(part.string(), "is the folder to merge into as well", "give another -o DIR");
+      throw Error(part.string(), "is also the output folder", "give another -o DIR");
     }
     const Study study = open_folder(part, session);
     bool same = study.world_fingerprint == first.world_fingerprint &&
@@ -103,13 +103,13 @@ void check_parts(const std::vector<fs::path>& parts, const fs::path& target, Ses
       same = study.file.cells[i].settings == first.file.cells[i].settings;
     }
     if (!same) {
-      throw Error(part.string(), "is another study than " + parts[0].string(),
-                  "merge parts of one study");
+      throw Error(part.string(), "is not part of the same study as " + parts[0].string(),
+                  "merge only parts of one study");
     }
   }
 }
 
-/// Brings the stores of several folders into one and says whether anything is missing.
+/// Merges the result stores of several folders and reports missing blocks.
 void merge(const StudyArguments& options, Session& session) {
   if (options.folder.empty() || options.words.size() < 2) {
     throw Error("study merge", "give the folders to merge and -o DIR", "");
@@ -169,17 +169,18 @@ void dispatch(const StudyArguments& options, Session& session) {
 
 void add_study(CLI::App& app, Session& session) {
   auto o = std::make_shared<StudyArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "study", "run localisation trials by the thousand; resume, merge",
-               "vernier study FILE.toml -o DIR        # run, or resume what DIR holds\n"
-               "  vernier study status DIR\n"
-               "  vernier study merge DIR1 DIR2 -o DIR");
-  verb->add_option("what", o->words, "a study file; or status DIR; or merge DIR…")->required();
-  verb->add_option("-o,--output", o->folder, "folder for the results");
-  verb->add_option("--threads", o->threads, "how many (0: all)")
+  CLI::App* verb = add_verb(
+      app, session, "study", "run, resume and merge localisation studies (Monte Carlo trials)",
+      "vernier study FILE.toml -o DIR        # run, or resume the study in DIR\n"
+      "  vernier study status DIR\n"
+      "  vernier study merge DIR1 DIR2 -o DIR");
+  verb->add_option("what", o->words, "study file, or: status DIR, or: merge DIR…")->required();
+  verb->add_option("-o,--output", o->folder, "output folder");
+  verb->add_option("--threads", o->threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  verb->add_option("--shard", o->shard, "do part i of n, such as 0/4 (default: Slurm's array)");
+  verb->add_option("--shard", o->shard,
+                   "run part i of n, such as 0/4 (default: from Slurm's array variables)");
   verb->callback([o, &session] { session.action = [=, &session] { dispatch(*o, session); }; });
 }
 

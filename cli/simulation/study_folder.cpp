@@ -49,14 +49,14 @@ Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Sessi
   return study;
 }
 
-/// A number as a number, true and false as they are, a word as a word.
+/// A setting as a JSON number, Boolean or string.
 Json value_json(const std::string& text) {
   if (text == "true" || text == "false") return text == "true";
   const std::optional<double> value = to_real(text);
   return value ? Json(*value) : Json(text);
 }
 
-/// The kind of covariance that psi_c scales, or null where the rig has none.
+/// The kind of the rig's covariance, which psi_c scales; null if there is none.
 Json covariance_json(const Study& study) {
   return study.rig.covariance ? Json(name(study.rig.covariance->kind)) : Json();
 }
@@ -84,8 +84,8 @@ void keep_inputs(const fs::path& study_file, const fs::path& folder) {
 
 Study open_folder(const fs::path& folder, Session& session) {
   if (!fs::is_regular_file(folder / "study.toml")) {
-    throw Error(folder.string(), "is not the folder of a study",
-                "give the folder that vernier study -o wrote");
+    throw Error(folder.string(), "is not a study folder",
+                "give a folder written by vernier study -o");
   }
   return assemble(read_study(folder / "study.toml", folder / "sources.toml"),
                   folder / "world.world.toml", folder / "rig.json", session);
@@ -204,16 +204,16 @@ std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
   const std::string covariance =
-      study.rig.covariance ? fmt::format("its covariance, which drives psi_c, is of kind {}",
-                                         name(study.rig.covariance->kind))
-                           : "without a covariance";
+      study.rig.covariance
+          ? fmt::format("covariance (scaled by psi_c) of kind {}", name(study.rig.covariance->kind))
+          : "no covariance";
   text += fmt::format("rig {}: {}\n", study.file.rig, covariance);
   text +=
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
-  for (const std::string& why : missing) text += fmt::format("no interval: it {}\n", why);
+  for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
   if (results.blocks_done < results.blocks_total) {
-    text += fmt::format("{} of {} blocks are there: run the study again to finish it\n",
+    text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
                         results.blocks_done, results.blocks_total);
   }
   return text;

@@ -21,12 +21,12 @@ struct MakeOptions {
   std::string size = "20,15,2.5", name, output;
 };
 
-void report(const World& world, const std::string& place, Session& session) {
+void report(const World& world, const std::string& file, Session& session) {
   const WorldExtent box = extent(world);
   const Eigen::Vector3d size = box.high_m - box.low_m;
   const double route = route_length_m(world.route);
   session.result(
-      {{"file", place},
+      {{"file", file},
        {"name", world.name},
        {"segments", world.segments.size()},
        {"corners", world.corners.size()},
@@ -37,10 +37,9 @@ void report(const World& world, const std::string& place, Session& session) {
        {"route_m", route},
        {"legs", world.route.size()}},
       fmt::format("{} ({})\n"
-                  "  {:.2f} x {:.2f} x {:.2f} m, {} segments ({:.1f} % from templates placed more "
-                  "than once),\n"
+                  "  {:.2f} x {:.2f} x {:.2f} m, {} segments ({:.1f} % from repeated templates),\n"
                   "  {} corners, {} surfaces, {} objects; route of {:.1f} m in {} legs\n",
-                  world.name.empty() ? "unnamed world" : world.name, place, size.x(), size.y(),
+                  world.name.empty() ? "unnamed world" : world.name, file, size.x(), size.y(),
                   size.z(), world.segments.size(), 100 * repeated_share(world),
                   world.corners.size(), world.surfaces.size(), world.objects.size(), route,
                   world.route.size()));
@@ -64,26 +63,26 @@ void info(const std::string& name, Session& session) {
 }  // namespace
 
 void add_world(CLI::App& app, Session& session) {
-  CLI::App* verb = app.add_subcommand("world", "make and inspect worlds");
+  CLI::App* verb = app.add_subcommand("world", "generate and inspect worlds");
   verb->require_subcommand(1);
   verb->footer("Example:\n  vernier world make --seed 7 -o my.world.toml");
 
   auto o = std::make_shared<MakeOptions>();
-  CLI::App* maker = add_verb(*verb, session, "make", "an office floor by seed",
+  CLI::App* maker = add_verb(*verb, session, "make", "generate a random office floor",
                              "vernier world make --seed 7 --size-m 20,15,2.5 -o my.world.toml");
-  maker->add_option("--seed", o->seed, "of the arrangement")
-      ->check(not_negative)
-      ->capture_default_str();
-  maker->add_option("--size-m", o->size, "length, width, height")->capture_default_str();
-  maker->add_option("--name", o->name, "name in the file");
+  maker->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  maker->add_option("--size-m", o->size, "length,width,height in metres")->capture_default_str();
+  maker->add_option("--name", o->name, "name of the world");
   maker->add_option("-o,--output", o->output, "world file")->required();
   maker->callback([o, &session] { session.action = [=, &session] { make(*o, session); }; });
 
   auto name = std::make_shared<std::string>();
-  CLI::App* teller = add_verb(*verb, session, "info", "counts, size and route of a world",
-                              "vernier world info workshop");
-  teller->add_option("world", *name, "world file, or a shipped name (workshop)")->required();
-  teller->callback([name, &session] { session.action = [=, &session] { info(*name, session); }; });
+  CLI::App* info_verb =
+      add_verb(*verb, session, "info", "print feature counts, size and route of a world",
+               "vernier world info workshop");
+  info_verb->add_option("world", *name, "world file, or a shipped name (workshop)")->required();
+  info_verb->callback(
+      [name, &session] { session.action = [=, &session] { info(*name, session); }; });
 }
 
 }  // namespace vernier::cli

@@ -33,10 +33,10 @@ struct CharacteriseArguments {
   PairSamplesOptions sampling;
 };
 
-/// What the figures depend on beside the pairs.
+/// The settings that affect the results, apart from the pairs.
 std::string how_measured(const CharacteriseArguments& options, const Matcher& matcher) {
-  return fmt::format("matcher {}, {} corners an image, segments from {:g} px{}", matcher.name,
-                     options.sampling.corners, options.sampling.warp.min_length_px,
+  return fmt::format("matcher {}, {} corners per image, segments of at least {:g} px{}",
+                     matcher.name, options.sampling.corners, options.sampling.warp.min_length_px,
                      options.repair ? ", rows repaired" : "");
 }
 
@@ -48,43 +48,43 @@ PairSamples samples_of(const StereoSceneFile& file,
   PairSamples samples = pair_samples(scene.pair, scene.map, file.range, matcher, options.sampling);
   samples.name = file.name;
   if (samples.losses.empty()) {
-    session.warn(file.name +
-                 ": no straight edge of it is of use: nothing that the truth knows "
-                 "and the right image shows");
+    session.warn(
+        file.name +
+        ": no usable straight edge: none has ground truth and is visible in the right image");
   }
   return samples;
 }
 
-/// What a user has to know before believing the figures.
-bool say_doubts(const MeasuredSources& sources, Session& session) {
-  constexpr double hardly_a_pair = 0.6, much_by_chance = 0.35, half_a_pixel = 0.5;
+/// Reports limitations of the results. Returns whether they can be written.
+bool report_limitations(const MeasuredSources& sources, Session& session) {
+  constexpr double max_edge_loss = 0.6, max_chance = 0.35, max_shift_px = 0.5;
   if (!sources.by_pair) {
     session.warn(
-        fmt::format("{} pair{}: the intervals are over parts of the images, and say "
-                    "nothing of other scenes; give six pairs or more",
+        fmt::format("{} pair{}: the intervals are over image parts and do not generalise to other "
+                    "scenes; give at least six pairs",
                     sources.pairs.size(), sources.pairs.size() == 1 ? "" : "s"));
   }
-  if (sources.edge_loss.chance > much_by_chance) {
+  if (sources.edge_loss.chance > max_chance) {
     session.warn(
-        fmt::format("other edges cover {:.0f} % of any length by chance: edge loss is "
-                    "worth little in such texture",
+        fmt::format("{:.0f} % of any length is covered by other edges by chance: edge loss is "
+                    "unreliable in such dense texture",
                     100 * sources.edge_loss.chance));
   }
-  if (sources.lateral_shift.independent_px.interval.low > half_a_pixel) {
+  if (sources.lateral_shift.independent_px.interval.low > max_shift_px) {
     session.warn(
-        "the views differ by more than half a pixel across the edges, which no common shift does: "
-        "think of --lateral-shift independent");
+        "the views differ by more than half a pixel across the edges, which a common shift cannot "
+        "explain: consider --lateral-shift independent");
   }
   bool any = false;
   for (const SourceEntry& entry : source_entries(sources)) any = any || entry.written;
   if (!any) {
-    session.add_trust_warning("nothing could be measured: fewer than 30 samples of everything");
-  } else if (sources.edge_loss.share.value > hardly_a_pair) {
+    session.add_trust_warning("nothing could be measured: fewer than 30 samples for every source");
+  } else if (sources.edge_loss.share.value > max_edge_loss) {
     any = false;
-    session.add_trust_warning(fmt::format(
-        "{:.0f} % of the left image's edges are not where the truth puts them: look whether left "
-        "and right are exchanged, and at truth_scale",
-        100 * sources.edge_loss.share.value));
+    session.add_trust_warning(
+        fmt::format("{:.0f} % of the left image's edges are not at the position predicted by the "
+                    "ground truth: check for swapped left and right images, and check truth_scale",
+                    100 * sources.edge_loss.share.value));
   }
   return any;
 }
@@ -107,12 +107,12 @@ void run(const CharacteriseArguments& options, Session& session) {
   MeasuringOptions measuring;
   measuring.bootstrap.seed = options.seed;
   const MeasuredSources sources = measure_sources(samples, measuring);
-  const bool trusted = say_doubts(sources, session);
+  const bool trusted = report_limitations(sources, session);
   if (!options.output.empty()) {
     if (trusted)
       write_atomically(options.output, sources_toml(sources, mode, how_measured(options, matcher)));
     else
-      session.warn(options.output + " is not written");
+      session.warn(options.output + " was not written");
   }
   measuring.bootstrap.resamples = 0;
   std::vector<MeasuredSources> each;
@@ -126,29 +126,31 @@ void run(const CharacteriseArguments& options, Session& session) {
 void add_characterise(CLI::App& app, Session& session) {
   auto o = std::make_shared<CharacteriseArguments>();
   CLI::App* verb = add_verb(app, session, "characterise",
-                            "the simulator's sources of error, from pairs with truth",
+                            "measure the simulator's error sources on pairs with ground truth",
                             "vernier characterise --scenes pairs.toml -o sources.toml\n"
-                            "  then in a study:  [sources]  file = \"sources.toml\"");
+                            "  then in a study file:  [sources]  file = \"sources.toml\"");
   add_scene_options(*verb, o->scenes);
-  auto* matcher = verb->add_option("--matcher", o->matcher.names,
-                                   "whose mismatch is measured: edge, stretch, bm or sgbm")
-                      ->capture_default_str();
+  auto* matcher =
+      verb->add_option("--matcher", o->matcher.names,
+                       "matcher whose mismatches are measured: edge, stretch, bm or sgbm")
+          ->capture_default_str();
   add_command_options(*verb, o->matcher)->excludes(matcher);
-  verb->add_option("-o,--output", o->output, "TOML file with a table [sources]");
+  verb->add_option("-o,--output", o->output, "output TOML file with a [sources] table");
   verb->add_option("--lateral-shift", o->lateral_shift,
-                   "common: its default stays, for a pair cannot tell; independent: what the eyes "
-                   "differ by")
+                   "common: keep the default, which a pair cannot measure; independent: measured "
+                   "difference between the cameras")
       ->check(CLI::IsMember({"common", "independent"}))
       ->capture_default_str();
   verb->add_option("--least-length", o->sampling.warp.min_length_px,
-                   "pixels: shorter segments are no features; the simulator's are 10 px and more")
+                   "minimum segment length, pixels (the simulator uses 10)")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--corners", o->sampling.corners, "strongest ones of the left image")
+  verb->add_option("--corners", o->sampling.corners,
+                   "maximum number of corners in the left image, strongest first")
       ->check(CLI::Range(30, 100000))
       ->capture_default_str();
-  verb->add_flag("--repair", o->repair, "take away what rows differ by, found from corners");
-  verb->add_option("--seed", o->seed, "of the bootstrap")
+  verb->add_flag("--repair", o->repair, "correct the vertical misalignment estimated from corners");
+  verb->add_option("--seed", o->seed, "random seed of the bootstrap")
       ->check(not_negative)
       ->capture_default_str();
   verb->callback([o, verb, &session] {

@@ -23,7 +23,7 @@ Json measured_json(const MeasuredValue& measured) {
       {"n", measured.samples}};
 }
 
-/// Least and largest of a source's values over the pairs.
+/// Range of a source's values over the pairs.
 Interval over_pairs(const CharacteriseReport& report, std::size_t source) {
   Interval range{std::numeric_limits<double>::quiet_NaN(),
                  std::numeric_limits<double>::quiet_NaN()};
@@ -112,25 +112,23 @@ std::string range(const Interval& interval) {
 std::string details(const MeasuredSources& s) {
   const MeasuredEdgeLoss& loss = s.edge_loss;
   std::string text = fmt::format(
-      "edges: {:.0f} % of segments are lost whole, {:.0f} % not at all, the others have {:.2f} "
-      "gaps; {:.1f} % of the length is on no edge\n",
+      "edges: {:.0f} % of segments lost completely, {:.0f} % without loss, {:.2f} gaps in the "
+      "others; {:.1f} % of the length is on no edge\n",
       100 * loss.whole, 100 * loss.none, loss.gaps, 100 * loss.on_edges.value);
   text += fmt::format(
-      "views: shifted by {} px (rms) against each other, by {} px towards the brighter side; "
-      "{:.1f} "
-      "% of segments by far more; the truth errs by {} px along the row\n",
+      "views: relative shift {} px (rms), {} px towards the brighter side; {:.1f} % of segments "
+      "are outliers; ground truth error {} px along the row\n",
       figure_or_dash(s.lateral_shift.relative_px.value),
       figure_or_dash(s.lateral_shift.towards_px.value), 100 * s.lateral_shift.beyond,
       figure_or_dash(s.lateral_shift.truth_px));
   text += fmt::format(
-      "ends: {} px across, {} px along; {:.0f} % of segments cut short in one view, {:.1f} % of "
-      "the "
-      "others outliers\n",
+      "endpoints: {} px across, {} px along; {:.0f} % of segments truncated in one view, {:.1f} % "
+      "of the others are outliers\n",
       figure_or_dash(s.endpoints.across_px.value), figure_or_dash(s.endpoints.along_px.value),
       100 * s.endpoints.broken, 100 * s.endpoints.outliers);
-  text += fmt::format("lines: {:.1f} % not matched; {} wrong, {} of them not in the right image\n",
-                      100 * s.stereo_mismatch.unmatched, s.stereo_mismatch.wrong,
-                      s.stereo_mismatch.occluded);
+  text += fmt::format(
+      "lines: {:.1f} % unmatched; {} wrong, {} of them not visible in the right image\n",
+      100 * s.stereo_mismatch.unmatched, s.stereo_mismatch.wrong, s.stereo_mismatch.occluded);
   for (const MismatchByDisparity& bin : s.stereo_mismatch.by_disparity) {
     text += fmt::format("  disparity {:>5.0f} to {:>4.0f} px: {:>3} of {:>5} lines wrong, {}\n",
                         bin.from_px, bin.to_px, bin.wrong, bin.lines, range(bin.share.interval));
@@ -170,7 +168,7 @@ std::string report_text(const CharacteriseReport& report) {
                         figure_or_dash(entry.measured.value), range(entry.measured.interval),
                         range(over_pairs(report, i)), entry.measured.samples,
                         figure_or_dash(entry.otherwise),
-                        entry.written ? "" : "default stays: ", entry.note);
+                        entry.written ? "" : "default used: ", entry.note);
   }
   return text +
          fmt::format("intervals: bootstrap over {} {}\n", report.sources.clusters,

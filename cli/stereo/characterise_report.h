@@ -11,10 +11,10 @@
 
 namespace vernier::cli {
 
-/// What `characterise` found.
+/// Results of `vernier characterise`.
 struct CharacteriseReport {
   MeasuredSources sources;
-  std::vector<MeasuredSources> each;  ///< of every pair by itself, without intervals
+  std::vector<MeasuredSources> each;  ///< one per pair, without intervals
   ShiftMode mode = ShiftMode::common;
   std::string matcher;
 };

@@ -16,9 +16,9 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int enlarged = 2;  // so that edges side by side can be told
+constexpr int enlarged = 2;  // so that adjacent edges can be distinguished
 
-/// In few levels, which keeps the file small.
+/// Uses few grey levels to keep the file small.
 cv::Mat faded(const GreyLevels& image) {
   constexpr int step = 12;
   cv::Mat canvas(image.height_px, image.width_px, CV_8UC3);
@@ -60,7 +60,7 @@ std::string error_picture(const GreyLevels& image,
   cv::Mat canvas = faded(image);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double error = std::abs(errors_px[i]);
-    cv::Scalar colour(0, 0, 0);  // BGR; nothing is known
+    cv::Scalar colour(0, 0, 0);  // BGR; no ground truth
     if (std::isinf(error)) colour = {230, 90, 30};
     if (error <= 0.5) colour = {60, 160, 20};
     if (error > 0.5 && error <= 1) colour = {0, 200, 230};

@@ -14,15 +14,15 @@
 
 namespace vernier::cli {
 
-/// Edges over the faded image: matched ones from blue (the least disparity) to red (the largest),
-/// others grey. The bytes of a PNG, of twice the image's size.
+/// Edges on the faded image: matched ones from blue (smallest disparity) to red (largest), others
+/// grey. Returns a PNG of twice the image size.
 std::string disparity_picture(const GreyLevels& image,
                               const std::vector<EdgePoint>& edges,
                               const std::vector<EdgeDisparity>& found,
                               const DisparityRange& range);
 
-/// Edges by their error: green to half a pixel, yellow to 1 px, orange to 3 px, red beyond; blue
-/// where nothing was found (infinite), black where nothing is known (not a number).
+/// Edges coloured by error: green up to 0.5 px, yellow up to 1 px, orange up to 3 px, red above;
+/// blue if unmatched (infinite), black without ground truth (NaN).
 std::string error_picture(const GreyLevels& image,
                           const std::vector<EdgePoint>& edges,
                           const std::vector<double>& errors_px);

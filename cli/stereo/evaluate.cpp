@@ -52,8 +52,8 @@ Pictures pictures_of(const Scene& scene, const Run& run, DiscontinuityRule rule)
   std::vector<double> errors_px;
   for (std::size_t i = 0; i < scene.edges.size(); ++i) {
     const TruthAtEdge& truth = scene.truth[i];
-    const bool asked = truth.known && !is_occluded(truth, rule);
-    errors_px.push_back(!asked                    ? std::numeric_limits<double>::quiet_NaN()
+    const bool evaluated = truth.known && !is_occluded(truth, rule);
+    errors_px.push_back(!evaluated                ? std::numeric_limits<double>::quiet_NaN()
                         : !run.found[i].matched() ? std::numeric_limits<double>::infinity()
                                                   : error_px(run.found[i], truth, rule));
   }
@@ -61,7 +61,7 @@ Pictures pictures_of(const Scene& scene, const Run& run, DiscontinuityRule rule)
           error_picture(scene.pair.left, scene.edges, errors_px)};
 }
 
-/// A scene's name as part of a file's.
+/// File name stem of a scene.
 std::string file_stem(std::size_t number, const std::string& name) {
   std::string stem = fmt::format("{:02}-", number + 1);
   for (const char c : name) {
@@ -70,13 +70,13 @@ std::string file_stem(std::size_t number, const std::string& name) {
   return stem;
 }
 
-/// Names of a scene's two pictures in the folder.
+/// File names of a scene's two pictures.
 Pictures picture_names(std::size_t number, const StereoSceneFile& file) {
   const std::string stem = file_stem(number, file.name);
   return {stem + ".disparity.png", stem + ".error.png"};
 }
 
-/// Refuses outputs that are inputs or each other before any work is done.
+/// Throws Error if an output would overwrite an input or another output.
 void check_outputs(const EvaluateArguments& options, const std::vector<StereoSceneFile>& files) {
   const std::vector<fs::path> inputs = inputs_of(options.scenes, files);
   for (const std::string& output : {options.picture, options.error_picture}) {
@@ -88,10 +88,10 @@ void check_outputs(const EvaluateArguments& options, const std::vector<StereoSce
   if (options.output.empty()) return;
   const fs::path folder = options.output;
   if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw Error(options.output, "is a file, not a folder", "name another with -o");
+    throw Error(options.output, "is a file, not a folder", "give another folder with -o");
   }
   if (fs::exists(folder / "study.toml")) {
-    throw Error(options.output, "holds a study", "give the evaluation a folder of its own");
+    throw Error(options.output, "contains a study", "give a separate folder for the evaluation");
   }
   check_output_is_not_input(inputs, folder / evaluation_file);
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -103,7 +103,8 @@ void check_outputs(const EvaluateArguments& options, const std::vector<StereoSce
 
 using Outputs = std::vector<std::pair<fs::path, std::string>>;
 
-/// What is written of a scene, in the end: nothing where a later one fails.
+/// Collects the outputs of a scene; written at the end, so that nothing is written if a later scene
+/// fails.
 void add_outputs(const EvaluateArguments& options,
                  std::size_t number,
                  const Scene& scene,
@@ -134,14 +135,14 @@ void write_outputs(const EvaluateArguments& options, const Json& json, Outputs o
   if (!options.output.empty()) {
     std::error_code failed;
     fs::create_directories(options.output, failed);
-    if (failed) throw Error(options.output, failed.message(), "name another folder with -o");
+    if (failed) throw Error(options.output, failed.message(), "give another folder with -o");
     outputs.emplace_back(fs::path(options.output) / evaluation_file,
                          json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
   write_atomically(outputs);
 }
 
-/// All matchers on one scene: their runs, with what is said of them put into `report`.
+/// The collected results of all scenes.
 struct Report {
   std::vector<std::vector<Json>> figures;  ///< [matcher][scene]
   Json scenes = Json::array();
@@ -175,10 +176,10 @@ std::vector<Run> run_scene(const Scene& scene,
   return runs;
 }
 
-/// The means, and the whole as JSON.
-Json concluded(const EvaluateArguments& options,
-               const std::vector<Matcher>& matchers,
-               Report& report) {
+/// Adds the means and returns the complete JSON.
+Json with_means(const EvaluateArguments& options,
+                const std::vector<Matcher>& matchers,
+                Report& report) {
   Json json{{"matchers", Json::object()}, {"outline", options.outline}};
   for (std::size_t m = 0; m < matchers.size(); ++m) {
     const std::string& name = matchers[m].name;
@@ -192,7 +193,7 @@ Json concluded(const EvaluateArguments& options,
   return json;
 }
 
-constexpr double max_psi_c = 1000;  // as of a study's sources
+constexpr double max_psi_c = 1000;  // as in a study's sources
 
 DrawOptions draw_options(const EvaluateArguments& options) {
   DrawOptions draws = options.draws;
@@ -208,13 +209,13 @@ DrawOptions draw_options(const EvaluateArguments& options) {
   }
   for (const double psi_c : draws.psi_c) {
     if (psi_c >= 0 && psi_c <= max_psi_c) continue;
-    throw Error("--psi-c", fmt::format("{:g} is not within 0 and {:g}", psi_c, max_psi_c),
-                "give factors of the standard deviations, such as 0.1,1,10");
+    throw Error("--psi-c", fmt::format("{:g} is not between 0 and {:g}", psi_c, max_psi_c),
+                "give scale factors for the standard deviations, such as 0.1,1,10");
   }
   return draws;
 }
 
-/// What the figures depend on beside the pairs, which stand with their scores.
+/// The settings that affect the results, apart from the pairs.
 Json settings_json(const EvaluateArguments& options,
                    const std::vector<Matcher>& matchers,
                    const Session& session) {
@@ -228,22 +229,20 @@ Json settings_json(const EvaluateArguments& options,
           {"repair", options.repair}};
 }
 
-/// Doubts a pair on which no matcher does what matchers do.
-void judge(const Scene& scene, const std::vector<Run>& runs, Session& session) {
-  constexpr double hardly_any = 0.05, some = 0.3, mostly_wrong = 1.0 / 3;
+/// Adds trust warnings for a pair on which all matchers perform implausibly.
+void check_plausibility(const Scene& scene, const std::vector<Run>& runs, Session& session) {
+  constexpr double min_density = 0.05, low_density = 0.3, max_bad = 1.0 / 3;
   const auto all = [&](const auto& of) { return std::all_of(runs.begin(), runs.end(), of); };
-  if (all([](const Run& run) { return run.score.all.density < hardly_any; })) {
-    session.add_trust_warning(scene.file.name +
-                              ": no matcher finds anything; look at both images and at the "
-                              "range of disparities");
-  } else if (all([](const Run& run) {
-               return run.score.all.density < some || run.score.all.bad_1 > mostly_wrong;
-             })) {
+  if (all([](const Run& run) { return run.score.all.density < min_density; })) {
     session.add_trust_warning(
-        fmt::format("{}: {:.0f} % of what matchers find is wrong by more than a pixel: "
-                    "see that the truth is of this left image, and at its scale ({:g} "
-                    "values a pixel)",
-                    scene.file.name, 100 * runs.front().score.all.bad_1, scene.file.truth_scale));
+        scene.file.name + ": no matcher finds matches; check both images and the disparity range");
+  } else if (all([](const Run& run) {
+               return run.score.all.density < low_density || run.score.all.bad_1 > max_bad;
+             })) {
+    session.add_trust_warning(fmt::format(
+        "{}: {:.0f} % of the matches are wrong by more than a pixel: check that the ground truth "
+        "belongs to this left image, and its scale ({:g} values per pixel)",
+        scene.file.name, 100 * runs.front().score.all.bad_1, scene.file.truth_scale));
   }
 }
 
@@ -252,11 +251,11 @@ void run(const EvaluateArguments& options, Session& session) {
   check_outputs(options, files);
   const std::vector<Matcher> matchers = matchers_named(options.matchers);
   if (options.equal_density && matchers.size() < 2) {
-    throw Error("--equal-density", "there is one matcher only", "name another to compare with");
+    throw Error("--equal-density", "needs at least two matchers", "add another one to --matcher");
   }
   EvaluationOptions how;
   if (options.outline == "foreground") how.outline = DiscontinuityRule::foreground;
-  cv::setNumThreads(1);  // CPU times are of one thread
+  cv::setNumThreads(1);  // CPU times are for one thread
   EvaluationUnderError under_error(matchers, how, draw_options(options));
   EvaluationAtEqualDensity equal_density(matchers);
   Report report{std::vector<std::vector<Json>>(matchers.size())};
@@ -268,12 +267,12 @@ void run(const EvaluateArguments& options, Session& session) {
     const std::vector<Run> runs = run_scene(scene, matchers, how, report);
     add_outputs(options, static_cast<std::size_t>(done), scene, runs[0], how.outline,
                 report.scenes.back(), outputs);
-    judge(scene, runs, session);
+    check_plausibility(scene, runs, session);
     if (options.equal_density) equal_density.add(scene, runs, how);
     under_error.add(scene, session);
     progress.update(++done, static_cast<int>(files.size()));
   }
-  Json json = concluded(options, matchers, report);
+  Json json = with_means(options, matchers, report);
   json["settings"] = settings_json(options, matchers, session);
   if (options.equal_density) {
     json["equal_density"] = equal_density.json();
@@ -288,27 +287,26 @@ void run(const EvaluateArguments& options, Session& session) {
 
 void add_error_options(CLI::App* verb, EvaluateArguments& o) {
   verb->add_flag("--equal-density", o.equal_density,
-                 "compare the first matcher with the others where both leave out as much");
-  CLI::Option* psi_c =
-      verb->add_option("--psi-c", o.psi_c,
-                       "score under calibration errors too: factors such as 0.1,1,3,10 on the "
-                       "rig's standard deviations");
+                 "compare the first matcher with the others at equal density");
+  CLI::Option* psi_c = verb->add_option("--psi-c", o.psi_c,
+                                        "also evaluate under calibration errors: scale factors for "
+                                        "the rig's standard deviations, such as 0.1,1,3,10");
   verb->add_option("--rig", o.scenes.one.rig,
-                   "rig file that the pair was rectified by, for --psi-c; without it the nominal "
-                   "rig, resized to the image")
+                   "rig file used to rectify the pair, for --psi-c (default: the nominal rig, "
+                   "resized to the image)")
       ->excludes("--scenes")
       ->needs(psi_c);
   verb->add_option("--rows-moved-px", o.rows_px,
-                   "and with the right image so many rows lower, such as 2");
-  verb->add_option("--draws", o.draws.draws, "rigs drawn of each pair and psi_c")
+                   "also evaluate with the right image shifted down by this many rows, such as 2");
+  verb->add_option("--draws", o.draws.draws, "sampled rigs per pair and psi_c")
       ->needs(psi_c)
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  verb->add_option("--seed", o.draws.seed, "of the draws")
+  verb->add_option("--seed", o.draws.seed, "random seed of the samples")
       ->needs(psi_c)
       ->check(not_negative)
       ->capture_default_str();
-  verb->add_option("--threads", o.draws.threads, "of the draws; 0: as many as the machine has")
+  verb->add_option("--threads", o.draws.threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
 }
@@ -317,31 +315,34 @@ void add_error_options(CLI::App* verb, EvaluateArguments& o) {
 
 void add_evaluate(CLI::App& app, Session& session) {
   auto o = std::make_shared<EvaluateArguments>();
-  CLI::App* verb = add_verb(
-      app, session, "evaluate", "stereo matchers against ground truth, at the left image's edges",
-      "vernier evaluate --left im2.png --right im6.png --truth disp2.png --truth-scale 4 "
-      "--max-disparity 64 --matcher edge,bm,sgbm");
+  CLI::App* verb =
+      add_verb(app, session, "evaluate",
+               "evaluate stereo matchers against ground truth at the edges of the left image",
+               "vernier evaluate --left im2.png --right im6.png --truth disp2.png --truth-scale 4 "
+               "--max-disparity 64 --matcher edge,bm,sgbm");
   add_scene_options(*verb, o->scenes);
   add_error_options(verb, *o);
   verb->add_option("--matcher", o->matchers.names,
-                   "edge, stretch, bm, sgbm and names of commands, with commas between; the first "
-                   "is in the pictures")
+                   "edge, stretch, bm, sgbm and names given by --command, separated by commas; "
+                   "pictures show the first")
       ->capture_default_str();
   add_command_options(*verb, o->matchers);
   verb->add_option("--outline", o->outline,
-                   "what is right at a step of the truth: either surface, or the foreground alone")
+                   "which disparity is correct at a depth discontinuity: either surface, or the "
+                   "foreground only")
       ->check(CLI::IsMember({"either", "foreground"}))
       ->capture_default_str();
-  verb->add_flag("--repair", o->repair, "take away what rows differ by, found from corners");
-  verb->add_option("-o,--output", o->output,
-                   "folder for the figures and pictures of every pair, for vernier report");
-  verb->add_option("--picture", o->picture,
-                   "PNG of the first pair's edges by the first matcher, blue far to red near")
-      ->check(png_name);
+  verb->add_flag("--repair", o->repair, "correct the vertical misalignment estimated from corners");
   verb->add_option(
-          "--error-picture", o->error_picture,
-          "the same by error: green to 0.5 px, yellow to 1, orange to 3, red; blue: no match, "
-          "black: not judged")
+      "-o,--output", o->output,
+      "output folder for the scores and pictures of all pairs, readable by vernier report");
+  verb->add_option("--picture", o->picture,
+                   "PNG of the first pair's edges with the first matcher's disparities, blue (far) "
+                   "to red (near)")
+      ->check(png_name);
+  verb->add_option("--error-picture", o->error_picture,
+                   "the same coloured by error: green up to 0.5 px, yellow up to 1 px, orange up "
+                   "to 3 px, red above; blue: no match, black: not evaluated")
       ->check(png_name);
   verb->callback([o, verb, &session] {
     require_scenes(*verb, o->scenes);

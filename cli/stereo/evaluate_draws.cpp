@@ -38,7 +38,7 @@
 #include "stereo/stereo_truth.h"
 
 namespace vernier::cli {
-/// What one draw gives, without and with repair.
+/// The result of one sample, without and with repair.
 struct DrawTrial {
   std::vector<DrawMetrics> figures[2];
   GeometricError geometry[2];
@@ -47,7 +47,7 @@ struct DrawTrial {
 
 namespace {
 
-/// The rig that a scene's calibration errors are drawn of.
+/// The rig whose covariance a scene's calibration errors are sampled from.
 struct SceneRig {
   RigEstimate estimate;
   RectifiedGeometry geometry;
@@ -73,16 +73,16 @@ SceneRig rig_of(const Scene& scene, Session& session) {
   rig.name = scene.file.rig.filename().string();
   if (rig.geometry.size_px != size) {
     throw Error(scene.file.rig.string(),
-                fmt::format("it rectifies to {}x{} px, and the pair \"{}\" is {}x{}",
+                fmt::format("the rectified size is {}x{} px, but the pair \"{}\" is {}x{}",
                             rig.geometry.size_px[0], rig.geometry.size_px[1], scene.file.name,
                             size[0], size[1]),
-                "give the rig that the pair was rectified by");
+                "give the rig that the pair was rectified with");
   }
   return rig;
 }
 
-/// The range with room for what a calibration error of psi_c does to disparities: three standard
-/// deviations, over the image.
+/// The range extended by the effect of a calibration error of psi_c on disparities: three standard
+/// deviations, maximum over the image.
 DisparityRange widened(const DisparityRange& range, const SceneRig& rig, double psi_c) {
   const RectificationUncertainty uncertainty(rig.estimate.rig, rig.estimate.covariance->matrix,
                                              rig.geometry);
@@ -100,13 +100,13 @@ DisparityRange widened(const DisparityRange& range, const SceneRig& rig, double 
   return {std::max(range.min_px - room, -last), std::min(range.max_px + room, last)};
 }
 
-/// Where the right camera stands in the left one's frame.
+/// Position of the right camera in the left camera frame.
 Eigen::Vector3d right_centre_m(const Rig& rig) {
   const Pose& pose = rig.T_camera_first[1];
   return -pose.R.transpose() * pose.t;
 }
 
-/// Whether a rig still has its cameras side by side in their order.
+/// Whether the cameras are still side by side in the same order.
 bool is_physical(const Rig& drawn, const Rig& true_rig) {
   const Eigen::Vector3d baseline = right_centre_m(true_rig);
   const bool finite = parameters(drawn).allFinite();
@@ -157,7 +157,7 @@ DrawTrial run_trial(WarpedPair warped,
   return trial;
 }
 
-/// The pair with its own vertical field taken away: errors are then those that are drawn.
+/// The pair with its own vertical misalignment corrected, so that only sampled errors remain.
 RectifiedPair without_own_field(const Scene& scene) {
   const VerticalField own = vertical_field(scene.pair, scene.file.range);
   return {scene.pair.left, own.significant && !own.unrectified
@@ -165,7 +165,7 @@ RectifiedPair without_own_field(const Scene& scene) {
                                : scene.pair.right};
 }
 
-/// Not a number of none.
+/// NaN for an empty list.
 double mean_of_numbers(const std::vector<double>& values) {
   double sum = 0;
   int count = 0;
@@ -177,8 +177,7 @@ double mean_of_numbers(const std::vector<double>& values) {
   return count > 0 ? sum / count : NAN;
 }
 
-/// A figure of every scene, or of every draw where there is one scene; without those that have
-/// none.
+/// A metric per scene, or per sample if there is only one scene; missing values are skipped.
 std::vector<double> clusters_of(const ErrorCell& cell,
                                 std::size_t matcher,
                                 double DrawMetrics::*figure) {
@@ -362,19 +361,20 @@ Json EvaluationUnderError::json() const {
 std::string EvaluationUnderError::text() const {
   if (!wanted()) return "";
   const std::set<std::string> rigs(rigs_.begin(), rigs_.end());
-  std::string text = "\nunder calibration error, against the warped truth";
+  std::string text = "\nunder calibration error, against the warped ground truth";
   if (!rigs.empty()) {
-    text += fmt::format(": {} rigs a pair, drawn of {}", options_.draws, fmt::join(rigs, ", "));
+    text +=
+        fmt::format(": {} rigs per pair, sampled from {}", options_.draws, fmt::join(rigs, ", "));
   }
   text += fmt::format("\n{:<12} {:<7} {:>8} {:>8} {:<10} {:>8} {:>8} {:>8} {:>18} {:>9}\n", "error",
                       "repair", "bias px", "rows px", "matcher", "density", "bad 1", "mismatch",
-                      scenes_ > 1 ? "95 % over scenes" : "95 % over draws", "error px");
+                      scenes_ > 1 ? "95 % over scenes" : "95 % over samples", "error px");
   for (const ErrorCell& cell : cells_) {
     for (std::size_t m = 0; m < matchers_.size(); ++m) {
       text += line_of(cell, m, matchers_[m].name);
     }
     if (cell.not_physical > 0 && !cell.repair) {
-      text += fmt::format("             {} draws left out: cameras exchanged or no baseline\n",
+      text += fmt::format("             {} samples excluded: cameras swapped or no baseline\n",
                           cell.not_physical);
     }
   }

@@ -15,40 +15,39 @@
 namespace vernier::cli {
 
 struct DrawOptions {
-  std::vector<double> psi_c;    ///< calibration errors to try; none: no draws
-  std::vector<double> rows_px;  ///< and right images that lie so much lower
-  int draws = 5;                ///< rigs of each scene and psi_c
+  std::vector<double> psi_c;    ///< calibration errors to simulate; empty: none
+  std::vector<double> rows_px;  ///< downward shifts of the right image to simulate
+  int draws = 5;                ///< rigs per scene and psi_c
   std::uint64_t seed = 1;
   int threads = 0;
 };
 
-/// What a matcher did on one pair that a wrong rig rectified; not a number: nothing to share.
+/// A matcher's metrics on one pair rectified with a wrong rig; NaN if undefined.
 struct DrawMetrics {
   double density, bad_1, mismatch, disparity_error_rms_px;
 };
 
-/// One kind of error, with and without repair: figures of every scene, draw and matcher.
+/// One kind of error, with or without repair: metrics of every scene, sample and matcher.
 struct ErrorCell {
   double psi_c = 0, rows_px = 0;
   bool repair = false;
   std::vector<std::vector<std::vector<DrawMetrics>>> figures;  ///< [scene][draw][matcher]
-  std::vector<double> bias_rms_px, rows_rms_px;                ///< of every scene and draw
-  int repaired = 0, pairs = 0;  ///< how many a vertical field was taken away from
-  int not_physical = 0;         ///< draws without a pair: cameras exchanged, or no baseline
+  std::vector<double> bias_rms_px, rows_rms_px;                ///< per scene and sample
+  int repaired = 0, pairs = 0;  ///< number of pairs with corrected misalignment
+  int not_physical = 0;         ///< samples without a pair: cameras swapped or no baseline
 };
 
-struct DrawTrial;  // what one draw gives
+struct DrawTrial;  // the result of one sample
 
-/// The evaluation of matchers under errors of calibration, scene by scene.
+/// Evaluates matchers under calibration errors, scene by scene.
 class EvaluationUnderError {
  public:
   EvaluationUnderError(const std::vector<Matcher>& matchers,
                        const EvaluationOptions& how,
                        const DrawOptions& options);
 
-  /// All draws of a scene, from its own rig's covariance or the nominal one's, resized; whatever
-  /// vertical field the pair has of itself is taken away before. Throws Error naming the rig's
-  /// file.
+  /// Runs all samples of a scene, from the covariance of its own rig or of the resized nominal rig;
+  /// the pair's own vertical misalignment is corrected first. Throws Error naming the rig file.
   void add(const Scene& scene, Session& session);
 
   bool wanted() const { return !cells_.empty(); }
@@ -62,7 +61,7 @@ class EvaluationUnderError {
   EvaluationOptions how_;
   DrawOptions options_;
   std::vector<ErrorCell> cells_;
-  std::vector<std::string> rigs_;  ///< one a scene, where draws are wanted
+  std::vector<std::string> rigs_;  ///< one per scene, if samples are requested
   std::uint32_t scenes_ = 0;
 };
 

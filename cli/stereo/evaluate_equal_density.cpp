@@ -26,7 +26,7 @@ std::vector<CurvePoint> by_confidence(const Scene& scene,
                        how);
 }
 
-/// One point for each matcher of a sweep, densest first.
+/// One point per matcher of a sweep, highest density first.
 std::vector<CurvePoint> by_sweep(const Scene& scene,
                                  const std::vector<Matcher>& sweep,
                                  const EvaluationOptions& how) {
@@ -46,7 +46,7 @@ std::vector<CurvePoint> by_sweep(const Scene& scene,
   return curve;
 }
 
-/// Means over scenes, point by point.
+/// Pointwise means over the scenes.
 Json mean_curve(const std::vector<const std::vector<CurvePoint>*>& curves) {
   std::size_t points = curves.front()->size();
   for (const auto* curve : curves) points = std::min(points, curve->size());
@@ -64,7 +64,7 @@ Json mean_curve(const std::vector<const std::vector<CurvePoint>*>& curves) {
   return mean;
 }
 
-/// Whether leaving out the less sure changes anything.
+/// Whether rejecting matches of low confidence changes anything.
 bool states_confidence(const std::vector<DensityCurves>& scenes) {
   return std::any_of(scenes.begin(), scenes.end(), [](const DensityCurves& scene) {
     return scene.peer.front().front().density != scene.peer.front().back().density;
@@ -92,7 +92,7 @@ EvaluationAtEqualDensity::EvaluationAtEqualDensity(const std::vector<Matcher>& m
         peer.sweeps.push_back(by_uniqueness(BmOptions{.block_px = block}));
       }
     } else {
-      peer.settings.push_back("by its confidence");
+      peer.settings.push_back("by confidence");
     }
     peers_.push_back(std::move(peer));
   }
@@ -124,7 +124,7 @@ Json EvaluationAtEqualDensity::json() const {
     const EqualDensity e = at_equal_density(peer.scenes);
     const bool cut = !peer.sweeps.empty() || states_confidence(peer.scenes);
     peers[peer.name] = {
-        {"setting", cut ? peer.settings[e.setting] : "as it is: states no confidence"},
+        {"setting", cut ? peer.settings[e.setting] : "unchanged: no confidence available"},
         {"scenes", peer.scenes.size()},
         {"left_out", peer.left_out},
         {"density", e.density},
@@ -168,7 +168,7 @@ std::string EvaluationAtEqualDensity::text(const Json& json) {
       }
     }
     if (!e.at("left_out").empty()) {
-      text += fmt::format("; without {} of the pairs, where one of them finds nothing",
+      text += fmt::format("; {} pairs excluded because one matcher finds nothing",
                           e.at("left_out").size());
     }
     text += "\n";

@@ -13,29 +13,29 @@
 
 namespace vernier::cli {
 
-/// The first matcher against the others where both leave out as much, scene by scene. OpenCV's have
-/// their settings swept, and the best is kept; the others are cut by their own confidence.
+/// Compares the first matcher with the others at equal density, scene by scene. OpenCV's settings
+/// are swept and the best is kept; the others are thresholded by their own confidence.
 class EvaluationAtEqualDensity {
  public:
   explicit EvaluationAtEqualDensity(const std::vector<Matcher>& matchers);
 
-  /// What the first matcher found on the scene is `own`, what all of them found is `runs`.
+  /// Adds a scene with the results `runs` of all matchers.
   void add(const Scene& scene, const std::vector<Run>& runs, const EvaluationOptions& how);
 
-  /// Of each other matcher.
+  /// Comparison with each other matcher.
   Json json() const;
-  /// Points (density, bad 1, mismatch) of each matcher's curve, means over the scenes.
+  /// Points (density, bad 1, mismatch) of each matcher's curve, averaged over the scenes.
   Json curves() const;
-  /// What json() says, in lines.
+  /// Formats the result of json() as text.
   static std::string text(const Json& json);
 
  private:
   struct ComparedMatcher {
     std::string name;
     std::vector<std::string> settings;
-    std::vector<std::vector<Matcher>> sweeps;  ///< matchers of each setting; none: by confidence
+    std::vector<std::vector<Matcher>> sweeps;  ///< matchers of each setting; empty: by confidence
     std::vector<DensityCurves> scenes;
-    std::vector<std::string> left_out;  ///< scenes where one of the two finds nothing
+    std::vector<std::string> left_out;  ///< scenes in which one of the two finds nothing
   };
   const std::vector<Matcher>& matchers_;
   std::vector<ComparedMatcher> peers_;

@@ -12,7 +12,7 @@ namespace vernier::cli {
 
 Json figures_json(const MatcherScore& s, double time_ms) {
   const EdgeMetrics& f = s.all;
-  if (f.matched == 0) {  // no share of nothing
+  if (f.matched == 0) {  // rates are undefined without matches
     Json none{{"density", 0.0}};
     for (const char* key : {"bad_0_5", "bad_1", "bad_2", "mismatch", "rms_inlier_px",
                             "bias_inlier_px", "bad_1_smooth", "bad_1_discontinuity"}) {
@@ -71,7 +71,7 @@ Json angles_json(const MatcherScore& score) {
 std::string figures_header() {
   return fmt::format("{:<18} {:<10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} {:>9} {:>9}\n",
                      "pair", "matcher", "density", "bad 0.5", "bad 1", "bad 2", "mismatch",
-                     "rms px", "bias px", "bad 1 out", "CPU ms");
+                     "rms px", "bias px", "bad 1 disc", "CPU ms");
 }
 
 std::string figures_line(const std::string& pair, const std::string& matcher, const Json& f) {

@@ -10,17 +10,17 @@
 
 namespace vernier::cli {
 
-/// What `evaluate -o` leaves in a folder, beside its pictures.
+/// The result file that `evaluate -o` writes next to the pictures.
 inline constexpr const char* evaluation_file = "evaluation.json";
 
-/// A score as JSON; null where there is nothing to share.
+/// A score as JSON; null where a rate is undefined.
 Json figures_json(const MatcherScore& score, double time_ms);
 Json angles_json(const MatcherScore& score);
 
-/// Means over scenes of the numbers in their JSON; null where one is.
+/// Means over the scenes' JSON numbers; null if any is null.
 Json mean_of(const std::vector<Json>& scenes);
 
-/// The table's first line, and one of it.
+/// The header and one line of the table.
 std::string figures_header();
 std::string figures_line(const std::string& pair, const std::string& matcher, const Json& figures);
 

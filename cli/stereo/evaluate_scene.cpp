@@ -27,7 +27,7 @@ namespace {
 
 constexpr int timed_runs = 3;
 
-/// CPU time of this thread, and of programs that were run and have ended.
+/// CPU time of this thread and of finished child processes.
 double cpu_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -40,35 +40,36 @@ double cpu_ms() {
          ms(ended.ru_utime) + ms(ended.ru_stime);
 }
 
-/// Corners that match only the other way round.
+/// Throws Error if corners match only with the images swapped.
 void check_corners_not_swapped(const Scene& scene, const VerticalField& field) {
   if (field.known || !field.unrectified) return;
   const VerticalField other =
       vertical_field(RectifiedPair{scene.pair.right, scene.pair.left}, scene.file.range);
   if (!other.known || other.unrectified) return;
-  throw Error(scene.file.left.string(),
-              fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
-                          "way round",
-                          field.matched, other.matched),
-              "exchange --left and --right");
+  throw Error(
+      scene.file.left.string(),
+      fmt::format(
+          "left and right appear to be swapped: {} corners match as given, {} after swapping",
+          field.matched, other.matched),
+      "swap --left and --right");
 }
 
 void repair(Scene& scene, bool wanted, Session& session) {
   const VerticalField field = vertical_field(scene.pair, scene.file.range);
   check_corners_not_swapped(scene, field);
   if (!field.significant && !field.unrectified && !wanted) return;
-  session.say(scene.file.name + ": " + describe(field));
+  session.info(scene.file.name + ": " + describe(field));
   if (field.unrectified) {
-    session.add_trust_warning(scene.file.name +
-                              ": its rows do not agree; rectify the pair first (vernier rectify)");
+    session.add_trust_warning(
+        scene.file.name + ": the rows are not aligned; rectify the pair first (vernier rectify)");
   } else if (field.significant && wanted) {
     scene.pair.right = corrected_right(scene.pair.right, field);
   } else if (field.significant) {
-    session.warn(scene.file.name + ": its rows are not quite the same; --repair takes that away");
+    session.warn(scene.file.name + ": the rows are slightly misaligned; --repair corrects this");
   }
 }
 
-/// Says so where the truth of some edges is outside of what is searched.
+/// Warns if the true disparities of some edges are outside the search range.
 void check_range(const Scene& scene, Session& session) {
   constexpr double some = 0.02, much = 0.2;
   const DisparityRange& range = scene.file.range;
@@ -85,8 +86,8 @@ void check_range(const Scene& scene, Session& session) {
   const double share = static_cast<double>(outside) / std::max(1, known);
   if (share < some) return;
   const std::string words = fmt::format(
-      "{}: the truth of {:.0f} % of the edges is not within {} and {} px, which is searched; it "
-      "reaches from {:.0f} to {:.0f}",
+      "{}: the true disparities of {:.0f} % of the edges are outside the search range of {} to {} "
+      "px; they range from {:.0f} to {:.0f} px",
       scene.file.name, 100 * share, range.min_px, range.max_px, least, most);
   if (share > much) {
     session.add_trust_warning(words);
@@ -104,9 +105,9 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
   const GreyLevels &left = scene.pair.left, &right = scene.pair.right;
   if (left.width_px != right.width_px || left.height_px != right.height_px) {
     throw Error(file.right.string(),
-                fmt::format("it is {}x{}, the left image {}x{}", right.width_px, right.height_px,
-                            left.width_px, left.height_px),
-                "give a rectified pair of one size");
+                fmt::format("image size {}x{} differs from the left image, {}x{}", right.width_px,
+                            right.height_px, left.width_px, left.height_px),
+                "give a rectified pair of equal size");
   }
   check_matcher_input(scene.pair, file.range, file.left.string());
   check_two_images(scene.pair, file.left.string(), file.right.string());
@@ -116,8 +117,8 @@ Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& sessio
   scene.edges = canny_edges(left);
   scene.edges_ms = cpu_ms() - start;
   if (scene.edges.empty()) {
-    throw Error(file.left.string(), "it has no edges",
-                "give an image of something; of 16 bits, one that uses their whole range");
+    throw Error(file.left.string(), "no edges found",
+                "give a textured image; a 16-bit image must use the full range");
   }
   scene.truth = truth_at(scene.map, scene.edges);
   check_range(scene, session);

@@ -14,31 +14,32 @@
 
 namespace vernier::cli {
 
-/// A pair with what is known of it.
+/// A stereo pair with its ground truth.
 struct Scene {
   StereoSceneFile file;
   RectifiedPair pair;
   std::vector<EdgePoint> edges;
   std::vector<TruthAtEdge> truth;
-  StereoTruth map;  ///< the whole of it
+  StereoTruth map;  ///< the full map
   double edges_ms = 0;
 };
 
-/// What a matcher did on a scene.
+/// The result of a matcher on a scene.
 struct Run {
   MatcherScore score;
   std::vector<EdgeDisparity> found;
-  double time_ms = 0;  ///< CPU time on one thread, edges included where it works on them
+  double time_ms =
+      0;  ///< CPU time on one thread, including edge detection if the matcher uses edges
 };
 
-/// Reads a pair, says what was done to its files, and what its rows differ by. Throws Error naming
-/// the file.
+/// Reads a pair and reports file conversions and vertical misalignment. Throws Error naming the
+/// file.
 Scene read_scene(const StereoSceneFile& file, bool wants_repair, Session& session);
 
-/// The middle time of three runs, and the score.
+/// Runs a matcher: median time of three runs, and the score.
 Run run_matcher(const Matcher& matcher, const Scene& scene, const EvaluationOptions& how);
 
-/// Throws Error where a matcher finds much more with left and right exchanged.
+/// Throws Error if a matcher finds many more matches with left and right swapped.
 void check_not_swapped(const Matcher& matcher, const Scene& scene, const Run& run);
 
 }  // namespace vernier::cli

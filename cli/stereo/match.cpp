@@ -29,12 +29,12 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double few = 0.1;         // share of left corners matched below which something is wrong
-constexpr double suspicious = 0.3;  // and below which the images may be exchanged
-constexpr int times_more = 2;       // matches with the images exchanged that say they are …
-constexpr std::size_t enough = 20;  // … if there are so many
-constexpr double nearly = 0.7;      // as many: the two cannot be told
-constexpr std::size_t probed = 3;   // image pairs that are tried exchanged where few matched
+constexpr double min_matched = 0.1;  // below this fraction of matched left corners, fail or warn
+constexpr double suspicious = 0.3;   // below this fraction, the images may be swapped
+constexpr int swapped_ratio = 2;     // with this many times more matches when swapped …
+constexpr std::size_t min_swapped = 20;  // … and at least this many, they are swapped
+constexpr double ambiguous_ratio = 0.7;  // above this ratio the order cannot be determined
+constexpr std::size_t probed = 3;        // image pairs to test swapped if few corners matched
 
 struct MatchArguments {
   std::string left, right, prior, output, picture;
@@ -77,8 +77,8 @@ Totals totals(const std::vector<ImageMatching>& all) {
   return sum;
 }
 
-/// Tries some image pairs with left and right exchanged. Throws Error where that gives many more
-/// matches; warns where it gives nearly as many.
+/// Matches some image pairs with left and right swapped. Throws Error if that gives many more
+/// matches; warns if it gives nearly as many.
 void check_matches_not_swapped(const std::vector<ImageMatching>& all,
                                const RigEstimate& prior,
                                const MatchArguments& options,
@@ -93,56 +93,57 @@ void check_matches_not_swapped(const std::vector<ImageMatching>& all,
                               options.matching)
                      .matches.size();
   }
-  if (exchanged < enough) return;
-  if (static_cast<double>(exchanged) > nearly * static_cast<double>(given) &&
-      exchanged < times_more * given) {
-    session.warn(fmt::format(
-        "with left and right exchanged nearly as many corners match ({} against {}): this prior "
-        "does not tell the cameras apart, so see that --left is the left one",
-        exchanged, given));
+  if (exchanged < min_swapped) return;
+  if (static_cast<double>(exchanged) > ambiguous_ratio * static_cast<double>(given) &&
+      exchanged < swapped_ratio * given) {
+    session.warn(
+        fmt::format("nearly as many corners match with left and right swapped ({} against {}): the "
+                    "prior cannot tell the cameras apart; make sure that --left is the left camera",
+                    exchanged, given));
   }
-  if (exchanged < times_more * given) return;
-  throw Error(all.front().files.left.string(),
-              fmt::format("left and right seem exchanged: {} corners match as given, {} the other "
-                          "way round",
-                          given, exchanged),
-              "exchange --left and --right, or the cameras of the prior");
+  if (exchanged < swapped_ratio * given) return;
+  throw Error(
+      all.front().files.left.string(),
+      fmt::format(
+          "left and right appear to be swapped: {} corners match as given, {} after swapping",
+          given, exchanged),
+      "swap --left and --right, or the cameras of the prior");
 }
 
-/// Throws Error where an image stands for both cameras.
+/// Throws Error if both images of a pair are identical.
 void check_two_images(const std::vector<ImageFiles>& files) {
   for (const ImageFiles& pair : files) {
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(pair.left, unknown);
     if (bytes != std::filesystem::file_size(pair.right, unknown) || unknown) continue;
     if (read_whole(pair.left) != read_whole(pair.right)) continue;
-    throw Error(pair.right.string(), "it is the same image as " + pair.left.string(),
+    throw Error(pair.right.string(), "same image as " + pair.left.string(),
                 "give the image that the right camera took at the same time");
   }
 }
 
-/// Throws Error where nothing came of it; says what is doubtful.
-void judge(const std::vector<ImageMatching>& all,
-           const RigEstimate& prior,
-           const MatchArguments& options,
-           Session& session) {
+/// Throws Error if nothing matched; adds warnings for doubtful results.
+void check_matches(const std::vector<ImageMatching>& all,
+                   const RigEstimate& prior,
+                   const MatchArguments& options,
+                   Session& session) {
   const Totals sum = totals(all);
   for (const ImageMatching& m : all) {
     if (m.corners_left > 0 && m.corners_right > 0) continue;
     const auto& blank = m.corners_left > 0 ? m.files.right : m.files.left;
-    const std::string fault = "no corner stands out of the image's noise";
+    const std::string fault = "no corner is detected above the image noise";
     if (sum.matches == 0) throw Error(blank.string(), fault, "give images of a textured scene");
-    session.warn(blank.string() + ": " + fault + "; its pair is left out");
+    session.warn(blank.string() + ": " + fault + "; pair skipped");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
   check_matches_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
   if (share >= suspicious) return;
-  if (share >= few) return;
+  if (share >= min_matched) return;
   const std::string fault =
       fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
   const std::string remedy =
-      "see that the prior is of these cameras, its covariance not too narrow, the images "
-      "simultaneous, and the scene beyond --nearest-m";
+      "check that the prior belongs to these cameras, that its covariance is not too small, that "
+      "the images are simultaneous, and that the scene is farther than --nearest-m";
   if (sum.matches == 0) throw Error("match", fault, remedy);
   session.add_trust_warning(fault + "; " + remedy);
 }
@@ -162,7 +163,7 @@ Json matching_json(const ImageMatching& m) {
           {"matches", m.matches.size()},      {"median_sigma_px", median_sigma(m.matches)}};
 }
 
-/// Both files, or none.
+/// Writes both files or none.
 void write_both(const PairObservations& pairs,
                 const ImageMatching& first,
                 const MatchArguments& options) {
@@ -180,7 +181,8 @@ void run(const MatchArguments& options, Session& session) {
   const std::filesystem::path prior_file = find_rig(options.prior);
   const RigFile prior = read_rig(prior_file);
   for (const std::string& warning : prior.warnings) session.warn(warning);
-  if (prior.estimate.covariance) usable_prior(prior, options.prior);  // else match_images says it
+  if (prior.estimate.covariance)
+    usable_prior(prior, options.prior);  // otherwise match_images reports it
   const auto files = paired_images(options.left, options.right);
   check_output_is_not_input(inputs(prior_file, files), options.output);
   if (!options.picture.empty()) {
@@ -189,7 +191,7 @@ void run(const MatchArguments& options, Session& session) {
   }
   check_two_images(files);
   const auto all = match_all(files, prior.estimate, options, session);
-  judge(all, prior.estimate, options, session);
+  check_matches(all, prior.estimate, options, session);
 
   PairObservations pairs;
   Json images = Json::array();
@@ -220,36 +222,41 @@ void run(const MatchArguments& options, Session& session) {
 
 void add_match(CLI::App& app, Session& session) {
   auto o = std::make_shared<MatchArguments>();
-  CLI::App* verb = add_verb(app, session, "match",
-                            "match corners of any scene between the images of a stereo pair",
-                            "vernier match --left 'left*.png' --right 'right*.png' --prior "
-                            "prior.rig.json --nearest-m 0.8 -o pairs.csv\n"
-                            "  vernier calibrate --pairs pairs.csv --prior prior.rig.json "
-                            "-o rig.json");
-  verb->add_option("--left", o->left, "left images (a quoted pattern)")->required();
-  verb->add_option("--right", o->right, "right images; the same number, the same pair")->required();
+  CLI::App* verb =
+      add_verb(app, session, "match",
+               "match corners of an arbitrary scene between the images of a stereo pair",
+               "vernier match --left 'left*.png' --right 'right*.png' --prior "
+               "prior.rig.json --nearest-m 0.8 -o pairs.csv\n"
+               "  vernier calibrate --pairs pairs.csv --prior prior.rig.json "
+               "-o rig.json");
+  verb->add_option("--left", o->left, "left images (quoted pattern)")->required();
+  verb->add_option("--right", o->right,
+                   "right images (quoted pattern); paired with left images by number")
+      ->required();
   verb->add_option("--prior", o->prior,
-                   "rig file, or a shipped name: its covariance says where to search")
+                   "rig file or shipped name; its covariance defines the search region")
       ->required();
   verb->add_option("-n,--corners", o->matching.corners,
-                   "left corners an image at most, the strongest; right ones half as many again")
+                   "maximum number of corners in a left image, strongest first; 1.5 times as many "
+                   "in the right image")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  verb->add_option("--nearest-m", o->matching.band.nearest_m, "depth of the nearest thing in view")
+  verb->add_option("--nearest-m", o->matching.band.nearest_m,
+                   "depth of the nearest object in view, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
   verb->add_option("--cells", o->matching.cells,
-                   "spread corners evenly over cells x cells parts of the image (0: not)")
+                   "distribute corners evenly over cells x cells parts of the image (0: off)")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
-  verb->add_option("--threads", o->threads, "0: as many as the machine has")
+  verb->add_option("--threads", o->threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   verb->add_option("--picture", o->picture,
-                   "PNG of the first image pair, left above right: a line a match, red for the "
-                   "shortest to blue for the longest")
+                   "PNG of the first image pair, left above right, one line per match: red "
+                   "(shortest) to blue (longest)")
       ->check(png_name);
-  verb->add_option("-o,--output", o->output, "matched pairs, CSV")->required();
+  verb->add_option("-o,--output", o->output, "output CSV file of matched pairs")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -15,7 +15,7 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int subpixel_bits = 4;  // of OpenCV's drawing
+constexpr int subpixel_bits = 4;  // for OpenCV drawing functions
 
 cv::Point fixed_point(const Eigen::Vector2d& p, int down) {
   constexpr double unit = 1 << subpixel_bits;

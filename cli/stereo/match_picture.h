@@ -10,9 +10,9 @@
 
 namespace vernier::cli {
 
-/// RandomStream both images of a pair, the right one below the left, with a dot at each matched
-/// corner and a line from the left corner to where the right image's pixel lies in the left one:
-/// its colour is the direction from red (little motion) to blue (the most). PNG.
+/// Draws both images of a pair, the right one below the left, with a dot at each matched
+/// corner and a line from the left corner to the position of the right image's pixel in the left
+/// one, coloured from red (shortest) to blue (longest). Writes a PNG.
 void write_match_picture(const ImageMatching& matching, const std::filesystem::path& file);
 
 }  // namespace vernier::cli

@@ -23,8 +23,8 @@ Matcher matcher_named(const std::string& name) {
   if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
-  throw Error("--matcher", "\"" + name + "\" is no matcher",
-              "name edge, stretch, bm, sgbm, or one that --command NAME=… gives");
+  throw Error("--matcher", "unknown matcher \"" + name + "\"",
+              "supported: edge, stretch, bm, sgbm, or a name defined by --command NAME=…");
 }
 
 bool is_named(const std::vector<Matcher>& matchers, const std::string& name) {
@@ -32,7 +32,8 @@ bool is_named(const std::vector<Matcher>& matchers, const std::string& name) {
                      [&](const Matcher& matcher) { return matcher.name == name; });
 }
 
-/// "NAME=command" or a command, which is then named by its program, and numbered if need be.
+/// Parses "NAME=command" or a command, which is then named after its program and numbered if
+/// necessary.
 Matcher command_matcher(const std::string& text,
                         double time_limit_s,
                         const std::vector<Matcher>& others) {
@@ -55,7 +56,7 @@ std::vector<Matcher> matchers_named(const MatcherOptions& options) {
   std::vector<Matcher> programs, matchers;
   const auto add = [](std::vector<Matcher>& to, const Matcher& matcher) {
     if (is_named(to, matcher.name)) {
-      throw Error("--matcher", "\"" + matcher.name + "\" is named twice", "name each once");
+      throw Error("--matcher", "\"" + matcher.name + "\" is given twice", "give each matcher once");
     }
     to.push_back(matcher);
   };
@@ -72,7 +73,8 @@ std::vector<Matcher> matchers_named(const MatcherOptions& options) {
   for (const Matcher& program : programs) {
     if (!is_named(matchers, program.name)) matchers.push_back(program);
   }
-  if (matchers.empty()) throw Error("--matcher", "it names none", "name edge, stretch, bm or sgbm");
+  if (matchers.empty())
+    throw Error("--matcher", "no matcher given", "give edge, stretch, bm or sgbm");
   return matchers;
 }
 
@@ -81,18 +83,18 @@ Matcher single_matcher(const MatcherOptions& options) {
   if (!one.commands.empty()) one.names.clear();
   const std::vector<Matcher> matchers = matchers_named(one);
   if (matchers.size() == 1) return matchers.front();
-  throw Error("--matcher", "it names more than one", "name one of edge, stretch, bm and sgbm");
+  throw Error("--matcher", "more than one matcher given", "give one of edge, stretch, bm and sgbm");
 }
 
 CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options) {
   CLI::Option* commands =
       verb.add_option("--command", options.commands,
-                      "a program as a matcher: NAME=COMMAND or COMMAND with {left} {right} "
-                      "{output}, {least} {most} in it (docs/matchers.md)")
+                      "external program as a matcher: NAME=COMMAND or COMMAND with placeholders "
+                      "{left} {right} {output} {least} {most} (docs/matchers.md)")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb.add_option("--time-limit-s", options.time_limit_s,
-                  "after which such a program is stopped, for each pair; 0: never")
+                  "time limit of an external program per pair, seconds; 0: none")
       ->check(finite_and_not_negative)
       ->needs(commands)
       ->capture_default_str();

@@ -12,23 +12,23 @@
 
 namespace vernier::cli {
 
-/// Matchers on the command line.
+/// Matcher options from the command line.
 struct MatcherOptions {
-  std::string names;  ///< "edge,bm,sgbm"; names of commands among them if need be
+  std::string names;  ///< "edge,bm,sgbm"; may include names of commands
   std::vector<std::string>
       commands;             ///< programs (stereo/matching/external_matcher.h), "NAME=command" …
-                            ///< or the command alone, named by its program
-  double time_limit_s = 0;  ///< of a program for each pair; 0: none
+                            ///< or the command alone, named after its program
+  double time_limit_s = 0;  ///< of a program per pair; 0: none
 };
 
-/// Those of the list in its order, then the commands that it does not name. Throws Error for a name
-/// that is none, one given twice, and where nothing is named.
+/// The matchers of the list in order, then the commands that are not in the list. Throws Error for
+/// unknown or repeated names and for an empty list.
 std::vector<Matcher> matchers_named(const MatcherOptions& options);
 
-/// The only command or, where there is none, the only one of the list. Throws Error for several.
+/// The only command or, without commands, the only matcher of the list. Throws Error for several.
 Matcher single_matcher(const MatcherOptions& options);
 
-/// --command and --time-limit-s.
+/// Adds --command and --time-limit-s.
 CLI::Option* add_command_options(CLI::App& verb, MatcherOptions& options);
 
 }  // namespace vernier::cli

@@ -34,9 +34,9 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int grid_columns = 40, grid_rows = 30;  // over which deviations are averaged
-constexpr double default_disparity = 0.05;        // of the width, where no depth is given
-constexpr int width_by_disparity = 4;             // the width by the largest disparity
+constexpr int grid_columns = 40, grid_rows = 30;  // for averaging standard deviations
+constexpr double default_disparity = 0.05;        // fraction of the width, if no depth is given
+constexpr int width_by_disparity = 4;             // width divided by the largest disparity
 
 struct RectifyArguments {
   std::string rig, left, right, output, size;
@@ -48,10 +48,10 @@ struct RectifyArguments {
   int threads = 0;
 };
 
-/// What the rig's covariance does over the left image, for points at one depth.
+/// Effect of the rig's covariance over the left image, for points at one depth.
 struct Deviations {
   double at_m = 0, disparity_px = 0;
-  int pixels = 0;  ///< of the grid that both cameras see
+  int pixels = 0;  ///< grid pixels visible in both cameras
   double rms_disparity_px = 0, rms_vertical_px = 0;
 };
 
@@ -82,7 +82,7 @@ std::optional<Deviations> deviations(const RigEstimate& estimate,
   return d;
 }
 
-/// What was rectified and how well its rows agree.
+/// Rectified images and their vertical alignment.
 struct Rectified {
   RectifiedGeometry geometry;
   RectifiedImages images;
@@ -102,25 +102,25 @@ Rectified rectify(const Rig& rig,
   return r;
 }
 
-/// Doubts a pair whose rows do not agree.
-void judge(const Rectified& rectified,
-           const Rig& rig,
-           const GreyLevels& left,
-           const GreyLevels& right,
-           const RectifyArguments& options,
-           Session& session) {
+/// Adds trust warnings if the rows are not aligned.
+void check_alignment(const Rectified& rectified,
+                     const Rig& rig,
+                     const GreyLevels& left,
+                     const GreyLevels& right,
+                     const RectifyArguments& options,
+                     Session& session) {
   const VerticalField& field = rectified.field;
   constexpr double nearly_all = 0.9;
   const double blank = std::max(rectified.images.left_valid.blank_share(),
                                 rectified.images.right_valid.blank_share());
   if (blank > nearly_all) {
-    session.add_trust_warning(
-        fmt::format("{:.0f} % of a rectified image is blank; see --f-px and --size", 100 * blank));
+    session.add_trust_warning(fmt::format(
+        "{:.0f} % of a rectified image is blank; check --f-px and --size", 100 * blank));
     return;
   }
   if (!field.unrectified && !field.known) {
     const std::string words =
-        "the rows of the rectified images could not be checked: " + describe(field);
+        "row alignment of the rectified images could not be checked: " + describe(field);
     if (field.corners == 0) {
       session.add_trust_warning(words);
     } else {
@@ -131,17 +131,16 @@ void judge(const Rectified& rectified,
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
     const VerticalField exchanged = rectify(rig, right, left, options).field;
     if (exchanged.known && !exchanged.unrectified) {
-      session.add_trust_warning(fmt::format(
-          "left and right seem exchanged: {} corners match as given, {} the other way round; "
-          "exchange --left and --right, or the cameras of the rig",
-          field.matched, exchanged.matched));
+      session.add_trust_warning(
+          fmt::format("left and right appear to be swapped: {} corners match as given, {} after "
+                      "swapping; swap --left and --right, or the cameras of the rig",
+                      field.matched, exchanged.matched));
       return;
     }
   }
-  session.add_trust_warning(
-      "the rows of the rectified images do not agree: " + describe(field) +
-      "; see that the rig is of these cameras as they stand, the images simultaneous "
-      "and --max-disparity large enough");
+  session.add_trust_warning("the rows of the rectified images are not aligned: " + describe(field) +
+                            "; check that the rig matches the current cameras, that the images are "
+                            "simultaneous and that --max-disparity is large enough");
 }
 
 std::string png(const GreyLevels& image) {
@@ -218,9 +217,10 @@ std::string result_text(const RectifiedGeometry& g,
       g.f_px * g.baseline_m, 100 * images.left_valid.blank_share(),
       100 * images.right_valid.blank_share());
   if (!d) {
-    text += "rig's error       not known: the rig file has no covariance\n";
+    text += "rig's error       unknown: the rig file has no covariance\n";
   } else if (d->pixels == 0) {
-    text += fmt::format("rig's error       at {:.4g} m no point is in both images\n", d->at_m);
+    text +=
+        fmt::format("rig's error       no point at {:.4g} m is visible in both images\n", d->at_m);
   } else {
     text += fmt::format(
         "rig's error       at {:.4g} m ({:.1f} px): disparity {:.3f} px, rows {:.3f} px (rms "
@@ -237,9 +237,10 @@ void run(RectifyArguments options, Session& session) {
     constexpr int max_side = 20'000;
     constexpr double max_pixels = 1e8;
     if (width > max_side || height > max_side || double(width) * height > max_pixels) {
-      throw Error("--size",
-                  fmt::format("{}x{} is more than a hundred million pixels", width, height),
-                  "give a smaller size");
+      throw Error(
+          "--size",
+          fmt::format("{}x{} is too large (limits: 20000 px per side, 1e8 pixels)", width, height),
+          "give a smaller size");
     }
     options.geometry.size_px = {width, height};
   }
@@ -250,12 +251,12 @@ void run(RectifyArguments options, Session& session) {
   const auto [left, right] =
       read_camera_images(rig, options.rig, options.left, options.right, session);
   Rectified rectified = rectify(rig, left, right, options);
-  judge(rectified, rig, left, right, options, session);
+  check_alignment(rectified, rig, left, right, options, session);
   auto& [geometry, images, field] = rectified;
   const bool repaired = options.repair && field.significant;
   if (repaired) images.pair.right = corrected_right(images.pair.right, field);
   std::string words = describe(field);
-  if (options.repair) words += repaired ? "; repaired" : "; nothing repaired";
+  if (options.repair) words += repaired ? "; repaired" : "; no repair needed";
 
   const Contents files = contents(rig, geometry, images, options);
   for (const auto& [name, content] : files) {
@@ -274,34 +275,37 @@ void run(RectifyArguments options, Session& session) {
 void add_rectify(CLI::App& app, Session& session) {
   auto o = std::make_shared<RectifyArguments>();
   CLI::App* verb = add_verb(app, session, "rectify",
-                            "turn a pair of images so that every row shows one epipolar plane",
+                            "rectify a stereo pair so that epipolar lines are image rows",
                             "vernier rectify --rig rig.json --left left01.png --right right01.png "
                             "-o rectified");
-  verb->add_option("--rig", o->rig, "rig file, or a shipped name")->required();
+  verb->add_option("--rig", o->rig, "rig file or shipped name")->required();
   verb->add_option("--left", o->left, "left image")->required();
   verb->add_option("--right", o->right, "right image")->required();
-  verb->add_option("--size", o->size, "WxH of the rectified images (default: the left camera's)");
-  verb->add_option("--f-px", o->geometry.f_px,
-                   "their focal length (default: the widest view with hardly a blank pixel)")
+  verb->add_option("--size", o->size,
+                   "size of the rectified images, WxH (default: the left camera's)");
+  verb->add_option(
+          "--f-px", o->geometry.f_px,
+          "focal length of the rectified images (default: widest view with almost no blank pixels)")
       ->check(finite_and_positive);
   verb->add_option("--at-m", o->at_m,
-                   "depth at which the rig's error is told (default: where the disparity is a "
-                   "twentieth of the width)")
+                   "depth at which the rig's error is reported (default: where the disparity is "
+                   "1/20 of the width)")
       ->check(finite_and_positive);
   verb->add_option("--max-disparity", o->max_disparity_px,
-                   "largest that corners are matched at, px (default: a quarter of the width)")
+                   "largest disparity of matched corners, px (default: a quarter of the width)")
       ->check(CLI::Range(1, 100'000));
-  verb->add_option("--band", o->field.band_px, "rows above and below that corners are matched in")
+  verb->add_option("--band", o->field.band_px,
+                   "search range for matching corners, rows above and below")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
   verb->add_flag("--repair", o->repair,
-                 "move the right image by the vertical field, if there is one");
+                 "correct the right image by the estimated vertical field, if significant");
   verb->add_flag("--masks", o->masks,
-                 "write left_valid.png and right_valid.png too: 0 where blank");
-  verb->add_option("--threads", o->threads, "0: as many as the machine has")
+                 "also write left_valid.png and right_valid.png (0: blank pixel)");
+  verb->add_option("--threads", o->threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  verb->add_option("-o,--output", o->output, "folder for left.png, right.png and rig.json")
+  verb->add_option("-o,--output", o->output, "output folder for left.png, right.png and rig.json")
       ->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

@@ -12,23 +12,25 @@
 namespace vernier::cli {
 
 void add_scene_options(CLI::App& verb, SceneOptions& o) {
-  auto* scenes = verb.add_option("--scenes", o.scenes, "TOML list of pairs (docs/matchers.md)");
+  auto* scenes =
+      verb.add_option("--scenes", o.scenes, "TOML list of stereo pairs (docs/matchers.md)");
   for (const auto& [name, value, help] :
-       {std::tuple{"--left", &o.one.left, "left image, rectified"},
-        std::tuple{"--right", &o.one.right, "right image"},
-        std::tuple{"--truth", &o.one.truth, "true disparities of the left image: PFM, PNG, .npy"},
+       {std::tuple{"--left", &o.one.left, "rectified left image"},
+        std::tuple{"--right", &o.one.right, "rectified right image"},
+        std::tuple{"--truth", &o.one.truth,
+                   "ground truth disparities of the left image: PFM, PNG, .npy"},
         std::tuple{"--right-truth", &o.one.right_truth,
-                   "those of the right image: what it does not show is told better"}}) {
+                   "ground truth disparities of the right image: improves occlusion detection"}}) {
     verb.add_option(name, *value, help)->excludes(scenes);
   }
-  verb.add_option("--truth-scale", o.one.truth_scale, "values a pixel of the truth")
+  verb.add_option("--truth-scale", o.one.truth_scale, "ground truth values per pixel of disparity")
       ->check(finite_and_positive)
       ->excludes(scenes)
       ->capture_default_str();
-  verb.add_option("--max-disparity", o.one.range.max_px, "largest disparity searched, pixels")
+  verb.add_option("--max-disparity", o.one.range.max_px, "largest disparity to search, pixels")
       ->excludes(scenes)
       ->capture_default_str();
-  verb.add_option("--min-disparity", o.one.range.min_px, "smallest one")
+  verb.add_option("--min-disparity", o.one.range.min_px, "smallest disparity to search, pixels")
       ->excludes(scenes)
       ->capture_default_str();
 }

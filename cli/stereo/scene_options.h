@@ -13,22 +13,22 @@
 
 namespace vernier::cli {
 
-/// Pairs with ground truth on the command line: a list of them, or one by its files.
+/// Stereo pairs with ground truth from the command line: a list file, or one pair by its files.
 struct SceneOptions {
   std::string scenes;
   StereoSceneFile one;
 };
 
-/// --scenes, or --left --right --truth with --right-truth, --truth-scale, --max-disparity and
+/// Adds --scenes, or --left --right --truth with --right-truth, --truth-scale, --max-disparity and
 /// --min-disparity.
 void add_scene_options(CLI::App& verb, SceneOptions& options);
 
-/// Throws CLI::RequiredError for the first that is missing where there is no --scenes.
+/// Throws CLI::RequiredError for the first missing option if there is no --scenes.
 void require_scenes(const CLI::App& verb, const SceneOptions& options);
 
 std::vector<StereoSceneFile> scene_files(const SceneOptions& options);
 
-/// Every file that is read for the scenes.
+/// All input files of the scenes.
 std::vector<std::filesystem::path> inputs_of(const SceneOptions& options,
                                              const std::vector<StereoSceneFile>& files);
 

@@ -36,8 +36,8 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double hardly_any = 0.2;    // of the edges: less is doubted
-constexpr double max_doubtful = 0.5;  // of the segments: more of doubtful depth are doubted
+constexpr double min_density = 0.2;    // warn if a smaller fraction of the edges is matched
+constexpr double max_uncertain = 0.5;  // warn if a larger fraction of segments has uncertain depth
 
 struct StereoArguments {
   StereoInputOptions input;
@@ -47,10 +47,10 @@ struct StereoArguments {
   std::string output, picture;
 };
 
-/// Medians over placed segments, of their farther ends.
+/// Medians over reconstructed segments, at their farther ends.
 struct DepthFigures {
   double depth_m = 0, matching_m = 0, calibration_m = 0, relative = 0;
-  double calibration_share = 0;  ///< of the variance
+  double calibration_share = 0;  ///< fraction of the variance
   int placed = 0, linear = 0, reliable = 0;
 };
 
@@ -78,7 +78,7 @@ DepthFigures depth_figures(const std::vector<MeasuredSegment>& segments) {
   return f;
 }
 
-/// Edges that a matcher is asked for, and what it found of them.
+/// Number of edges to match and of edges matched.
 struct EdgeMetrics {
   int asked = 0, matched = 0;
   double share() const { return static_cast<double>(matched) / std::max(1, asked); }
@@ -94,13 +94,13 @@ EdgeMetrics edge_figures(const StereoResult& result, double min_angle_rad) {
   return f;
 }
 
-/// The edges of the left image that raw pixels show.
+/// The edges of the left image at valid pixels.
 std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& file) {
   std::vector<EdgePoint> edges = canny_edges(input.pair.left);
   if (input.left_valid) {
     std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });
   }
-  if (edges.empty()) throw Error(file, "it has no edges", "give an image of something");
+  if (edges.empty()) throw Error(file, "no edges found", "give a textured image");
   return edges;
 }
 
@@ -127,49 +127,50 @@ StereoResult look(const StereoArguments& options, const StereoInput& input) {
 }
 
 std::string sigma_words(const DepthFigures& f) {
-  return fmt::format("{:.3g} m by matching and {:.3g} m by the calibration at {:.3g} m (medians)",
-                     f.matching_m, f.calibration_m, f.depth_m);
+  return fmt::format(
+      "{:.3g} m from matching and {:.3g} m from the calibration at {:.3g} m (medians)",
+      f.matching_m, f.calibration_m, f.depth_m);
 }
 
-void judge(const StereoArguments& options,
-           const StereoInput& input,
-           const EdgeMetrics& edges,
-           const DepthFigures& depth,
-           Session& session) {
+void check_result(const StereoArguments& options,
+                  const StereoInput& input,
+                  const EdgeMetrics& edges,
+                  const DepthFigures& depth,
+                  Session& session) {
   if (input.field.unrectified) {
     session.add_trust_warning(
-        "the rows of both images do not agree: " + describe(input.field) +
-        (options.input.rectified
-             ? "; rectify the pair first (give --rig and leave out --rectified)"
-             : "; see that the rig is of these cameras as they stand and the images "
-               "simultaneous"));
+        "the rows of the two images are not aligned: " + describe(input.field) +
+        (options.input.rectified ? "; rectify the pair first (give --rig and leave out --rectified)"
+                                 : "; check that the rig matches the current cameras and that the "
+                                   "images are simultaneous"));
   }
-  if (edges.share() < hardly_any) {
+  if (edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
-        "hardly anything is matched: {} of {} edges; see that both images show one scene at one "
-        "time, the rows agree and disparities are between {} and {} px",
+        "too few matches: {} of {} edges; check that both images show the same scene at the same "
+        "time, that rows are aligned and that disparities are between {} and {} px",
         edges.matched, edges.asked, input.range.min_px, input.range.max_px));
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
-    session.add_trust_warning("no segment has a place in space; segments.json says why of each");
-  } else if (depth.linear < (1 - max_doubtful) * depth.placed) {
+    session.add_trust_warning(
+        "no segment could be reconstructed; segments.json gives the reason for each");
+  } else if (depth.linear < (1 - max_uncertain) * depth.placed) {
     session.add_trust_warning(fmt::format(
-        "the depth of {} of {} segments is not known to a tenth: {}; {}",
+        "the depth of {} of {} segments is uncertain by more than 10 %: {}; {}",
         depth.placed - depth.linear, depth.placed, sigma_words(depth),
         depth.calibration_share > 0.5
-            ? fmt::format("{:.0f} % of the variance is the calibration's, so calibrate better",
-                          100 * depth.calibration_share)
+            ? fmt::format(
+                  "{:.0f} % of the variance is due to the calibration: improve the calibration",
+                  100 * depth.calibration_share)
             : "the scene is too far for the baseline"));
   } else if (depth.calibration_share > 0.5) {
-    session.say(
-        fmt::format("note: {:.0f} % of the depths' variance is the calibration's, which all "
-                    "segments share",
-                    100 * depth.calibration_share));
+    session.info(fmt::format(
+        "note: {:.0f} % of the depth variance is due to the calibration and common to all segments",
+        100 * depth.calibration_share));
   }
 }
 
-/// How many segments became what; the parts of one are counted apart.
+/// Number of segments by status; parts of a segment are counted separately.
 std::map<std::string, int> refusals(const StereoResult& result) {
   std::map<std::string, int> counts;
   for (std::size_t i = 0; i < result.lines.size(); ++i) {
@@ -216,33 +217,33 @@ std::string result_text(const StereoInput& input,
                         const EdgeMetrics& edges,
                         const DepthFigures& depth) {
   std::string text = fmt::format(
-      "edges             {}, of which {} are off the row; {} matched ({:.1f} %), {} to {} px\n",
+      "edges             {}, {} of them not along the row; {} matched ({:.1f} %), {} to {} px\n",
       result.edges.size(), edges.asked, edges.matched, 100 * edges.share(), input.range.min_px,
       input.range.max_px);
-  text += fmt::format("segments          {} of the left image:", result.segments.size());
+  text += fmt::format("segments          {} in the left image:", result.segments.size());
   for (const auto& [key, count] : refusals(result)) text += fmt::format(" {} {}", count, key);
   text += '\n';
-  if (!input.geometry) return text + "space             not known: no cameras were given\n";
+  if (!input.geometry) return text + "3D                not computed: no cameras given\n";
   if (depth.placed == 0) return text;
   const bool known = input.estimate && input.estimate->covariance;
-  text += fmt::format("depth             {:.4g} m, standard deviation {:.3g} m by matching",
+  text += fmt::format("depth             {:.4g} m, standard deviation {:.3g} m from matching",
                       depth.depth_m, depth.matching_m);
-  text += known ? fmt::format(", {:.3g} m by the calibration (medians)\n", depth.calibration_m)
-                : " (medians); the calibration's part is not known\n";
+  text += known ? fmt::format(", {:.3g} m from the calibration (medians)\n", depth.calibration_m)
+                : " (medians); calibration part unknown\n";
   if (depth.linear < depth.placed) {
-    text += fmt::format("doubtful          {} of {}: depth not known to a tenth\n",
+    text += fmt::format("uncertain         {} of {}: depth uncertain by more than 10 %\n",
                         depth.placed - depth.linear, depth.placed);
   }
   return text;
 }
 
-/// Refuses outputs that are inputs or each other before any work is done.
+/// Throws Error if an output would overwrite an input or another output.
 void check_outputs(const StereoArguments& options) {
   std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
   if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
   const std::filesystem::path folder = options.output;
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
-    throw Error(options.output, "is not a folder", "name another with -o");
+    throw Error(options.output, "is not a folder", "give another folder with -o");
   }
   for (const char* name : {"edges.csv", "segments.csv", "segments.json", "segments.ply"}) {
     check_output_is_not_input(inputs, folder / name);
@@ -258,7 +259,7 @@ void run(const StereoArguments& options, Session& session) {
   const StereoResult result = look(options, input);
   const EdgeMetrics edges = edge_figures(result, options.min_angle_deg * std::numbers::pi / 180);
   const DepthFigures depth = depth_figures(result.placed);
-  judge(options, input, edges, depth, session);
+  check_result(options, input, edges, depth, session);
 
   const std::filesystem::path folder = options.output;
   std::vector<std::pair<std::filesystem::path, std::string>> files{
@@ -285,22 +286,25 @@ void run(const StereoArguments& options, Session& session) {
 void add_cameras(CLI::App* verb, StereoInputOptions& o) {
   verb->add_option("--left", o.left, "left image")->required();
   verb->add_option("--right", o.right, "right image")->required();
-  verb->add_option("--rig", o.rig, "rig file, or a shipped name: of the cameras that took them");
-  verb->add_flag("--rectified", o.rectified, "the images are rectified already");
-  verb->add_option("--f-px", o.f_px, "rectified images without a rig: their focal length")
+  verb->add_option("--rig", o.rig, "rig file or shipped name of the cameras");
+  verb->add_flag("--rectified", o.rectified, "the images are already rectified");
+  verb->add_option("--f-px", o.f_px, "focal length of rectified images without a rig")
       ->check(finite_and_positive);
-  verb->add_option("--baseline-m", o.baseline_m, "the distance of their cameras")
+  verb->add_option("--baseline-m", o.baseline_m, "baseline of rectified images without a rig")
       ->check(finite_and_positive);
-  verb->add_option("--centre-px", o.centre_px, "their centre, u,v of the left one (cx,cy)");
-  verb->add_option("--offset-px", o.offset_px,
-                   "right centre less left one, added to disparities (Middlebury's doffs)")
+  verb->add_option("--centre-px", o.centre_px,
+                   "principal point cx,cy of the left rectified image without a rig");
+  verb->add_option(
+          "--offset-px", o.offset_px,
+          "right minus left principal point in x, added to disparities (Middlebury's doffs)")
       ->check(finite);
   verb->add_option("--max-disparity", o.max_disparity_px,
-                   "largest searched, px (default: a quarter of the width)");
-  verb->add_option("--min-disparity", o.min_disparity_px, "smallest one")->capture_default_str();
+                   "largest disparity to search, px (default: a quarter of the width)");
+  verb->add_option("--min-disparity", o.min_disparity_px, "smallest disparity to search, px")
+      ->capture_default_str();
   verb->add_flag("--repair", o.repair,
-                 "move the right image by the vertical field, if there is one");
-  verb->add_option("--threads", o.threads, "of the rectification; 0: as many as the machine has")
+                 "correct the right image by the estimated vertical field, if significant");
+  verb->add_option("--threads", o.threads, "number of threads for rectification (0: all)")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
 }
@@ -310,7 +314,7 @@ void add_cameras(CLI::App* verb, StereoInputOptions& o) {
 void add_stereo(CLI::App& app, Session& session) {
   auto o = std::make_shared<StereoArguments>();
   CLI::App* verb = add_verb(
-      app, session, "stereo", "edge disparities with standard deviations, and segments in space",
+      app, session, "stereo", "compute edge disparities with standard deviations, and 3D segments",
       "vernier stereo --rig rig.json --left left01.png --right right01.png --max-disparity 120 "
       "-o seen\n"
       "  vernier stereo --rectified --left im0.png --right im1.png --f-px 994.978 --baseline-m "
@@ -320,16 +324,17 @@ void add_stereo(CLI::App& app, Session& session) {
                     ->capture_default_str();
   add_command_options(*verb, o->matcher)->excludes(names);
   verb->add_option("--epipolar-reject-deg", o->min_angle_deg,
-                   "segments nearer to the row than this have no place")
+                   "skip segments at a smaller angle to the row, degrees")
       ->check(CLI::Range(0.0, 80.0))
       ->capture_default_str();
-  verb->add_option("--max-depth-m", o->space.max_depth_m, "farther segments are marked unreliable")
+  verb->add_option("--max-depth-m", o->space.max_depth_m,
+                   "segments farther than this are marked unreliable, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--picture", o->picture, "PNG of the edges, blue far to red near")
+  verb->add_option("--picture", o->picture, "PNG of the edges, blue (far) to red (near)")
       ->check(png_name);
   verb->add_option("-o,--output", o->output,
-                   "folder for edges.csv, segments.csv, segments.json and segments.ply")
+                   "output folder for edges.csv, segments.csv, segments.json and segments.ply")
       ->check(not_empty)
       ->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

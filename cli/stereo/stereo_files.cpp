@@ -83,7 +83,7 @@ Json head_json(const StereoInput& input) {
   return head;
 }
 
-/// Standard deviation of an edge's disparity by the rig's errors; nothing where not known.
+/// Standard deviation of an edge's disparity due to rig errors; empty if unknown.
 std::optional<double> by_calibration(const RectificationUncertainty& rectified,
                                      const EdgePoint& edge,
                                      double disparity_px) {
@@ -217,7 +217,7 @@ std::string segments_ply(const StereoResult& result) {
     ++count;
   }
   return fmt::format(
-             "ply\nformat ascii 1.0\ncomment left camera's frame, metres\nelement vertex {}\n"
+             "ply\nformat ascii 1.0\ncomment left camera frame, metres\nelement vertex {}\n"
              "property double x\nproperty double y\nproperty double z\nelement edge {}\n"
              "property int vertex1\nproperty int vertex2\nend_header\n",
              2 * count, count) +

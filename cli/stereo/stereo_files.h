@@ -16,19 +16,19 @@
 
 namespace vernier::cli {
 
-/// What a pair showed, for its files (docs/segments3d.md).
+/// The results of a pair, for the output files (docs/segments3d.md).
 struct StereoResult {
   std::vector<EdgePoint> edges;
   std::vector<EdgeDisparity> found;
   std::vector<EdgeSegment> segments;
-  std::vector<SegmentDisparity> lines;  ///< of the images' own disparities
-  std::vector<MeasuredSegment> placed;  ///< one a line; none where the cameras are not known
+  std::vector<SegmentDisparity> lines;  ///< with the images' own disparities
+  std::vector<MeasuredSegment> placed;  ///< one per line; empty without cameras
 };
 
 /// edges.csv: every edge point of the rectified left image.
 std::string edges_csv(const StereoInput& input, const StereoResult& result);
 
-/// segments.json: segments, their covariances apart, and the derivatives by the rig.
+/// segments.json: segments, separate covariances, and derivatives with respect to the rig.
 std::string segments_json(const StereoInput& input, const StereoResult& result);
 
 /// segments.csv: end points and standard deviations; pixels and disparities without cameras.
@@ -37,7 +37,7 @@ std::string segments_csv(const StereoResult& result);
 /// segments.ply: end points and the edges between them, in the left camera's frame.
 std::string segments_ply(const StereoResult& result);
 
-/// A key of segments.json for what became of a segment.
+/// The key in segments.json for the status of a segment.
 std::string status_key(SegmentStatus status);
 
 }  // namespace vernier::cli

@@ -22,22 +22,22 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int default_range = 4;  // the width by the largest disparity
+constexpr int default_range = 4;  // width divided by the largest disparity
 
 void check(const StereoInputOptions& o) {
   if (o.rig.empty() && !o.rectified) {
-    throw Error("stereo", "the images' rig is not given",
-                "give --rig for images as cameras take them, or --rectified");
+    throw Error("stereo", "no rig given", "give --rig for unrectified images, or --rectified");
   }
   const bool values = o.f_px > 0 || o.baseline_m > 0 || !o.centre_px.empty() || o.offset_px != 0;
   if (!values) return;
   if (!o.rectified || !o.rig.empty()) {
-    throw Error("--f-px, --baseline-m, --centre-px, --offset-px",
-                "they are of rectified images without a rig file",
-                o.rig.empty() ? "add --rectified" : "leave them out: the rig says this itself");
+    throw Error(
+        "--f-px, --baseline-m, --centre-px, --offset-px",
+        "only valid for rectified images without a rig file",
+        o.rig.empty() ? "add --rectified" : "leave them out: the rig file contains these values");
   }
   if (!(o.f_px > 0) || !(o.baseline_m > 0)) {
-    throw Error(o.f_px > 0 ? "--baseline-m" : "--f-px", "it is not given, which depths need",
+    throw Error(o.f_px > 0 ? "--baseline-m" : "--f-px", "missing; needed for depth",
                 "give both --f-px and --baseline-m, or neither");
   }
 }
@@ -65,18 +65,18 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
   };
 }
 
-/// What a rig file, or the command line, says of cameras that took rectified images.
+/// Takes the cameras of rectified images from a rig file or the command line.
 void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Eigen::Vector2i size(input.pair.left.width_px, input.pair.left.height_px);
   if (!o.rig.empty()) {
     input.estimate = read_estimate(o, session);
     input.geometry = geometry_of_rectified_rig(input.estimate->rig);
     if (!input.geometry || input.geometry->size_px != size) {
-      throw Error(o.rig,
-                  fmt::format("it is not of two pinhole cameras side by side of {}x{} px, which "
-                              "rectified images have",
-                              size[0], size[1]),
-                  "leave out --rectified, or give the rig.json that vernier rectify wrote");
+      throw Error(
+          o.rig,
+          fmt::format("not a rectified rig: two parallel pinhole cameras of {}x{} px are required",
+                      size[0], size[1]),
+          "leave out --rectified, or give the rig.json written by vernier rectify");
     }
     const auto& cameras = input.estimate->rig.cameras;
     input.offset_px = cameras[1].ox_px() - cameras[0].ox_px();
@@ -88,7 +88,7 @@ void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& sess
     g.size_px = size;
     if (o.centre_px.empty()) {
       g.centre_px = 0.5 * (size - Eigen::Vector2i::Ones()).cast<double>();
-      session.warn("no --centre-px: the image's middle is taken for it");
+      session.warn("no --centre-px: using the image centre");
     } else {
       const std::vector<double> centre = parse_numbers(o.centre_px, 2, "--centre-px");
       g.centre_px = {centre[0], centre[1]};
@@ -110,13 +110,13 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
 void repair_rows(bool wanted, StereoInput& input, Session& session) {
   const VerticalField& field = input.field;
   if (field.unrectified) return;
-  if (wanted || field.significant) session.say(describe(field));
+  if (wanted || field.significant) session.info(describe(field));
   if (!field.significant) return;
   if (wanted) {
     input.pair.right = corrected_right(input.pair.right, field);
     input.repaired = true;
   } else {
-    session.warn("the rows are not quite the same; --repair takes that away");
+    session.warn("the rows are slightly misaligned; --repair corrects this");
   }
 }
 

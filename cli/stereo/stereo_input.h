@@ -15,7 +15,7 @@
 
 namespace vernier::cli {
 
-/// What the command line says of a pair of images.
+/// Options of a stereo pair from the command line.
 struct StereoInputOptions {
   std::string left, right, rig, centre_px;
   bool rectified = false, repair = false;
@@ -24,21 +24,21 @@ struct StereoInputOptions {
   int min_disparity_px = 0, threads = 0;
 };
 
-/// A rectified pair with what is known of its cameras.
+/// A rectified pair with information on its cameras.
 struct StereoInput {
   RectifiedPair pair;
-  std::optional<ValidPixels> left_valid;      ///< of raw images: those that have a source
-  std::optional<RectifiedGeometry> geometry;  ///< nothing: disparities are all there is
-  std::optional<RigEstimate> estimate;        ///< whose geometry it is
-  double offset_px = 0;                       ///< from the images' disparities to the geometry's
+  std::optional<ValidPixels> left_valid;      ///< for raw images: pixels with a source
+  std::optional<RectifiedGeometry> geometry;  ///< empty: disparities only
+  std::optional<RigEstimate> estimate;        ///< the rig of this geometry
+  double offset_px = 0;                       ///< added to image disparities to get the geometry's
   DisparityRange range;
   VerticalField field;
   bool repaired = false;
-  std::function<RectifiedPair()> exchanged;  ///< the pair with left and right exchanged
+  std::function<RectifiedPair()> exchanged;  ///< the pair with left and right swapped
 };
 
-/// Reads images and rig, rectifies where they are raw, finds and repairs the vertical field. Says
-/// what it did. Throws Error naming file or option.
+/// Reads images and rig, rectifies raw images, estimates and corrects the vertical field, and
+/// reports what was done. Throws Error naming file or option.
 StereoInput read_stereo_input(const StereoInputOptions& options, Session& session);
 
 }  // namespace vernier::cli

@@ -25,19 +25,19 @@ void check_not_swapped(const Matcher& matcher,
                        const DisparityRange& range,
                        const std::function<RectifiedPair()>& exchanged,
                        const std::string& place) {
-  constexpr double few = 0.5, enough = 0.3, times_more = 2;
+  constexpr double min_matched = 0.5, min_swapped = 0.3, min_ratio = 2;
   const double given = matched_share(found);
-  if (given >= few || !exchanged) return;
+  if (given >= min_matched || !exchanged) return;
   const RectifiedPair other = exchanged();
   const std::vector<EdgePoint> edges = canny_edges(other.left);
   if (edges.empty()) return;
-  const double turned = matched_share(matcher.match(other, edges, range));
-  if (turned < enough || turned < times_more * given) return;
+  const double swapped = matched_share(matcher.match(other, edges, range));
+  if (swapped < min_swapped || swapped < min_ratio * given) return;
   throw Error(place,
-              fmt::format("left and right seem exchanged: {:.0f} % of the edges are found as "
-                          "given, {:.0f} % the other way round",
-                          100 * given, 100 * turned),
-              "exchange --left and --right");
+              fmt::format("left and right appear to be swapped: {:.0f} % of the edges match as "
+                          "given, {:.0f} % after swapping",
+                          100 * given, 100 * swapped),
+              "swap --left and --right");
 }
 
 }  // namespace vernier::cli

@@ -13,11 +13,11 @@
 
 namespace vernier::cli {
 
-/// Share of edges that have a disparity; 0 of none.
+/// Fraction of edges that have a disparity; 0 if there are no edges.
 double matched_share(const std::vector<EdgeDisparity>& found);
 
-/// Throws Error(`place`) where less than half of the edges are matched and the matcher finds twice
-/// as many, and 30 % of them, in the pair with left and right exchanged.
+/// Throws Error(`place`) if less than half of the edges are matched and the matcher finds at least
+/// twice as many, and at least 30 %, in the pair with left and right swapped.
 void check_not_swapped(const Matcher& matcher,
                        const std::vector<EdgeDisparity>& found,
                        const DisparityRange& range,

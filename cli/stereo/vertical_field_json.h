@@ -7,7 +7,7 @@
 
 namespace vernier::cli {
 
-/// A vertical field (docs/rectification.md); what is not known is null.
+/// A vertical field as JSON (docs/rectification.md); unknown values are null.
 Json vertical_field_json(const VerticalField& field, bool repaired);
 
 }  // namespace vernier::cli

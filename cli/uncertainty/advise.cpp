@@ -32,13 +32,14 @@ struct AdviseArguments {
   bool partly = false;
 };
 
-/// The covariance that is planned on, and how its deviations become those that are stated.
+/// The covariance used for planning, and the scale from its standard deviations to the reported
+/// ones.
 struct Basis {
-  Eigen::MatrixXd factor;     ///< of the covariance planned on
-  double pixel_sigma_px = 0;  ///< of a new view's corners
-  double scale = 1;           ///< stated sd over that of `factor`
+  Eigen::MatrixXd factor;     ///< of the planning covariance
+  double pixel_sigma_px = 0;  ///< corner noise of a new view
+  double scale = 1;           ///< reported sd divided by that of `factor`
   CovarianceKind planned_on, stated;
-  double bound_ratio = 1;  ///< honest sd of the wanted error over the bound's
+  double bound_ratio = 1;  ///< honest sd of the target error divided by the bound's
 };
 
 std::string find_target(const AdviseArguments& options,
@@ -47,19 +48,19 @@ std::string find_target(const AdviseArguments& options,
                         Eigen::Vector2d& warp_m) {
   if (!options.board.empty() || options.square_m > 0) {
     if (options.board.empty() || !(options.square_m > 0)) {
-      throw Error("advise", "half of the board is given", "give both --board and --square-m");
+      throw Error("advise", "--board and --square-m must be given together", "give both");
     }
     const auto [columns, rows] = parse_grid(options.board, "--board");
     target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }
   if (!rig.evidence || rig.evidence->observations.views.empty()) {
-    throw Error(options.rig, "it holds no views of a board, so the board is unknown",
+    throw Error(options.rig, "the file has no board views, so the board is unknown",
                 "give --board (inner corners, such as 9x6) and --square-m");
   }
   target_m = rig.evidence->observations.target_m;
   warp_m = rig.evidence->warp_m;
-  return fmt::format("that of the calibration, {} corners", target_m.size());
+  return fmt::format("board of the calibration, {} corners", target_m.size());
 }
 
 Basis find_basis(const AdviseArguments& options,
@@ -73,7 +74,7 @@ Basis find_basis(const AdviseArguments& options,
     basis.pixel_sigma_px = rig.calibration->pixel_sigma_px;
   }
   if (!(basis.pixel_sigma_px > 0)) {
-    throw Error(options.rig, "it does not say how noisy a corner is",
+    throw Error(options.rig, "the file contains no corner noise",
                 "give --pixel-sigma, the standard deviation of a coordinate in pixels");
   }
   const Eigen::MatrixXd honest_factor = ScaledDecomposition(honest).factor();
@@ -86,7 +87,7 @@ Basis find_basis(const AdviseArguments& options,
     basis.scale = basis.bound_ratio;
     basis.planned_on = bound.kind;
   } else {
-    // a new view is worth less in the same measure as those before it were
+    // assume that a new view is as much noisier as the previous views were
     basis.factor = honest_factor;
     basis.pixel_sigma_px *= basis.bound_ratio;
     basis.planned_on = honest.kind;
@@ -130,21 +131,22 @@ std::string advice_text(const ViewAdvice& advice,
   std::string text;
   for (std::size_t i = 0; i < advice.views.size(); ++i) {
     const ScoredView& view = advice.views[i];
-    text += fmt::format("{}. {};\n   the sd of the {} falls from {:.3g} to {:.3g} {} ({})\n", i + 1,
-                        describe_placement(view.placement, rig.cameras[0]), wanted.name,
+    text += fmt::format("{}. {};\n   sd of the {}: {:.3g} before, {:.3g} {} after ({} lower)\n",
+                        i + 1, describe_placement(view.placement, rig.cameras[0]), wanted.name,
                         basis.scale * view.sd_before, basis.scale * view.sd_after, wanted.unit,
                         percent_reduction(view));
   }
   text += fmt::format(
-      "\ninstead of the first (the least helpful of all last):\n  {:>10} {:>16} {:>7} "
+      "\nalternatives to the first view (last line: the least helpful candidate):\n  {:>10} {:>16} "
+      "{:>7} "
       "{:>7} {:>14} {:>8}\n",
-      "distance", "centre", "turn", "tilt", "sd after", "less by");
+      "distance", "centre", "turn", "tilt", "sd after", "lower by");
   for (const ScoredView& view : advice.alternatives) {
     text += table_line(view, basis.scale, wanted.unit);
   }
   text += table_line(advice.worst_candidate, basis.scale, wanted.unit);
   if (!advice.sd_after_more.empty()) {
-    text += fmt::format("\n{} such views, each chosen after the former, would reach {:.3g} {}\n",
+    text += fmt::format("\nsd after {} such views, chosen greedily: {:.3g} {}\n",
                         advice.sd_after_more.size(), basis.scale * advice.sd_after_more.back(),
                         wanted.unit);
   }
@@ -153,10 +155,10 @@ std::string advice_text(const ViewAdvice& advice,
 
 std::string basis_text(const Basis& basis) {
   std::string text =
-      fmt::format("planned on the covariance of kind {} and independent corner noise of {:.3g} px",
+      fmt::format("based on the covariance of kind {} and independent corner noise of {:.3g} px",
                   name(basis.planned_on), basis.pixel_sigma_px);
   if (basis.scale != 1) {
-    text += fmt::format("; deviations scaled by {:.3g} to those of kind {}", basis.scale,
+    text += fmt::format("; standard deviations scaled by {:.3g} to match kind {}", basis.scale,
                         name(basis.stated));
   }
   return text + "\n";
@@ -203,35 +205,37 @@ void run(const AdviseArguments& options, Session& session) {
 
 void add_advise(CLI::App& app, Session& session) {
   auto o = std::make_shared<AdviseArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "advise", "say how to hold the board next, to reduce an error most",
-               "vernier advise rig.json --reduce depth --at-m 5 --views 3");
-  verb->add_option("rig", o->rig, "rig file with its covariance")->required();
+  CLI::App* verb = add_verb(app, session, "advise",
+                            "suggest the next board poses that reduce a chosen error most",
+                            "vernier advise rig.json --reduce depth --at-m 5 --views 3");
+  verb->add_option("rig", o->rig, "rig file with a covariance")->required();
   verb->add_option("--reduce", o->reduce,
-                   "depth, projection, rectification, baseline or a parameter such as left.f_px")
+                   "error to reduce: depth, projection, rectification, baseline or a parameter "
+                   "such as left.f_px")
       ->capture_default_str();
-  verb->add_option("--at-m", o->at_m, "distance of the points meant")
+  verb->add_option("--at-m", o->at_m, "distance of the evaluated points, metres")
       ->check(finite_and_positive)
       ->capture_default_str();
-  verb->add_option("--views", o->views, "how many views, each given those before it")
+  verb->add_option("--views", o->views, "number of views to suggest, chosen greedily")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  verb->add_option("--more", o->more, "how many views to look ahead in the last line")
+  verb->add_option("--more", o->more, "number of views predicted in the last line")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   verb->add_option("--board", o->board,
-                   "inner corners, such as 9x6 (else the calibration's board)");
-  verb->add_option("--square-m", o->square_m, "side of a square, metres")
-      ->check(finite_and_positive);
+                   "inner corners, such as 9x6 (default: the calibration's board)");
+  verb->add_option("--square-m", o->square_m, "square size, metres")->check(finite_and_positive);
   verb->add_option("--pixel-sigma", o->pixel_sigma_px,
-                   "noise of a pixel coordinate (else the calibration's)")
+                   "noise of a pixel coordinate (default: the calibration's)")
       ->check(finite_and_positive);
   verb->add_option("--covariance", o->covariance,
-                   "plan on mvb (minimum variance bound, its deviations then scaled) or honest")
+                   "covariance used for planning: mvb (minimum variance bound, with scaled "
+                   "results) or honest")
       ->check(CLI::IsMember({"mvb", "honest"}))
       ->capture_default_str();
-  verb->add_flag("--partly", o->partly,
-                 "one camera may see only a part (a board whose corners have identities)");
+  verb->add_flag(
+      "--partly", o->partly,
+      "allow views in which a camera sees only part of the board (boards with coded corners)");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -24,7 +24,7 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double beyond = 0.01;  // p below which the two are said to differ
+constexpr double significance = 0.01;  // below this p the rigs differ
 constexpr double too_close = 0.999;
 
 struct DiffArguments {
@@ -32,11 +32,11 @@ struct DiffArguments {
   double focus_share = 0.7;
 };
 
-/// What the verb found.
+/// The result of the comparison.
 struct Comparison {
   RigEstimate a, b;
   std::optional<Covariance> covariance_a, covariance_b;
-  std::optional<RigDifference> parameters;  ///< where both have a covariance
+  std::optional<RigDifference> parameters;  ///< if both have a covariance
   ProjectionDifference projection;
   int shared_views = 0;
   std::vector<std::string> warnings;
@@ -48,34 +48,34 @@ RigEstimate load(const std::string& name, Comparison& found) {
   return std::move(file.estimate);
 }
 
-/// Sets what says how far the numbers can be trusted.
-void judge(const DiffArguments& options, Comparison& found) {
+/// Adds warnings that limit the validity of the comparison.
+void add_warnings(const DiffArguments& options, Comparison& found) {
   const auto warn = [&](std::string line) { found.warnings.push_back(std::move(line)); };
   for (const auto& [covariance, name] :
        {std::pair(&found.covariance_a, &options.a), std::pair(&found.covariance_b, &options.b)}) {
     if (covariance->has_value()) continue;
-    warn(fmt::format("{} has no {} covariance: only the projections are compared", *name,
+    warn(fmt::format("{} has no {} covariance: only projections are compared", *name,
                      options.covariance == "mvb" ? "minimum variance" : "honest"));
   }
   if (found.projection.left_out > 0) {
-    warn(
-        fmt::format("{} of the grid's points have no ray in one rig or no image in the other, and "
-                    "are left out",
-                    found.projection.left_out));
+    warn(fmt::format(
+        "{} grid points cannot be unprojected in one rig or projected in the other; excluded",
+        found.projection.left_out));
   }
   if (found.a.evidence && found.b.evidence) {
     found.shared_views =
         shared_views(*found.a.evidence, found.a.rig, *found.b.evidence, found.b.rig);
   }
   if (found.shared_views > 0) {
-    warn(fmt::format(
-        "{} of the {} images of {} were used for both, so their errors are not independent: the "
-        "expected difference is too large and the p-value too near 1, unless the models differ",
-        found.shared_views, found.a.evidence->observations.views.size(), options.a));
+    warn(
+        fmt::format("{} of the {} images of {} were used for both calibrations, so their errors "
+                    "are correlated: the expected difference and the p-value are too large, unless "
+                    "the models differ",
+                    found.shared_views, found.a.evidence->observations.views.size(), options.a));
   } else if (found.parameters && found.parameters->p_value > too_close) {
     warn(
-        "they agree better than their stated uncertainties allow: these are too wide, or the two "
-        "were made from the same images");
+        "the rigs agree better than their uncertainties predict: the uncertainties are too large, "
+        "or both calibrations use the same images");
   }
 }
 
@@ -100,14 +100,14 @@ Comparison compare(const DiffArguments& options) {
        .grid = {columns, rows},
        .focus_share = options.focus_share},
       both ? &*found.covariance_a : nullptr, both ? &*found.covariance_b : nullptr);
-  judge(options, found);
+  add_warnings(options, found);
   return found;
 }
 
 std::string verdict(const RigDifference& d) {
-  if (!d.fixed_at_different_values.empty()) return "they are held at different values";
-  return fmt::format("they {} their stated uncertainties (p = {:.2g})",
-                     d.p_value < beyond ? "differ beyond" : "agree within", d.p_value);
+  if (!d.fixed_at_different_values.empty()) return "a parameter is fixed at different values";
+  return fmt::format("the rigs {} their uncertainties (p = {:.2g})",
+                     d.p_value < significance ? "differ beyond" : "agree within", d.p_value);
 }
 
 Json distance_json(double distance_m) {
@@ -203,8 +203,9 @@ std::string projection_text(const Comparison& found) {
   const Eigen::Vector3d w = vector_from_rotation(p.T_b_a.R) * 180 / std::numbers::pi;
   const Eigen::Vector3d t = 1000 * p.T_b_a.t;
   std::string text = fmt::format(
-      "projection of b against a, once its frame is turned by ({:.4f}, {:.4f}, {:.4f})° and moved "
-      "by ({:.2f}, {:.2f}, {:.2f}) mm; pixels\n{:<10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} "
+      "projection difference b - a in pixels, before and after aligning the frames by a rotation "
+      "of ({:.4f}, {:.4f}, {:.4f})° and a translation of ({:.2f}, {:.2f}, {:.2f}) mm\n{:<10} "
+      "{:>10} {:>10} {:>10} {:>10} {:>10} {:>10} "
       "{:>10} {:>10}\n",
       w.x(), w.y(), w.z(), t.x(), t.y(), t.z(), "camera", "distance", "rms before", "mean after",
       "rms after", "max after", "expected", "rms focus", "expected");
@@ -227,14 +228,14 @@ std::string parameters_text(const RigDifference& d) {
   for (const ParameterDifference& p : d.parameters) {
     text +=
         fmt::format("{:<14} {:>14.8g} {:>14.8g} {:>12.3g} {:>12.3g} {:>9}\n", p.name, p.a, p.b,
-                    p.delta, p.sigma, p.held ? "held" : fmt::format("{:.2f}", p.delta / p.sigma));
+                    p.delta, p.sigma, p.held ? "fixed" : fmt::format("{:.2f}", p.delta / p.sigma));
   }
   for (const auto& [only, rig] : {std::pair(&d.only_in_a, "a"), std::pair(&d.only_in_b, "b")}) {
     if (!only->empty()) text += fmt::format("only in {}: {}\n", rig, fmt::join(*only, " "));
   }
-  text += fmt::format(
-      "\nMahalanobis distance {:.3f}, its square {:.2f} for {} degrees of freedom: {}\n",
-      std::sqrt(d.mahalanobis2), d.mahalanobis2, d.dof, verdict(d));
+  text +=
+      fmt::format("\nMahalanobis distance {:.3f} (squared: {:.2f}, {} degrees of freedom): {}\n",
+                  std::sqrt(d.mahalanobis2), d.mahalanobis2, d.dof, verdict(d));
   for (const std::string& words : d.fixed_at_different_values) text += "  " + words + "\n";
   for (std::size_t k = 0; k < std::min<std::size_t>(3, d.directions.size()); ++k) {
     text += fmt::format("  {:.1f} sigma along a direction: {}\n", d.directions[k].in_sigma,
@@ -255,23 +256,24 @@ void run(const DiffArguments& options, Session& session) {
 
 void add_diff(CLI::App& app, Session& session) {
   auto o = std::make_shared<DiffArguments>();
-  CLI::App* verb = add_verb(app, session, "diff",
-                            "compare two calibrations of the same cameras: in projection, and "
-                            "against their uncertainties",
-                            "vernier diff monday.rig.json friday.rig.json --distances-m 1,5,inf");
+  CLI::App* verb = add_verb(
+      app, session, "diff",
+      "compare two calibrations of the same cameras: projection difference and statistical test",
+      "vernier diff monday.rig.json friday.rig.json --distances-m 1,5,inf");
   verb->add_option("a", o->a, "rig file")->required();
   verb->add_option("b", o->b, "rig file")->required();
-  verb->add_option("--distances-m", o->distances, "along the rays of the points compared")
+  verb->add_option("--distances-m", o->distances,
+                   "distances of the compared points along their rays, metres; inf for infinity")
       ->capture_default_str();
-  verb->add_option("--grid", o->grid, "pixels compared over each image, columns x rows")
+  verb->add_option("--grid", o->grid, "grid of compared pixels, columns x rows")
       ->capture_default_str();
   verb->add_option("--focus", o->focus_share,
-                   "fit the alignment within this share of half the image's diagonal")
+                   "radius for fitting the alignment, as a fraction of half the image diagonal")
       ->check(finite_and_positive)
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
   verb->add_option("--covariance", o->covariance,
-                   "honest (what is sampled) or mvb (minimum variance bound)")
+                   "honest (used for sampling) or mvb (minimum variance bound)")
       ->check(CLI::IsMember({"honest", "mvb"}))
       ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

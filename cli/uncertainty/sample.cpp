@@ -50,19 +50,19 @@ void run(const SampleArguments& options, Session& session) {
   for (const CovarianceDirection& d : sampler.decomposition().directions()) {
     directions.push_back({{"share", d.variance_share}, {"words", d.description}});
   }
-  session.result(
-      {{"samples", options.count},
-       {"psi_c", options.psi_c},
-       {"seed", options.seed},
-       {"covariance_kind", name(rig.estimate.covariance->kind)},
-       {"raw_condition", sampler.decomposition().raw_condition()},
-       {"scaled_condition", sampler.decomposition().scaled_condition()},
-       {"directions", directions},
-       {"output", options.output}},
-      fmt::format(
-          "{} rigs at psi_c = {} written to {}\ndirections of the scaled covariance ({}):\n",
-          options.count, options.psi_c, options.output, name(rig.estimate.covariance->kind)) +
-          direction_lines(sampler.decomposition()));
+  session.result({{"samples", options.count},
+                  {"psi_c", options.psi_c},
+                  {"seed", options.seed},
+                  {"covariance_kind", name(rig.estimate.covariance->kind)},
+                  {"raw_condition", sampler.decomposition().raw_condition()},
+                  {"scaled_condition", sampler.decomposition().scaled_condition()},
+                  {"directions", directions},
+                  {"output", options.output}},
+                 fmt::format("{} rigs at psi_c = {} written to {}\nprincipal directions of the "
+                             "scaled covariance ({}):\n",
+                             options.count, options.psi_c, options.output,
+                             name(rig.estimate.covariance->kind)) +
+                     direction_lines(sampler.decomposition()));
 }
 
 }  // namespace
@@ -70,17 +70,18 @@ void run(const SampleArguments& options, Session& session) {
 void add_sample(CLI::App& app, Session& session) {
   auto o = std::make_shared<SampleArguments>();
   CLI::App* verb = add_verb(app, session, "sample",
-                            "draw rigs from a rig's covariance by SVD, errors correlated",
+                            "sample rigs with correlated errors from a rig's covariance (SVD)",
                             "vernier sample rig.json --psi-c 1 -n 1000 --seed 1 -o samples.csv");
   verb->add_option("rig", o->rig, "rig file, or a shipped name (nominal)")->required();
-  verb->add_option("--psi-c", o->psi_c, "factor on all standard deviations")
+  verb->add_option("--psi-c", o->psi_c, "scale factor for all standard deviations")
       ->check(finite_and_not_negative)
       ->capture_default_str();
-  verb->add_option("-n,--count", o->count, "how many")
+  verb->add_option("-n,--count", o->count, "number of samples")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", o->seed, "of the draws")->check(not_negative)->capture_default_str();
-  verb->add_option("-o,--output", o->output, "CSV, header = parameter names")->required();
+  verb->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  verb->add_option("-o,--output", o->output, "CSV file with the parameter names as header")
+      ->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -23,13 +23,13 @@ namespace {
 struct UncertaintyArguments {
   std::string rig, output;
   std::string distances = "1,5,inf", grid = "60x45", covariance = "honest";
-  double pair_sigma_px = -1;  // that of the calibration
+  double pair_sigma_px = -1;  // default: the calibration's
   double psi_c = 1;
   int samples = 2000;
   std::uint64_t seed = 1;
 };
 
-/// The estimate with the wanted covariance as the one that is sampled.
+/// The estimate with the selected covariance.
 RigEstimate with_choice(RigEstimate estimate,
                         const UncertaintyArguments& options,
                         const std::string& place) {
@@ -43,7 +43,8 @@ UncertaintyRequest request_of(const UncertaintyArguments& options, const RigEsti
   request.distances_m = parse_distances(options.distances, "--distances-m");
   std::tie(request.columns, request.rows) = parse_grid(options.grid, "--grid");
   if (request.columns < 2 || request.rows < 2) {
-    throw Error("--grid", "\"" + options.grid + "\" is smaller than 2x2", "write it like 60x45");
+    throw Error("--grid", "\"" + options.grid + "\" is smaller than 2x2",
+                "use a grid such as 60x45");
   }
   request.pair_sigma_px = options.pair_sigma_px;
   if (options.pair_sigma_px < 0) {
@@ -64,7 +65,7 @@ void run(const UncertaintyArguments& options, Session& session) {
       uncertainty_report(estimate, request_of(options, estimate), file.string());
   if (options.pair_sigma_px < 0 && !estimate.calibration) {
     report.notes.push_back(
-        "the rig file tells no pixel noise, so triangulation is told without that of the pixels: "
+        "the rig file contains no pixel noise: triangulation uncertainty excludes matching noise; "
         "give --pair-sigma-px");
   }
   std::string written;
@@ -84,29 +85,32 @@ void run(const UncertaintyArguments& options, Session& session) {
 
 void add_uncertainty(CLI::App& app, Session& session) {
   auto o = std::make_shared<UncertaintyArguments>();
-  CLI::App* verb =
-      add_verb(app, session, "uncertainty",
-               "projection, triangulation, rectification and depth uncertainty, linear and sampled",
-               "vernier uncertainty rig.json --distances-m 1,5,inf --grid 60x45 -o uncertainty");
+  CLI::App* verb = add_verb(
+      app, session, "uncertainty",
+      "projection, triangulation, rectification and depth uncertainty, linearised and sampled",
+      "vernier uncertainty rig.json --distances-m 1,5,inf --grid 60x45 -o uncertainty");
   verb->add_option("rig", o->rig, "rig file, or a shipped name (nominal)")->required();
-  verb->add_option("--distances-m", o->distances, "along the ray, metres; inf for infinity")
+  verb->add_option("--distances-m", o->distances,
+                   "distances along the ray, metres; inf for infinity")
       ->capture_default_str();
-  verb->add_option("--grid", o->grid, "columns x rows over each image")->capture_default_str();
+  verb->add_option("--grid", o->grid, "grid over each image, columns x rows")
+      ->capture_default_str();
   verb->add_option("--covariance", o->covariance,
-                   "honest (what is sampled) or mvb (the minimum variance bound, as mrcal)")
+                   "honest (used for sampling) or mvb (minimum variance bound, as in mrcal)")
       ->check(CLI::IsMember({"honest", "mvb"}))
       ->capture_default_str();
   verb->add_option("--pair-sigma-px", o->pair_sigma_px,
                    "noise of a matched pixel coordinate (default: the calibration's)")
       ->check(finite_and_not_negative);
-  verb->add_option("--psi-c", o->psi_c, "factor on all standard deviations of the calibration")
+  verb->add_option("--psi-c", o->psi_c,
+                   "scale factor for all standard deviations of the calibration")
       ->check(finite_and_not_negative)
       ->capture_default_str();
-  verb->add_option("--samples", o->samples, "rigs drawn")
+  verb->add_option("--samples", o->samples, "number of sampled rigs")
       ->check(CLI::Range(2, 10'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", o->seed, "of the draws")->check(not_negative)->capture_default_str();
-  verb->add_option("-o,--output", o->output, "folder for tables (CSV), maps (SVG) and JSON");
+  verb->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  verb->add_option("-o,--output", o->output, "output folder for tables (CSV), maps (SVG) and JSON");
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

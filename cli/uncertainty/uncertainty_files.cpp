@@ -22,7 +22,7 @@
 namespace vernier::cli {
 namespace {
 
-/// The files of one folder.
+/// The output folder and the names of its files.
 class Folder {
  public:
   explicit Folder(std::filesystem::path path) : path_(std::move(path)) {
@@ -39,8 +39,8 @@ class Folder {
   std::vector<std::string> names_;
 };
 
-/// Cameras' names as parts of files', each another: foreign bytes are '_', and what is alike by
-/// that is numbered.
+/// Unique file name parts from camera names: unsupported characters become '_', duplicates are
+/// numbered.
 class FileParts {
  public:
   const std::string& operator[](const std::string& camera) {
@@ -62,7 +62,7 @@ class FileParts {
   std::set<std::string> used_;
 };
 
-/// A text as a field of a CSV file (RFC 4180): in quotes where it has to be.
+/// A text as a CSV field (RFC 4180), quoted if necessary.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";

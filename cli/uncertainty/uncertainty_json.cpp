@@ -22,7 +22,7 @@ namespace {
 
 Json distance(double distance_m) { return std::isinf(distance_m) ? Json("inf") : Json(distance_m); }
 
-/// Five significant digits, so that a page stays small.
+/// Rounds to five significant digits to keep pages small.
 double rounded(double value) { return to_real(fmt::format("{:.5g}", value)).value_or(value); }
 
 template <typename Matrix>
@@ -48,7 +48,7 @@ Json deviations(const Matrix& covariance) {
   return vector(covariance.diagonal().cwiseSqrt().eval());
 }
 
-/// rows x columns of what `value(i)` makes of cell i.
+/// A rows x columns array with `value(i)` for cell i.
 template <typename Value>
 Json grid_rows(int columns, int rows, Value value) {
   Json all = Json::array();

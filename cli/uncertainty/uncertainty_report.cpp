@@ -25,16 +25,16 @@
 namespace vernier::cli {
 namespace {
 
-/// What all parts share.
+/// Input of all parts.
 struct Input {
   const RigEstimate& estimate;
   RigSampler sampler;
   Eigen::MatrixXd covariance;          ///< at psi_c
-  std::optional<RigAndBoards> boards;  ///< as the sampler wants them, at psi_c = 1
+  std::optional<RigAndBoards> boards;  ///< for the sampler, at psi_c = 1
   std::optional<RigAndBoards> scaled;  ///< at psi_c
 };
 
-std::vector<Place> places(const Eigen::Vector2i& size_px) {
+std::vector<Place> reference_pixels(const Eigen::Vector2i& size_px) {
   const double w = size_px[0] - 1, h = size_px[1] - 1;
   return {{"centre", {0.5 * w, 0.5 * h}},
           {"top left", {0.1 * w, 0.1 * h}},
@@ -62,7 +62,7 @@ void summarise(ProjectionReport& report) {
     report.worst_at_px = {report.grid.x_px[i % report.grid.columns],
                           report.grid.y_px[i / report.grid.columns]};
   }
-  report.mean_sd_px = sum / count;  // NaN where no pixel has a ray
+  report.mean_sd_px = sum / count;  // NaN if no pixel has a ray
   if (count == 0) report.worst_sd_px = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -70,7 +70,7 @@ void note_once(const std::string& note, std::vector<std::string>& notes) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
-/// One camera and one way of fixing the point, at all distances: the draws are shared.
+/// One camera and one point attachment, at all distances with the same samples.
 void add_projection(const Input& in, int camera, PointFixedTo fixed_to, UncertaintyReport& out) {
   const UncertaintyRequest& request = out.request;
   const ProjectionUncertainty linear = linear_projection(in, camera, fixed_to);
@@ -87,11 +87,12 @@ void add_projection(const Input& in, int camera, PointFixedTo fixed_to, Uncertai
     summarise(report);
     if (report.grid.absent > 0 && distance_m == distances.front()) {
       const std::string note = fmt::format(
-          "{} of the {} pixels of the {} camera's grid have no ray: its distortion folds there",
+          "{} of {} grid pixels of the {} camera cannot be unprojected: the distortion model folds "
+          "over there",
           report.grid.absent, report.grid.covariance.size(), lens.name);
       note_once(note, out.notes);
     }
-    for (const Place& place : places(lens.size_px)) {
+    for (const Place& place : reference_pixels(lens.size_px)) {
       report.figures.push_back({place, linear.covariance(place.pixel_px, distance_m), {}});
       const Eigen::Vector3d ray =
           try_unproject(lens, place.pixel_px).value_or(Eigen::Vector3d::UnitZ()).normalized();
@@ -115,15 +116,15 @@ void add_projections(const Input& in, UncertaintyReport& out) {
     for (int c = 0; c < cameras; ++c) add_projection(in, c, PointFixedTo::boards, out);
   } else {
     out.notes.push_back(
-        "projection of points fixed to the boards (mrcal's) needs the board's poses, and the rig "
-        "file has no evidence of them: calibrate from views of a board, without --no-evidence");
+        "no projection uncertainty for points fixed to the boards (as in mrcal): the rig file has "
+        "no board poses; calibrate from board views without --no-evidence");
   }
   for (int c = 0; c < cameras; ++c) add_projection(in, c, PointFixedTo::camera, out);
   for (int c = 1; c < cameras; ++c) add_projection(in, c, PointFixedTo::first_camera, out);
 }
 
-/// The left camera's places that both cameras see at a distance; the optical axis stands for the
-/// centre.
+/// The reference pixels of the left camera that both cameras see at a distance; with `on_axis`, the
+/// optical axis replaces the centre.
 std::vector<std::pair<Place, PixelPair>> seen_pairs(const RigEstimate& pair,
                                                     double distance_m,
                                                     bool on_axis,
@@ -131,7 +132,7 @@ std::vector<std::pair<Place, PixelPair>> seen_pairs(const RigEstimate& pair,
   std::vector<std::pair<Place, PixelPair>> seen;
   const Camera& left = pair.rig.cameras[0];
   std::string unseen;
-  for (Place place : places(left.size_px)) {
+  for (Place place : reference_pixels(left.size_px)) {
     if (on_axis && place.name == "centre") {
       place = {"axis", project(left, Eigen::Vector3d::UnitZ())};
     }
@@ -142,7 +143,7 @@ std::vector<std::pair<Place, PixelPair>> seen_pairs(const RigEstimate& pair,
       unseen += (unseen.empty() ? "" : ", ") + place.name;
     }
   }
-  const std::string note = fmt::format("at {} m the {} camera does not see: {}", distance_m,
+  const std::string note = fmt::format("at {} m, not visible in the {} camera: {}", distance_m,
                                        pair.rig.cameras[1].name, unseen);
   if (!unseen.empty()) note_once(note, notes);
   return seen;

@@ -21,14 +21,14 @@
 namespace vernier::cli {
 
 struct UncertaintyRequest {
-  std::vector<double> distances_m{1, 5};  ///< along the ray; may hold infinity
+  std::vector<double> distances_m{1, 5};  ///< along the ray; may include infinity
   int columns = 60, rows = 45;            ///< of the grids
   double pair_sigma_px = 0;               ///< noise of a matched pixel coordinate
   SamplingOptions sampling;
 };
 
-/// Where in an image figures are told beside the whole grid: its centre and, a tenth of its size
-/// inside, its corners.
+/// A reference pixel for single values: the image centre, or a corner moved inwards by a tenth of
+/// the image size.
 struct Place {
   std::string name;
   Eigen::Vector2d pixel_px;
@@ -36,29 +36,29 @@ struct Place {
 
 struct ProjectionFigure {
   Place place;
-  std::optional<Eigen::Matrix2d> linear;  ///< px²; nothing where the pixel has no ray
+  std::optional<Eigen::Matrix2d> linear;  ///< px²; empty if the pixel has no ray
   SampledPixel sampled;
 };
 
 struct ProjectionReport {
   std::string camera;
   PointFixedTo fixed_to = PointFixedTo::boards;
-  double distance_m = 0;  ///< infinity for points fixed to the camera, where it plays no part
+  double distance_m = 0;  ///< infinity for points fixed to the camera (not used)
   ProjectionGrid grid;
-  double mean_sd_px = 0, worst_sd_px = 0;  ///< of the grid, each point in its worst direction
+  double mean_sd_px = 0, worst_sd_px = 0;  ///< over the grid, in the worst direction of each point
   Eigen::Vector2d worst_at_px{0, 0};
   std::vector<ProjectionFigure> figures;
 };
 
 struct TriangulationReport {
-  std::string camera;  ///< that pairs with the first
+  std::string camera;  ///< the second camera of the pair
   TriangulationFrame frame = TriangulationFrame::rig;
   double distance_m = 0;
   Place place;
   PixelPair pair;
   TriangulatedPoint linear;
-  SampledPoint sampled;        ///< of the calibration's error alone
-  SampledPoint sampled_total;  ///< with the pair's own noise
+  SampledPoint sampled;        ///< calibration error only
+  SampledPoint sampled_total;  ///< including matching noise
 };
 
 struct DisparityFigure {
@@ -72,7 +72,7 @@ struct DisparityReport {
   double distance_m = 0;
   VerticalDisparityMap map;
   double worst_sd_px = 0;
-  std::vector<DisparityFigure> figures;  ///< where both cameras see the point
+  std::vector<DisparityFigure> figures;  ///< only points visible in both cameras
 };
 
 struct DepthReport {
@@ -80,19 +80,19 @@ struct DepthReport {
   std::vector<DepthUncertainty> ranges;
 };
 
-/// Everything `vernier uncertainty` tells of a rig.
+/// All results of `vernier uncertainty`.
 struct UncertaintyReport {
   CovarianceKind kind = CovarianceKind::mvb;
   UncertaintyRequest request;
-  double board_sigma_px = 0;  ///< 0 where the boards are unknown
+  double board_sigma_px = 0;  ///< 0 if the boards are unknown
   std::vector<ProjectionReport> projection;
   std::vector<TriangulationReport> triangulation;
   std::vector<DisparityReport> vertical_disparity;
   std::vector<DepthReport> depth;
-  std::vector<std::string> notes;  ///< what could not be told, and why
+  std::vector<std::string> notes;  ///< what could not be computed, and why
 };
 
-/// From the covariance that the estimate samples (for the bound, put it there).
+/// Computed from `estimate.covariance` (for the bound, store it there).
 UncertaintyReport uncertainty_report(const RigEstimate& estimate,
                                      const UncertaintyRequest& request,
                                      const std::string& place);

@@ -14,22 +14,21 @@
 
 namespace vernier::cli {
 
-/// How much of the grids goes into the JSON: every covariance, or standard deviations to five
-/// digits (for a page).
+/// Grid contents in the JSON: full covariances, or standard deviations to five digits (for a page).
 enum class GridDetail { covariances, deviations };
 
 Json uncertainty_json(const UncertaintyReport& report, GridDetail detail);
 
-/// For a person: linear / sampled side by side.
+/// Human-readable tables with values as linear / sampled.
 std::string uncertainty_text(const UncertaintyReport& report);
 
 /// Writes uncertainty.json (grids as deviations), projection.csv, triangulation.csv,
 /// vertical_disparity.csv, depth.csv, and for every map a CSV of its grid and an SVG picture.
-/// Returns the names of the files.
+/// Returns the file names.
 std::vector<std::string> write_uncertainty(const UncertaintyReport& report,
                                            const std::filesystem::path& folder);
 
-/// "1m", "inf" as file names and tables have distances.
+/// A distance in file names and tables: "1m", "inf".
 std::string distance_label(double distance_m);
 std::string_view fixed_to_label(PointFixedTo fixed_to);
 std::string_view frame_label(TriangulationFrame frame);

@@ -16,7 +16,7 @@ namespace vernier::cli {
 namespace {
 
 constexpr std::string_view where_corners_are =
-    "(top left … bottom right: 10 % of the image's width and height in from that corner)\n";
+    "(top left … bottom right: 10 % of the image width and height inwards from the corner)\n";
 
 std::string number(double value) {
   if (std::isnan(value)) return "-";
@@ -56,8 +56,8 @@ std::string projection_text(const UncertaintyReport& report) {
 
 std::string triangulation_text(const UncertaintyReport& report) {
   std::string text = fmt::format(
-      "\ntriangulation: standard deviation of x, y, z by the calibration (linear; z linear / "
-      "sampled), of z by a pixel noise of {:.3g} px\n",
+      "\ntriangulation: standard deviation of x, y, z from the calibration (linear; z: linear / "
+      "sampled) and of z from a pixel noise of {:.3g} px\n",
       report.request.pair_sigma_px);
   text += fmt::format("{:<8} {:<10} {:>8} {:<12} {:>9} {:>9} {:>19} {:>9} {:>9} {:>19} {:>6}\n",
                       "camera", "frame", "distance", "where", "x m", "y m", "z m", "pixels z",
@@ -101,7 +101,7 @@ std::string disparity_text(const UncertaintyReport& report) {
 
 std::string depth_text(const DepthReport& report) {
   std::string text = fmt::format(
-      "\ndepth on the optical axis, with camera \"{}\" (the calibration alone)\n"
+      "\ndepth on the optical axis, with camera \"{}\" (calibration error only)\n"
       "{:>8} {:>19} {:>21} {:>13}\n",
       report.camera, "range m", "sd m (lin. / samp.)", "95 % m", "non-physical");
   for (const DepthUncertainty& u : report.ranges) {
@@ -143,7 +143,7 @@ std::string uncertainty_text(const UncertaintyReport& report) {
   if (!report.triangulation.empty()) text += triangulation_text(report);
   if (!report.vertical_disparity.empty()) text += disparity_text(report);
   for (const DepthReport& r : report.depth) text += depth_text(r);
-  text += "n-p: share of draws that are no longer physical (worst of the places)\n";
+  text += "n-p: fraction of non-physical samples (maximum over the pixels)\n";
   for (const std::string& note : report.notes) text += "note: " + note + "\n";
   return text;
 }

@@ -72,7 +72,7 @@ class Characterise(unittest.TestCase):
     def test_a_study_takes_what_was_measured(self):
         done = self.run_it('-o', 'sources.toml', '--json')
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn('1 pair: the intervals are over parts of the images', done.stderr)
+        self.assertIn('1 pair: the intervals are over image parts', done.stderr)
         said = json.loads(done.stdout)
         self.assertEqual(said['clustered_by'], 'part of an image')
         written = tomllib.loads((self.folder / 'sources.toml').read_text())['sources']
@@ -124,7 +124,7 @@ class Characterise(unittest.TestCase):
         for more in ({'scale': '2'}, {'left': 'nearly'}):
             done = self.run_it('-o', 'sources.toml', **more)
             self.assertEqual(done.returncode, 3, f'{more} {done.stderr}')
-            self.assertIn('doubtful', done.stderr)
+            self.assertIn('not trustworthy', done.stderr)
             self.assertIn('not written', done.stderr)
             self.assertFalse((self.folder / 'sources.toml').exists())
 
@@ -135,10 +135,10 @@ class Characterise(unittest.TestCase):
             self.assertIn(of, done.stderr.splitlines()[-1])
         complains(self.run_it('-q', right='small'), 'small.pgm')
         complains(self.run_it('-q', left='blank'), 'no edges')
-        complains(self.run_it('-q', left='right', right='left'), 'exchanged')
+        complains(self.run_it('-q', left='right', right='left'), 'swapped')
         complains(self.run_it('-q', truth='small'), 'small.pgm')
         complains(self.run_it('-q', '--matcher', 'edge,bm'), 'more than one')
-        complains(self.run_it('-q', '--matcher', 'best'), 'no matcher')
+        complains(self.run_it('-q', '--matcher', 'best'), 'unknown matcher')
         complains(self.run_it('-q', most='900'), 'width')
         before = (self.folder / 'truth.pgm').read_bytes()
         complains(self.run_it('-q', '-o', './truth.pgm'), 'is an input')

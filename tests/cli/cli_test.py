@@ -190,7 +190,7 @@ class RealPairs(Case):
         self.calibrate('--no-evidence')
         data, _ = self.page_data(self.folder / 'rig.json', 'nominal', '--no-proof')
         bare, nominal = data['rigs']
-        self.assertIn('no evidence', bare['missing'])
+        self.assertIn('does not contain its calibration data', bare['missing'])
         self.assertEqual(len(bare['correlation']), 16)
         for key in ('corners', 'projection', 'view_influence', 'proof'):
             self.assertNotIn(key, bare)
@@ -203,7 +203,7 @@ class RealPairs(Case):
         self.assertNotIn('left.ax', rig['correlation_names'])
         self.assertEqual(len(rig['correlation']), 15)
         self.assertLess(sum(v['leverage'] for v in rig['view_influence']), 15)
-        self.assertIn('other knowledge', rig['proof']['notes'][0])
+        self.assertIn('also used a prior or matched pairs', rig['proof']['notes'][0])
 
     def test_report_of_held_parameters_and_other_names(self):
         self.calibrate('--hold', 'left.ax=1')
@@ -237,7 +237,7 @@ class RealPairs(Case):
         self.assertEqual([(u['camera'], u['corners']) for u in found['used']], [(0, 54)] * 4)
         pair = self.works('detect', '--left', IMAGES / 'left0[1-4].jpg', '--right',
                           IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'a.vnl')
-        self.assertIn('8 boards found in 4 frames', pair.stdout)
+        self.assertIn('8 boards detected in 4 frames', pair.stdout)
         self.works('detect', '--camera', IMAGES / 'left0[1-4].jpg', '--camera',
                    IMAGES / 'right0[1-4].jpg', '--board', '9x6', '-o', self.folder / 'b.vnl')
         self.assertEqual((self.folder / 'a.vnl').read_text(), (self.folder / 'b.vnl').read_text())
@@ -252,7 +252,7 @@ class RealPairs(Case):
         detect = ('detect', '--left', self.folder / 'left*.jpg', '--board', '9x6', '-o',
                   self.folder / 'c.vnl')
         done = self.works(*detect)
-        self.assertIn('1 boards found in 1 frames', done.stdout)
+        self.assertIn('1 boards detected in 1 frames', done.stdout)
         self.assertIn('left02.jpg: is cut off', done.stdout)
         (self.folder / 'c.vnl').unlink()
         for name in ('left01.jpg', 'left02.jpg'):
@@ -323,7 +323,7 @@ class BadBoards(Case):
 
     def test_good_corners_are_taken(self):
         done = self.works(*self.changed(lambda f, c, r, k, rest: [f, c, r, k, *rest]))
-        self.assertNotIn('doubtful', done.stderr)
+        self.assertNotIn('not trustworthy', done.stderr)
 
     def test_a_bad_line_37_is_named(self):
         def decimal_comma(f, c, r, k, rest):
@@ -384,21 +384,21 @@ class IdleOptions(Case):
                 ['--family', '36h11'], ['--border-bits', '1'], ['--top-row-first'],
                 ['--corners', 'c'], ['--observations', 'o'], ['--size', '640x480']):
             self.complains('check', 'nominal', option, *value,
-                           of=option + ': the rig file holds the corners; leave it out, or give')
+                           of=option + ': the rig file contains the corners; leave it out, or give')
         for option, *value in (
                 ['--model', 'radial1'], ['--pixel-sigma', '1'], ['--hold', 'left.ax'],
                 ['--know', 'left.ax=1,1'], ['--prior', 'p'], ['--warp'], ['--keep-outliers']):
             self.complains('check', 'nominal', option, *value,
-                           of=option + ': the rig file says how it was solved; leave it out, or')
+                           of=option + ': the rig file contains the solver settings; leave it out')
 
     def test_of_the_holdout(self):
         for option in ('--splits', '--training-frames'):
             self.complains('check', 'nominal', option, '9',
-                           of=option + ': it is of --holdout; add --holdout or leave it out')
+                           of=option + ': only valid with --holdout; add --holdout or leave it out')
 
     def test_beside_images(self):
         self.complains(*self.images(), '--board', '9x6', '--square-m', '1', '--size', '640x480',
-                       of='--size: the images say how large they are; leave it out')
+                       of='--size: the size is read from the images; leave it out')
 
     def test_beside_observations(self):
         (self.folder / 'o.csv').write_text('\n'.join(board_lines()))
@@ -406,7 +406,7 @@ class IdleOptions(Case):
                                ['--legacy'], ['--tag-spacing', '0.3'], ['--family', '36h11']):
             self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size',
                            '640x480', '-o', self.folder / 'rig.json', option, *value,
-                           of=option + ": the file of --observations holds the board's points")
+                           of=option + ": the --observations file contains the board's points")
 
     def test_of_another_board(self):
         chess, tags = ('--board', '9x6'), ('--board', 'apriltag:6x6', '--tag-m', '1')
@@ -415,14 +415,14 @@ class IdleOptions(Case):
                 [chess, '--marker-m', '1'], [chess, '--dictionary', '4x4_50'], [chess, '--legacy'],
                 [tags, '--marker-m', '1'], [tags, '--legacy']):
             self.complains(*self.images(), *board, option, *value,
-                           of=option + ': only a charuco board has it; leave it out')
+                           of=option + ': only valid for a charuco board; leave it out')
         for board, option, *value in (
                 [chess, '--tag-m', '1'], [chess, '--tag-spacing', '1'], [chess, '--family', '16h5'],
                 [charuco, '--border-bits', '1'], [charuco, '--top-row-first']):
             self.complains(*self.images(), *board, option, *value,
-                           of=option + ': only a grid of AprilTags has it; leave it out')
+                           of=option + ': only valid for an AprilTag grid; leave it out')
         self.complains(*self.images(), *tags, '--square-m', '1',
-                       of='--square-m: a grid of AprilTags has no squares, but --tag-m')
+                       of='--square-m: an AprilTag grid has no squares; use --tag-m')
 
     def test_beside_a_target_file(self):
         target = self.folder / 'target.yaml'
@@ -430,13 +430,13 @@ class IdleOptions(Case):
                           'tagSpacing: 0.3\ncodeOffset: 0\n')
         for option in ('--square-m', '--tag-m', '--tag-spacing'):
             self.complains(*self.images(), '--target', target, option, '1',
-                           of=option + ': the file of --target says it; leave it out')
+                           of=option + ': already given by the --target file; leave it out')
         self.complains(*self.images(), '--target', target, '--legacy',
-                       of='--legacy: the file of --target holds no charuco board')
+                       of='--legacy: the --target file is not a charuco board')
         target.write_text('target_type: checkerboard\ntargetCols: 9\ntargetRows: 6\n'
                           'rowSpacingMeters: 0.025\ncolSpacingMeters: 0.025\n')
         self.complains(*self.images(), '--target', target, '--family', '36h11',
-                       of='--family: the file of --target holds a chessboard, which has no tags')
+                       of='--family: the --target file is a chessboard and has no tags')
 
 
 class SparedInputs(Case):
@@ -444,7 +444,7 @@ class SparedInputs(Case):
 
     def spares(self, *words, file):
         before = file.read_bytes()
-        self.complains(*words, of='is an input, which the output would replace; name another')
+        self.complains(*words, of='is an input and would be overwritten; name another')
         self.assertEqual(file.read_bytes(), before)
 
     def test_rig_files(self):
@@ -473,7 +473,7 @@ class SparedInputs(Case):
 
 class BadInput(Case):
     def test_boards_that_are_not_given(self):
-        for board, of in (('', 'the board is not given'), ('hexagons:3x3', 'no kind of board'),
+        for board, of in (('', 'no board given'), ('hexagons:3x3', 'unknown kind of board'),
                           ('charuco:8x6', '--square-m is missing'), ('9by6', 'two whole numbers')):
             self.complains('detect', '--left', 'left*.png', '--board', board, '-o', 'c.vnl', of=of)
         self.complains('detect', '--left', 'left*.png', '--board', 'charuco:8x6', '--square-m',
@@ -482,7 +482,7 @@ class BadInput(Case):
         self.complains('detect', '--right', 'right*.png', '--board', '9x6', '-o', 'c.vnl',
                        of='--left is missing')
         self.complains('detect', '--left', 'a*.png', '--camera', 'b*.png', '--board', '9x6', '-o',
-                       'c.vnl', of='--camera stands beside')
+                       'c.vnl', of='--camera cannot be combined with')
 
     def test_missing_images(self):
         self.complains('calibrate', '--left', self.folder / 'l*.png', '--right',
@@ -538,7 +538,7 @@ class BadInput(Case):
         self.complains('simulate', '--pose', '1,2', of='is not 3 numbers')
         self.complains('simulate', '--pose', '1,2,3', '--source', 'edge_los=1', of='edge_loss')
         self.complains('report', self.folder, '-o', self.folder / 'r.html',
-                       of='is neither the folder of a study')
+                       of='is neither a study folder')
         self.complains('report', 'no.rig.json', '-o', self.folder / 'r.html', of='no such file')
         (self.folder / 'other.json').write_text('{"format": "other"}')
         self.complains('report', 'nominal', self.folder / 'other.json', '-o',
@@ -548,7 +548,7 @@ class BadInput(Case):
             (self.folder / name).mkdir()
             (self.folder / name / 'study.toml').touch()
         self.complains('report', self.folder / 'one', self.folder / 'two', '-o',
-                       self.folder / 'r.html', of='is a second folder of a study')
+                       self.folder / 'r.html', of='is a second study')
 
     def test_numbers_that_are_none(self):
         for psi_c in ('nan', 'inf'):
@@ -591,7 +591,7 @@ class BadInput(Case):
                       ('advise', 'nominal', '--square-m', '0.1', '--board')):
             for size in ('100000x100000', '3x1001', '1001x3'):
                 self.complains(*words, size,
-                               of=f'{words[-1]}: "{size}" has more than 1000 on a side; give fewer')
+                               of=f'{words[-1]}: "{size}" has a side above 1000; give a')
 
     def test_markers_larger_than_their_squares(self):
         (self.folder / 'c.vnl').write_text('# filename x y level\nleft1.png - - -\n')
@@ -661,7 +661,7 @@ class Doubt(Case):
         done = vernier('calibrate', '--observations', self.folder / 'o.csv', '--size', '640x480',
                        '-o', self.folder / 'rig.json', '--json')
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn('doubtful: residuals of', done.stderr)
+        self.assertIn('not trustworthy: residuals of', done.stderr)
         self.assertIn('doubts', json.loads(done.stdout))
         self.assertTrue((self.folder / 'rig.json').exists())
 
@@ -865,9 +865,9 @@ class Check(Case):
             (self.folder / 'o.csv').write_text('\n'.join(lines))
             self.complains('check', '--observations', self.folder / 'o.csv', '--size', '640x480',
                            '--trials', '10000000', '--holdout', *more, of=of)
-        refuses(cameras=1, of='--holdout: needs a pair of cameras and at least six frames; here '
-                              'are 1 of the one and 12 of the other')
-        refuses(frames=5, of='here are 2 of the one and 5 of the other')
+        refuses(cameras=1, of='--holdout: needs two cameras and at least six frames; got '
+                              '1 camera(s) and 12 frame(s)')
+        refuses(frames=5, of='got 2 camera(s) and 5 frame(s)')
         for frames in ('2', '12'):
             refuses('--training-frames', frames, of=f'--training-frames: {frames} of 12 frames')
 
@@ -875,7 +875,7 @@ class Check(Case):
         rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
         del rig['evidence']
         (self.folder / 'bare.json').write_text(json.dumps(rig))
-        self.complains('check', self.folder / 'bare.json', of='no evidence to solve again')
+        self.complains('check', self.folder / 'bare.json', of='no stored evidence to solve again')
         self.complains('check', of='exactly one kind of input')
         self.complains('check', 'nominal', '--trials', '0', of='trials')
 
@@ -924,7 +924,7 @@ class CheckedFile(Case):
         self.assertAlmostEqual(found['file']['max_parameter_diff_sigma'], 0.01, places=4)
         self.assertLess(found['file']['max_covariance_diff'], 1e-4)
         self.assertIn('parameters, in standard deviations differ from solving again by 1.0e-02 '
-                      '(left.ox_px; gate 1e-04)', said)
+                      '(left.ox_px; limit 1e-04)', said)
 
     def test_a_changed_covariance_is_found(self):
         rig = self.calibrate()
@@ -969,8 +969,8 @@ class CheckedFile(Case):
         (self.folder / 'rig.json').write_text(json.dumps(rig))
         found, said = self.check()
         self.assertIsNone(found['file'])
-        self.assertIn('the file holds no prior, so what it states is not compared', said)
-        self.assertIn('the file holds no prior', found['file_reason'])
+        self.assertIn('the file does not contain the prior of its calibration', said)
+        self.assertIn('does not contain the prior', found['file_reason'])
 
 
 class Simulation(Case):
@@ -1035,8 +1035,8 @@ class Simulation(Case):
                        of='less than 0.2 m above the camera')
         for sources, why in ((('stereo_mismatch=0', 'stereo_mismatch_px=5'), 'has no effect'),
                              (('none', 'corner_mismatch_px=5'), 'has no effect'),
-                             (('edge_loss=0.1', 'none'), 'would undo'),
-                             (('edge_loss=0.1', 'edge_loss=0.2'), 'is the second value'),
+                             (('edge_loss=0.1', 'none'), 'would override'),
+                             (('edge_loss=0.1', 'edge_loss=0.2'), 'is given twice'),
                              (('calibration=-1',), 'out of range')):
             words = [word for source in sources for word in ('--source', source)]
             self.complains('simulate', '--pose', '10,7.5,0', *words, of=why)
@@ -1152,7 +1152,7 @@ class Study(Case):
             said = json.loads(self.works('study', file, '-o', out, '--json', '-q').stdout)
             self.assertEqual(said['rig'], {'file': rig, 'covariance_kind': kind})
             table = self.works('study', 'status', out).stdout
-            self.assertIn(f'rig {rig}: its covariance, which drives psi_c, is of kind {kind}\n',
+            self.assertIn(f'rig {rig}: covariance (scaled by psi_c) of kind {kind}\n',
                           table)
 
     def test_an_interval_needs_six_maps(self):
@@ -1167,7 +1167,7 @@ class Study(Case):
         self.assertIsNone(comparison['p_value_holm'])
         self.assertIsNone(comparison['mcnemar_p'])
         table = self.works('study', 'status', self.folder / 'few').stdout
-        self.assertIn('no interval: it needs 6 maps, has 5', table)
+        self.assertIn('no interval: needs 6 maps, has 5', table)
         done = self.works('study', self.study(20), '-o', self.folder / 'more', '--json', '-q')
         for cell in json.loads(done.stdout)['cells']:
             self.assertEqual(cell['maps'], 7)

@@ -95,7 +95,7 @@ class Combine(unittest.TestCase):
         text = run('combine', '--prior', PRIOR, 'a.csv', 'b.csv', '--monitor', '-o', 'c.json',
                    folder=self.folder).stdout
         self.assertIn('largest drift', text)
-        self.assertIn('stands first', text)
+        self.assertIn('first input', text)
 
     def test_without_pairs(self):
         board = ['calibrate', '--left', f'{IMAGES}/left0[1-7].jpg', '--right',
@@ -108,7 +108,7 @@ class Combine(unittest.TestCase):
             self.assertNotIn('observability', said)
             done = run('combine', *inputs, '-o', 'c.json', folder=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn('stands first', done.stdout)
+            self.assertIn('first input', done.stdout)
         # A batch that is left out leaves no pairs: said, not a crash.
         with open(self.folder / 'a.csv') as file:
             rows = list(csv.reader(file))
@@ -175,7 +175,7 @@ class Combine(unittest.TestCase):
 
     def test_complaints(self):
         self.assertIn('--prior', self.complaint('calibrate', '--pairs', 'pairs.csv', '-o', 'x.json'))
-        self.assertIn('pairs are of no board', self.complaint(
+        self.assertIn('not used with --pairs', self.complaint(
             'calibrate', '--pairs', 'pairs.csv', '--prior', PRIOR, '--board', '9x6', '-o', 'x.json'))
         self.assertIn('give a prior', self.complaint('combine', 'a.csv', '-o', 'x.json'))
         self.assertIn('nothing.csv', self.complaint('combine', '--prior', PRIOR, 'nothing.csv', '-o',

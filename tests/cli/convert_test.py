@@ -67,7 +67,7 @@ class Convert(Case):
             self.works('convert', 'nominal', '--to', to, '-o', self.out(file))
             self.expect_nominal(self.out(file))
         self.complains('convert', 'nominal', '-o', self.out('x.cameramodel'),
-                       of='mrcal keeps this rig in 2 files; name a folder',
+                       of='mrcal stores this rig in 2 files; give a folder',
                        leaves=[self.out('x.cameramodel')])
         self.works('convert', 'nominal', '--to', 'mrcal', '-o', self.folder)
         self.works('convert', self.out('left.cameramodel'), '-o', self.out('one.json'))
@@ -79,9 +79,9 @@ class Convert(Case):
         done = self.works('convert', 'nominal', '--to', 'opencv', '--names', 'a,b', '-o',
                           self.out('r.yml'), '--json')
         lost = json.loads(done.stdout)['lost']
-        self.assertIn('opencv has no place for the covariance; only rig.json keeps how wrong the '
-                      'rig is', lost)
-        self.assertIn('opencv has no place for names: camera "a" is number 1', lost)
+        self.assertIn('opencv cannot store the covariance; only rig.json stores uncertainty',
+                      lost)
+        self.assertIn('opencv cannot store names: camera "a" is number 1', lost)
         for line in lost:
             self.assertIn(line, done.stderr.splitlines())
         quiet = self.works('convert', 'nominal', '--to', 'kalibr', '-o', self.out('k.yaml'), '-q')
@@ -97,7 +97,7 @@ class Convert(Case):
         self.assertEqual(len(back['evidence']['observations']),
                          len(self.nominal['evidence']['observations']))
         done = self.works('convert', 'nominal', '--model', 'opencv5', '-o', self.out('back.json'))
-        self.assertIn('the covariance is of another model and is left behind', done.stderr)
+        self.assertIn('the covariance belongs to another model and is dropped', done.stderr)
         self.assertNotIn('covariance', self.rig())
         self.assertEqual(self.rig()['cameras'][1]['model'], 'opencv5')
         # and the smallest model that holds it is the first one again
@@ -123,13 +123,13 @@ class Convert(Case):
         self.out('points3D.txt').write_text('1 0 0 1 9 9 9 0.1 1 1\n')
         before = self.out('images.txt').read_bytes()
         self.complains('convert', self.fisheye(), '--to', 'colmap', '-o', self.folder,
-                       of='holds a reconstruction, whose files would be replaced')
+                       of='contains a COLMAP reconstruction that would be overwritten')
         self.assertEqual(self.out('images.txt').read_bytes(), before)
 
     def test_inputs_are_spared(self):
         def spares(*words, file):
             before = file.read_bytes()
-            self.complains('convert', *words, of='is an input, which the output would replace')
+            self.complains('convert', *words, of='is an input and would be overwritten')
             self.assertEqual(file.read_bytes(), before)
         self.works('convert', 'nominal', '-o', self.out('rig.json'))
         spares(self.out('rig.json'), '-o', self.out('rig.json'), file=self.out('rig.json'))
@@ -163,18 +163,18 @@ class Convert(Case):
         self.out('broken.yaml').write_text('cam0: [1, 2\n')
         for words, of in (
                 (['nominal', '-o', self.out('x.yaml')], 'add --to, one of vernier, mrcal'),
-                (['nominal', '--to', 'hugin', '-o', out], '--to: there is no format "hugin"'),
-                ([self.out('plain.yaml'), '-o', out], 'say what it is with --from'),
+                (['nominal', '--to', 'hugin', '-o', out], '--to: unknown format "hugin"'),
+                ([self.out('plain.yaml'), '-o', out], 'set --from to opencv, kalibr or ros'),
                 ([self.out('broken.yaml'), '-o', out], 'broken.yaml:2: is not YAML'),
                 ([self.folder, '-o', out], 'is a folder without a cameras.txt'),
-                ([self.out('a.xml'), '-o', out], 'its name does not say what it is'),
+                ([self.out('a.xml'), '-o', out], 'cannot tell the format from the file name'),
                 ([self.out('none.cameramodel'), '-o', out], 'none.cameramodel: cannot be read'),
                 ([self.out('k.yaml'), self.out('left.cameramodel'), '-o', out],
-                 'is no kalibr file as'),
-                ([self.out('k.yaml'), self.out('k.yaml'), '-o', out], 'a rig of Kalibr is one'),
+                 'is not a kalibr file like'),
+                ([self.out('k.yaml'), self.out('k.yaml'), '-o', out], 'a Kalibr rig is a single'),
                 ([self.out('k.yaml'), '--size', '640x480', '-o', out],
-                 '--size: the files of kalibr say how large'),
-                (['nominal', '--unit-m', '0.001', '-o', out], '--unit-m: a rig.json is in metres'),
+                 '--size: kalibr files contain the image size'),
+                (['nominal', '--unit-m', '0.001', '-o', out], '--unit-m: rig.json files are in metres'),
                 (['nominal', '--unit-m', '-1', '-o', out], '--unit-m'),
                 (['nominal', '--names', 'a', '-o', out], '1 names for 2 cameras'),
                 (['nominal', '--names', 'a,a', '-o', out], 'two cameras have the same name'),

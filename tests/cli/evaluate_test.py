@@ -119,9 +119,9 @@ class Evaluate(unittest.TestCase):
         right = [[(7 * x * y) % 251 for x in range(WIDTH)] for y in range(HEIGHT)]
         write_pgm(self.folder / 'other.pgm', right)
         write_pgm(self.folder / 'twice.pgm', [[2 * d for d in row] for row in pair()[2]])
-        self.doubts(of='see that the truth is of this left image', truth='twice')
-        self.doubts(of='which is searched', most=4)
-        self.doubts(of='do not agree', right='other')
+        self.doubts(of='check that the ground truth belongs to this left image', truth='twice')
+        self.doubts(of='outside the search range', most=4)
+        self.doubts(of='are not aligned', right='other')
 
     def test_programs_have_names_and_places(self):
         (self.folder / 'even.py').write_text(
@@ -202,11 +202,11 @@ class Evaluate(unittest.TestCase):
             done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, broken)
-            self.assertIn('is no evaluation', done.stderr)
+            self.assertIn('is not an evaluation', done.stderr)
         self.assertEqual((self.folder / 'page.html').read_text(), page)
         (self.folder / 'study').mkdir()
         (self.folder / 'study' / 'study.toml').write_text('')
-        self.complains('-o', 'study', of='holds a study')
+        self.complains('-o', 'study', of='contains a study')
         self.complains('-o', 'left.pgm', of='left.pgm')
         name = '01-01_left_disparity.disparity.png'  # an input as the folder would name a picture
         (self.folder / 'inputs').mkdir()
@@ -225,16 +225,16 @@ class Evaluate(unittest.TestCase):
     def test_bad_input(self):
         self.complains(of='small.pgm', right='small')
         self.complains(of='no edges', left='blank')
-        self.complains(of='the same image', right='left')
-        self.complains('--matcher', 'mine', of='"mine" is no matcher')
-        self.complains('--equal-density', '--matcher', 'edge', of='one matcher only')
+        self.complains(of='same image', right='left')
+        self.complains('--matcher', 'mine', of='unknown matcher "mine"')
+        self.complains('--equal-density', '--matcher', 'edge', of='at least two matchers')
         self.complains('--psi-c', '1', '--time-limit-s', '3', of='--command')
         self.complains(of='small.pgm', truth='small')
-        self.complains(of='exchanged', left='right', right='left')
+        self.complains(of='swapped', left='right', right='left')
         self.complains(of='width', most=400)
-        self.complains('--matcher', 'best', of='"best" is no matcher')
-        self.complains('--psi-c', '1,-2', of='-2 is not within')
-        self.complains('--psi-c', '1e5', of='not within')
+        self.complains('--matcher', 'best', of='unknown matcher "best"')
+        self.complains('--psi-c', '1,-2', of='-2 is not between')
+        self.complains('--psi-c', '1e5', of='not between')
         self.complains('--rig', 'none.json', of='--psi-c')
         self.complains('--draws', '3', of='--psi-c')
         self.complains('--psi-c', '1,many', of='numbers')

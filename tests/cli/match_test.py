@@ -119,27 +119,27 @@ class Match(Case):
         self.image('left1.pgm', 0, grey=100)
         self.image('right1.pgm', 0)
         self.complains(*self.arguments(), '-q',
-                       of="left1.pgm: no corner stands out of the image's noise")
+                       of="left1.pgm: no corner is detected above the image noise")
 
     def test_one_blank_image_among_others(self):
         self.pairs(2)
         self.image('right2.pgm', 0, grey=100)
         done = self.works(*self.arguments(), '--json')
-        self.assertIn("right2.pgm: no corner stands out of the image's noise; its pair is left out",
+        self.assertIn("right2.pgm: no corner is detected above the image noise; pair skipped",
                       done.stderr)
         self.assertEqual(json.loads(done.stdout)['image_pairs'][1]['matches'], 0)
 
     def test_left_and_right_exchanged(self):
         self.pairs()
         self.complains(*self.arguments(left='right*.pgm', right='left*.pgm'), '-q',
-                       of='left and right seem exchanged: ')
+                       of='left and right appear to be swapped: ')
 
     def test_images_that_do_not_belong_together(self):
         self.image('left1.pgm', 0, 1)
         self.image('right1.pgm', 0, 2)
         done = cli_test.vernier(*self.arguments())
         self.assertIn(done.returncode, (2, 3))
-        self.assertIn('left corners were matched; see that the prior is of these cameras',
+        self.assertIn('left corners were matched; check that the prior belongs to',
                       done.stderr + done.stdout)
 
     def test_a_prior_without_covariance(self):

@@ -70,7 +70,7 @@ function odd_rigs(rig) {
     points: one.points.slice(0, 50) }));
   return [
     { ...rig, corners, view_influence: many,
-      proof: { notes: ["Models were not compared: <b>why</b>."] } },
+      proof: { notes: ["Lens models were not compared: <b>why</b>."] } },
     { ...rig, file: "odd.rig.json", projection: holes, view_influence: alone, proof: undefined,
       calibration: { ...rig.calibration, doubts: ["residuals of 1.2 px"], prior_dof: 2,
         prior_chi2: 1.5, held: ["left.ax"], warp_m: [1e-3, -2e-4] } },

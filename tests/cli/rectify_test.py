@@ -128,7 +128,7 @@ class Rectify(CalibratedCase):
         mean, scatter = self.row_offset()
         self.assertLess(abs(mean), 0.25)
         self.assertLess(scatter, 0.3)
-        self.assertIn('nothing repaired', self.works(*self.arguments(), '--repair').stdout)
+        self.assertIn('no repair needed', self.works(*self.arguments(), '--repair').stdout)
 
     def test_size_focal_length_and_masks(self):
         said = json.loads(self.works(*self.arguments(), '--size', '800x500', '--f-px', '400',
@@ -150,11 +150,11 @@ class Rectify(CalibratedCase):
     def test_images_of_other_cameras_are_doubted(self):
         done = cli_test.vernier(*self.arguments(rig=self.lowered_rig(40)))
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn('rows of the rectified images do not agree', done.stderr)
+        self.assertIn('rows of the rectified images are not aligned', done.stderr)
         done = cli_test.vernier(*self.arguments(left=IMAGES / 'right01.jpg',
                                                 right=IMAGES / 'left01.jpg'), '--json')
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn('left and right seem exchanged', json.loads(done.stdout)['doubts'][0])
+        self.assertIn('left and right appear to be swapped', json.loads(done.stdout)['doubts'][0])
 
     def test_complaints(self):
         out = self.folder / 'rectified'
@@ -165,12 +165,12 @@ class Rectify(CalibratedCase):
                         'calibration'):
                 rig.pop(key, None)
         self.complains(*self.arguments(rig=self.changed_rig('one.json', one_camera)), '-q',
-                       of='it is a rig of 1 cameras', leaves=[out])
+                       of='the rig has 1 cameras', leaves=[out])
 
         def larger(rig):
             rig['cameras'][1]['size_px'] = [1280, 960]
         self.complains(*self.arguments(rig=self.changed_rig('larger.json', larger)), '-q',
-                       of='right01.jpg: its size 640x480 is not that of the camera "right"',
+                       of='right01.jpg: image size 640x480 differs from camera "right"',
                        leaves=[out])
         self.complains(*self.arguments(right=IMAGES / 'left01.jpg'), '-q', of='same image',
                        leaves=[out])

@@ -83,7 +83,7 @@ class Report(unittest.TestCase):
         done = self.works(*call, env=without)
         self.assertFalse(json.loads(done.stdout)['plots'])
         self.assertIn('no plots', done.stderr)
-        self.assertIn('pages hold tables only; esbuild or plotly.js was missing',
+        self.assertIn('pages have tables only; esbuild or plotly.js was missing',
                       self.works('doctor', env=without).stdout)
 
     def test_a_page_without_its_script_is_refused_before_any_work(self):
@@ -104,7 +104,7 @@ class Report(unittest.TestCase):
         done = subprocess.run([PROGRAM, 'report', 'no_rig.json', '-o', 'report.html'],
                               capture_output=True, text=True, cwd=self.folder, env=without)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn('this build has no script for the page, because esbuild was missing',
+        self.assertIn('this build has no page script because esbuild was missing',
                       done.stderr)
         self.assertFalse((self.folder / 'report.html').exists())
 

@@ -34,13 +34,13 @@ class Result(Corners):
         x, y = found['board_warp_m']
         self.assertLess(max(abs(x), abs(y)), 1e-3)  # the board is flat
         text = self.calibrate('--warp', '--no-model-check').stdout
-        self.assertIn(f'board bent by {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
-        self.assertNotIn('board bent', self.calibrate('--no-model-check').stdout)
+        self.assertIn(f'board warp: {1e3 * x:.3f} / {1e3 * y:.3f} mm', text)
+        self.assertNotIn('board warp', self.calibrate('--no-model-check').stdout)
 
     def test_a_held_parameter_is_called_so(self):
         hold = ('--hold', 'left.ax=1', '--no-model-check')
         text = self.calibrate(*hold).stdout
-        self.assertRegex(text, r'(?m)^left\.ax +1 +held +held$')
+        self.assertRegex(text, r'(?m)^left\.ax +1 +fixed +fixed$')
         self.assertNotRegex(text, 'condition inf|scaled inf')
         found = json.loads(self.calibrate(*hold, '--json').stdout)
         self.assertGreater(found['scaled_condition'], 1)
@@ -107,7 +107,7 @@ class RealCorners(cli_test.Case):
 
     def test_a_model_too_rich_for_the_views_is_doubtful(self):
         done = self.calibrate('--model', 'opencv8', code=3)
-        self.assertRegex(done.stderr, 'doubtful: the views hardly determine this model: the '
+        self.assertRegex(done.stderr, 'not trustworthy: the views hardly determine this model: the '
                                       'scaled condition number of its parameters is [1-9].*; '
                                       'use --model opencv5')
         self.calibrate('--model', 'opencv5')
@@ -180,15 +180,15 @@ class WrongThing(cli_test.Case):
     def test_slips_on_the_command_line(self):
         board = ('--board', '9x6', '--square-m', '0.025', '-o', self.folder / 'r.json')
         self.complains('calibrate', '--left', 'a1.png', 'a2.png', 'a3.png', *board,
-                       of='"a2.png" and 1 more were not expected; quote the pattern')
-        self.complains('calibrate', 'rubbish', *board, of='"rubbish" was not expected')
+                       of='unexpected argument "a2.png" and 1 more; quote the pattern')
+        self.complains('calibrate', 'rubbish', *board, of='unexpected argument "rubbish"')
         (self.folder / 'o.csv').write_text('\n'.join(board_lines(frames=4)))
         self.complains('calibrate', '--observations', self.folder / 'o.csv', '--size', '640',
-                       '-o', self.folder / 'r.json', of='write it like 640x480')
+                       '-o', self.folder / 'r.json', of='use the form 640x480')
 
     def test_the_table_says_where_its_corners_are(self):
         text = self.works('uncertainty', 'nominal', '--samples', '50', '--grid', '4x3').stdout
-        self.assertIn("10 % of the image's width and height in from that corner", text)
+        self.assertIn("10 % of the image width and height inwards from the corner", text)
 
 
 if __name__ == '__main__':

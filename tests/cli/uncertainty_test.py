@@ -72,7 +72,7 @@ class Uncertainty(cli_test.Case):
         json_ = self.told(self.calibrate('--no-evidence'), '--grid', '4x3')
         self.assertEqual({p['fixed_to'] for p in json_['projection']}, {'camera', 'first_camera'})
         self.assertEqual({t['frame'] for t in json_['triangulation']}, {'rig'})
-        self.assertTrue(any('no evidence' in note for note in json_['notes']))
+        self.assertTrue(any('no board poses' in note for note in json_['notes']))
 
     def test_files(self):
         folder = self.folder / 'out'
@@ -148,9 +148,9 @@ class Uncertainty(cli_test.Case):
 
     def test_bad_input(self):
         for words, of in (
-                (('--distances-m', '0,1'), 'not a list of distances above 0'),
-                (('--distances-m', '1,,2'), 'not a list of distances above 0'),
-                (('--distances-m', 'nan'), 'not a list of distances above 0'),
+                (('--distances-m', '0,1'), 'not a list of positive distances'),
+                (('--distances-m', '1,,2'), 'not a list of positive distances'),
+                (('--distances-m', 'nan'), 'not a list of positive distances'),
                 (('--grid', '0x0'), 'not two whole numbers'),
                 (('--grid', '1x9'), 'smaller than 2x2'),
                 (('--covariance', 'best'), '--covariance'),

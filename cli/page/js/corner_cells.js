@@ -14,14 +14,14 @@ function grid_of({ columns, rows }, list) {
   return Array.from({ length: rows }, (_, y) => list.slice(y * columns, (y + 1) * columns));
 }
 
-/** The image's cells as a heat map below whatever else is drawn. */
+/** The image's cells as a heat map below the other traces. */
 export const cells_trace = ({ structure, size_px }, list, more) => ({
   type: "heatmap", x: cell_centres(structure.columns, size_px[0]),
   y: cell_centres(structure.rows, size_px[1]), z: grid_of(structure, list), xgap: 1, ygap: 1,
   ...more,
 });
 
-/** 1, 2 or 5 times a power of ten that makes `long` about `share` of the image's width. */
+/** 1, 2 or 5 times a power of ten that scales `long` to about the fraction `share` of the width. */
 export function magnification(long, width, share) {
   if (!(long > 0)) return 1;
   const wanted = share * width / long;

@@ -7,15 +7,15 @@ import { upper } from "./numbers.js";
 import { COLOUR, figure, image_axes, segments_trace } from "./plot.js";
 import { histogram_figure, mean_figure } from "./residual_pattern.js";
 
-/** Where a calibration's corners lie, and what the model leaves of them unexplained. */
+/** Corner coverage and residuals of a calibration. */
 export function corners_content(rig) {
   const cameras = rig.corners.filter((one) => one.points?.length);
   const scale = residual_scale(cameras);
   return [
-    element("p", {}, "A calibration knows its cameras where it saw corners, and its covariance"
-      + " speaks of noise alone: an empty part of the image is extrapolated, and residuals that"
-      + " follow a pattern are a fault of the model, the board or the corners that no number"
-      + " below covers."),
+    element("p", {}, "A calibration is reliable only where corners were observed, and its"
+      + " covariance only describes noise: empty image regions are extrapolated, and systematic"
+      + " residuals indicate an error of the lens model, the board or the corners that is not"
+      + " included in the uncertainties below."),
     residuals_table(cameras),
     ...cameras.map((one) => element("div", { class: "pair" }, coverage_figure(one),
       residual_figure(one, scale))),
@@ -27,28 +27,28 @@ export function corners_content(rig) {
 function residuals_table(cameras) {
   const rows = cameras.map((one) => ({ ...one, empty: one.structure.counts.filter((n) => !n).length,
     cells: one.structure.counts.length }));
-  return table("Corners and residuals by camera; cells are those of the pictures below", [
+  return table("Corners and residuals by camera; cells as in the figures below", [
     { head: "Camera", text: true, cell: (row) => row.camera },
     { head: "Corners", small: "used", cell: (row) => count(row.corners) },
-    { head: "Outliers", small: "left out", cell: (row) => count(row.outliers.length) },
+    { head: "Outliers", small: "rejected", cell: (row) => count(row.outliers.length) },
     { head: "Empty cells", small: "of the image",
       cell: (row) => `${count(row.empty)} of ${count(row.cells)}` },
-    { head: "Cells off zero", small: "noise gives 5 %",
+    { head: "Cells off zero", small: "expected: 5 %",
       cell: ({ structure: s }) => `${count(s.beyond_95)} of ${count(s.filled)}` },
-    { head: "Beyond 3 σ", small: "a normal error has 0.27 %",
+    { head: "Beyond 3 σ", small: "normal distribution: 0.27 %",
       cell: ({ structure: s }) => percent(s.beyond_3_sigma, 2) },
   ], rows, { wide: false });
 }
 
 const thinned_words = ({ points, corners }) => points.length < corners
-  ? ` ${count(points.length)} of ${count(corners)} corners are drawn, spread evenly.` : "";
+  ? ` ${count(points.length)} of ${count(corners)} corners are shown, evenly sampled.` : "";
 
 function coverage_figure(one) {
   const outliers = one.outliers.length
-    ? ` Crosses are the ${counted(one.outliers.length, "corner")} left out as outliers.` : "";
-  return figure(`Corner coverage, ${one.camera} camera`, "Every corner used, on the image; the"
-    + " darker a cell, the more corners are in it. Orange cells have none: what the calibration"
-    + ` says there is extrapolated.${outliers}${thinned_words(one)}`,
+    ? ` Crosses: ${counted(one.outliers.length, "corner")} rejected as outliers.` : "";
+  return figure(`Corner coverage, ${one.camera} camera`, "All corners used; darker cells contain"
+    + ` more corners. Orange cells contain none: the calibration is extrapolated`
+    + ` there.${outliers}${thinned_words(one)}`,
     `Corners of the ${one.camera} camera over its image; the table above counts empty cells.`,
     image_height(one.size_px), () => coverage_plot(one));
 }
@@ -65,7 +65,7 @@ function coverage_plot(one) {
       x: points.map((p) => p[0]), y: points.map((p) => p[1]),
       marker: { color: COLOUR.ink, size: 3, opacity: 0.75 },
       hovertemplate: "(%{x:.1f}, %{y:.1f}) px<extra></extra>" },
-    { type: "scatter", mode: "markers", name: "outlier, left out", x: outliers.map((o) => o[0]),
+    { type: "scatter", mode: "markers", name: "outlier, rejected", x: outliers.map((o) => o[0]),
       y: outliers.map((o) => o[1]), marker: { color: COLOUR.red, size: 9, symbol: "x-thin",
         line: { color: COLOUR.red, width: 2.2 } },
       text: outliers.map((o) => `frame ${o[3]}, corner ${o[4]}, ${fixed(o[2], 1)} px off`),
@@ -75,7 +75,7 @@ function coverage_plot(one) {
     layout: { ...image_axes(size_px), hovermode: "closest" } };
 }
 
-/** One magnification for all cameras, so that their pictures compare. */
+/** One magnification for all cameras, so that their figures are comparable. */
 function residual_scale(cameras) {
   const lengths = cameras.flatMap((one) => one.points.map((p) => Math.hypot(p[2], p[3])));
   return magnification(upper(lengths, 0.95), Math.max(...cameras.map((one) => one.size_px[0])),
@@ -83,10 +83,10 @@ function residual_scale(cameras) {
 }
 
 function residual_figure(one, scale) {
-  return figure(`Residual vectors, ${one.camera} camera`, "Each stroke starts at a corner and is"
-    + ` what the calibrated model leaves of it unexplained (prediction less corner), drawn`
-    + ` ${count(scale)} times as long as it is. Strokes that point every way are noise;`
-    + ` neighbours that point the same way are not.${thinned_words(one)}`,
+  return figure(`Residual vectors, ${one.camera} camera`, "Each stroke starts at a corner and"
+    + ` shows its residual (prediction minus corner), magnified ${count(scale)} times.`
+    + ` Random directions indicate noise; neighbouring strokes in the same direction indicate a`
+    + ` systematic error.${thinned_words(one)}`,
     `${one.points.length} residual vectors of the ${one.camera} camera.`,
     image_height(one.size_px), () => residual_plot(one, scale));
 }

@@ -5,20 +5,20 @@ import { fixed, plot_text } from "./format.js";
 import { is_number } from "./numbers.js";
 import { COLOUR, axis, figure } from "./plot.js";
 
-/** Heat map of correlations, and the strongest of them in words. */
+/** Heat map of correlations and a table of the strongest ones. */
 export function correlation_part(rig) {
   const matrix = rig.correlation;
   if (!matrix?.length || !rig.correlation_names) return null;
   const n = rig.correlation_names.length;
   const strongest = strongest_correlations(rig, 8);
   return element("div", { class: "pair" },
-    figure("Correlations", "Blue: two parameters err together in the same sense; orange: in"
-      + " opposite senses; white: independently. Strong colours off the diagonal are pairs that"
-      + " the calibration hardly tells apart, so that σ of one alone says little.",
-      `Correlation matrix of ${n} parameters; the strongest are in the table beside it.`,
+    figure("Correlations", "Blue: positive correlation; orange: negative; white: none. Strong"
+      + " colours off the diagonal mark pairs of parameters that the calibration can barely"
+      + " separate, so the σ of one alone is not meaningful.",
+      `Correlation matrix of ${n} parameters; the strongest are listed in the table.`,
       Math.max(360, 150 + 23 * n), () => correlation_plot(rig)),
     element("div", {}, element("h3", {}, "Strongest correlations"),
-      table("Pairs by size of correlation", [
+      table("Pairs with the largest correlation", [
         { head: "Parameter", text: true, cell: (row) => element("code", {}, row.a) },
         { head: "with", text: true, cell: (row) => element("code", {}, row.b) },
         { head: "Correlation", cell: (row) => fixed(row.value, 3) },

@@ -5,18 +5,18 @@ import { percent, setting, significant } from "./format.js";
 import { is_number, ratio } from "./numbers.js";
 import { COLOUR, figure, log_axis } from "./plot.js";
 
-/** Depth uncertainty against range: plot, and the numbers in a table. */
+/** Depth uncertainty against range: plot and table. */
 export function depth_part(rig) {
   const rows = (rig.depth ?? []).filter((row) => is_number(row.range_m));
   if (!rows.length) return null;
-  const numbers = element("div", {}, element("h3", {}, "Depth in numbers"), table(
-    "Standard deviation of depth by calibration error alone (ψ_c = 1)", [
+  const numbers = element("div", {}, element("h3", {}, "Depth values"), table(
+    "Standard deviation of depth due to calibration error only (ψ_c = 1)", [
       { head: "Range, m", cell: (row) => setting(row.range_m) },
       { head: "Linear, m", cell: (row) => significant(row.sigma_linear_m, 2) },
       { head: "Sampled, m", cell: (row) => significant(row.sigma_sampled_m, 2) },
-      { head: "Linear", small: "share of range",
+      { head: "Linear", small: "fraction of range",
         cell: (row) => percent(ratio(row.sigma_linear_m, row.range_m)) },
-      { head: "Non-physical", small: "draws without depth",
+      { head: "Non-physical", small: "samples without depth",
         cell: (row) => percent(row.non_physical_share) },
     ], rows));
   return element("div", { class: "pair" }, depth_figure(rows), numbers);
@@ -25,14 +25,14 @@ export function depth_part(rig) {
 function depth_figure(rows) {
   const lost = rows.filter((row) => row.non_physical_share > 0.001);
   const warning = lost.length ? ` From ${setting(lost[0].range_m)} m on, some sampled rigs`
-    + " put the point at no positive depth at all: there a standard deviation says little." : "";
-  return figure("Depth uncertainty against range", "How far a point's depth may be off because of"
-    + " calibration alone, on doubly logarithmic axes: a straight line of slope 2 is the growth"
-    + " with the square of range that stereo expects. Linear: derivatives at the calibrated rig."
-    + " Sampled: rigs drawn from the covariance. Where the two part, depth has left the range in"
-    + ` which it is linear: trust the sampled one.${warning}`,
-    "Standard deviation of depth against range, linear and sampled; the numbers are in the table"
-    + " beside it.", 400, () => depth_plot(rows));
+    + " give no positive depth: the standard deviation is not meaningful there." : "";
+  return figure("Depth uncertainty against range", "Depth uncertainty due to calibration error"
+    + " only, on log-log axes: a straight line of slope 2 is the quadratic growth with range"
+    + " expected of stereo. Linear: first-order propagation at the calibrated rig. Sampled: rigs"
+    + ` sampled from the covariance. Where they differ, the linear approximation is no`
+    + ` longer valid: use the sampled values.${warning}`,
+    "Standard deviation of depth against range, linear and sampled; values are in the"
+      + " table.", 400, () => depth_plot(rows));
 }
 
 function depth_plot(rows) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { DASH, NBSP } from "./format.js";
 
-/** An element; strings among `children` become text, with ψ_c's index lowered. */
+/** Creates an element; strings among `children` become text, with the index of ψ_c as subscript. */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -27,7 +27,7 @@ export function nodes_of(child) {
 
 export const paragraph = (...children) => element("p", {}, ...children);
 
-/** Adds a headed section to the page, and to its contents by `nav` (null: not listed there). */
+/** Adds a section to the page, and to the table of contents as `nav` (null: not listed). */
 export function section_named(id, heading, nav, ...children) {
   const made = element("section", { id, "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` }, heading), ...children);
@@ -43,7 +43,7 @@ export const section = (id, heading, ...children) => section_named(id, heading, 
 
 /**
  * A table. A column: {head, small (second line of the head), text (left aligned), cell: row =>
- * content}. Columns whose cells are all dashes are left out.
+ * content}. Columns that contain only dashes are omitted.
  */
 export function table(caption, columns, rows, { chosen = () => false, wide = true } = {}) {
   const filled = columns.filter((column) => rows.some((row) => column.cell(row) !== DASH));
@@ -59,7 +59,7 @@ export function table(caption, columns, rows, { chosen = () => false, wide = tru
       element("thead", {}, head), element("tbody", {}, body)));
 }
 
-/** Short texts stay on one line, and longer ones part anywhere but in "ψ_c = 10". */
+/** Keeps short texts on one line; longer ones may break anywhere except in "ψ_c = 10". */
 function keep_together(content) {
   if (typeof content !== "string") return content;
   return content.length <= 24 ? content.replaceAll(" ", NBSP)
@@ -68,7 +68,7 @@ function keep_together(content) {
 
 export const small = (text) => element("span", { class: "small" }, text);
 
-/** Buttons for up to six labels, a list for more; calls `choose(index)` when another is chosen. */
+/** Buttons for up to six labels, otherwise a list; calls `choose(index)` on a change. */
 export function chooser(legend, labels, first, choose) {
   if (labels.length > 6) {
     const list = element("select", { "aria-label": legend },

@@ -5,7 +5,7 @@ import { is_number } from "./numbers.js";
 export const DASH = "–";
 export const NBSP = "\u00a0";  // keeps a number and its unit on one line
 
-/** A number with `digits` significant digits, without exponent where that stays readable. */
+/** A number with `digits` significant digits, without exponent if readable. */
 export function significant(x, digits = 3) {
   if (!is_number(x)) return DASH;
   if (x === 0) return "0";
@@ -23,7 +23,7 @@ function power_of_ten(x, digits, size) {
 
 export const minus = (text) => text.replace("-", "−");
 
-/** A value to the decimals that its standard deviation, at two digits, justifies. */
+/** A value with as many decimals as its standard deviation with two digits. */
 export function value_beside_sigma(value, sigma) {
   if (!is_number(value)) return DASH;
   if (!is_number(sigma) || sigma <= 0) return significant(value, 6);
@@ -39,7 +39,7 @@ export function count(n) {
   return is_number(n) ? n.toLocaleString("en-GB", { maximumFractionDigits: 0 }) : DASH;
 }
 
-/** A share in [0, 1] in per cent. */
+/** A fraction in [0, 1] as a percentage. */
 export function percent(share, decimals = 1) {
   return is_number(share) ? `${(100 * share).toFixed(decimals)}${NBSP}%` : DASH;
 }
@@ -66,14 +66,14 @@ export function p_value(p) {
 /** "1 trial", "900 trials". */
 export const counted = (n, noun) => `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
 
-/** Text for Plotly, which reads tags: escaped, ψ_c with its index lowered. */
+/** Text for Plotly, which interprets tags: escaped, with the index of ψ_c as subscript. */
 export function plot_text(text) {
   const entities = { "&": "&amp;", "<": "&lt;", ">": "&gt;" };
   const escaped = String(text ?? "").replace(/[&<>]/g, (c) => entities[c]);
   return escaped.replace(/([ψσ])_([a-z]+)/g, "$1<sub>$2</sub>");
 }
 
-/** A settings value as a person would write it. */
+/** A settings value for display. */
 export function setting(value) {
   if (value === null || value === undefined) return DASH;
   if (is_number(value)) return minus(String(value));

@@ -6,7 +6,7 @@ import { is_number } from "./numbers.js";
 import { cell_key } from "./study.js";
 import { varying_settings } from "./sweep.js";
 
-/** How the page was made: program, study file and the settings of every cell. */
+/** How the results were produced: program, study file and the settings of every cell. */
 export function making_section(report) {
   const { program, study, evaluation } = report;
   if (!program && !study && !evaluation) return;
@@ -14,21 +14,22 @@ export function making_section(report) {
     ["Program", program?.version && `vernier ${program.version}`],
     ["Processor's instruction set", program?.instruction_set],
     ["Study file", study?.file], ["Method", study?.method],
-    ["Trials a cell", study && count(study.trials)],
+    ["Trials per cell", study && count(study.trials)],
     ["Seed", is_number(study?.seed) ? String(study.seed) : null],
-    ["Pairs", evaluation?.settings?.list ?? evaluation?.scenes.map((scene) => scene.left).join(", ")],
-    ["Rows repaired before", evaluation?.settings && (evaluation.settings.repair ? "yes" : "no")],
-    ["Programs as matchers", evaluation?.settings?.commands?.join("; ")],
-    ["Rigs drawn of each pair", evaluation?.calibration_error
+    ["Pairs", evaluation?.settings?.list ?? evaluation?.scenes.map((scene) => scene.left).join(","
+      + " ")],
+    ["Row alignment repaired", evaluation?.settings && (evaluation.settings.repair ? "yes" : "no")],
+    ["External matchers", evaluation?.settings?.commands?.join("; ")],
+    ["Sampled rigs per pair", evaluation?.calibration_error
       && `${evaluation.calibration_error.draws}, seed ${evaluation.calibration_error.seed}`],
     ["Rig", report.rigs?.map((rig) => rig.file).filter(Boolean).join(", ")],
   ].filter(([, value]) => value).map(([name, value]) => ({ name, value }));
-  const made = section("making", "How this was made", paragraph("The same program, files and seed"
-    + " give the same results on a processor of the same class, timings apart, however many"
-    + " threads or machines share the work."));
+  const made = section("making", "How to reproduce", paragraph("The same program, files and seed"
+    + " give the same results, except for timings, on processors of the same class, for any"
+    + " number of threads or machines."));
   made.append(table("Program and inputs", [
-    { head: "What", text: true, cell: (row) => row.name },
-    { head: "Used", text: true, cell: (row) => row.value },
+    { head: "Item", text: true, cell: (row) => row.name },
+    { head: "Value", text: true, cell: (row) => row.value },
   ], rows, { wide: false }));
   const commands = [...study?.commands ?? [], evaluation?.settings?.command, program?.command]
     .filter(Boolean);
@@ -47,7 +48,7 @@ function settings_details(cells) {
         cell: (cell) => setting(cell_key(cell, key)) })),
     ], cells, { wide: false }));
   }
-  details.append(table(varying.length ? "Settings that all cells share" : "Settings", [
+  details.append(table(varying.length ? "Settings common to all cells" : "Settings", [
     { head: "Setting", text: true, cell: ([key]) => element("code", {}, key) },
     { head: "Value", text: true, cell: ([, value]) => setting(value) },
   ], common, { wide: false }));

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import { chooser, element, paragraph, section } from "./elements.js";
 
-const ERROR_COLOURS = [["#14a03c", "to 0.5 px"], ["#e6c800", "to 1 px"], ["#ff7800", "to 3 px"],
-  ["#dc1414", "more"], ["#1e5ae6", "no match"], ["#000000", "not judged"]];
+const ERROR_COLOURS = [["#14a03c", "up to 0.5 px"], ["#e6c800", "up to 1 px"],
+  ["#ff7800", "up to 3 px"], ["#dc1414", "above 3 px"], ["#1e5ae6", "no match"], ["#000000", "not"
+    + " evaluated"]];
 
 export function pictures_section(evaluation) {
   const scenes = evaluation.scenes.filter((scene) => scene.pictures);
   const made = section("pictures", "Pictures", paragraph(
-    `Edges found by ${scenes[0].pictures.matcher}, over the faded left image.`));
+    `Edges matched by ${scenes[0].pictures.matcher}, on the faded left image.`));
   const place = element("div", {});
   const show_scene = (i) => place.replaceChildren(...scene_pictures(scenes[i]));
   if (scenes.length > 1) {

@@ -7,7 +7,7 @@ import { calibration_error_section } from "./matchers_under_error.js";
 import { in_percent, is_number, ratio, times } from "./numbers.js";
 import { SERIES, axis, figure, have_plots } from "./plot.js";
 
-/** Matchers against ground truth: the evaluation's sections. */
+/** The sections of an evaluation of matchers against ground truth. */
 export function evaluation_sections(evaluation) {
   const names = Object.keys(evaluation.matchers);
   scores_section(evaluation, names);
@@ -18,8 +18,10 @@ export function evaluation_sections(evaluation) {
 }
 
 const OUTLINES = {
-  either: "Within a pixel of a step of the truth either surface counts as right.",
-  foreground: "Within a pixel of a step of the truth only the foreground counts as right.",
+  either: "Within a pixel of a depth discontinuity, the disparity of either surface counts as"
+    + " correct.",
+  foreground: "Within a pixel of a depth discontinuity, only the foreground disparity counts as"
+    + " correct.",
 };
 
 const pairs_counted = (evaluation) => evaluation.scenes.length === 1 ? "one pair"
@@ -31,10 +33,11 @@ function score_columns(first) {
     ...first,
     { head: "Density", small: "matched", cell: (row) => percent(row.density) },
     share("Bad 0.5", "bad_0_5", "of matched"), share("Bad 1", "bad_1", "of matched"),
-    share("Bad 2", "bad_2", "of matched"), share("Mismatch", "mismatch", "hidden edges too"),
-    { head: "RMS px", small: "of errors to 1 px", cell: (row) => significant(row.rms_inlier_px) },
+    share("Bad 2", "bad_2", "of matched"), share("Mismatch", "mismatch", "incl. occluded edges"),
+    { head: "RMS px", small: "of errors up to 1"
+      + " px", cell: (row) => significant(row.rms_inlier_px) },
     { head: "Bias px", cell: (row) => significant(row.bias_inlier_px, 2) },
-    share("Bad 1", "bad_1_discontinuity", "at outlines"),
+    share("Bad 1", "bad_1_discontinuity", "at discontinuities"),
     share("In 95 %", "coverage_95", "of stated intervals"),
     { head: "CPU ms", small: "one thread", cell: (row) => significant(row.time_ms) },
   ];
@@ -42,9 +45,9 @@ function score_columns(first) {
 
 function scores_section(evaluation, names) {
   const made = section("scores", "Matchers at edges", paragraph(
-    `At the edges of the left image of ${pairs_counted(evaluation)}, those within 5° of the row`
-    + " left out. Bad 1: share of matched edges whose disparity is wrong by more than 1 px."
-    + " Mismatch: by more than 3 px, matches of edges that the right image hides counted as such. ",
+    `Evaluated at the edges of the left image of ${pairs_counted(evaluation)}, excluding edges`
+    + " within 5° of the row. Bad 1: fraction of matched edges with a disparity error above 1 px."
+    + " Mismatch: error above 3 px, including matches of edges occluded in the right image. ",
     OUTLINES[evaluation.outline]));
   made.append(table(evaluation.scenes.length > 1 ? "Means over the pairs" : "Scores",
     score_columns([{ head: "Matcher", text: true, cell: (row) => row.name }]),
@@ -62,12 +65,12 @@ function scores_section(evaluation, names) {
 function density_section(evaluation) {
   const against = Object.entries(evaluation.equal_density?.against || {});
   const made = section("density", "Errors against density", paragraph(
-    "Leaving out doubtful matches lowers both density and errors, so matchers compare fairly only"
-    + " where they leave out as much. Each line joins means over the pairs: OpenCV's matchers with"
-    + " their uniqueness ratio swept at their best setting, the others cut by their own"
-    + " confidence."));
-  made.append(figure(null, "Down and to the right is better.",
-    "Share of errors above one pixel against the share of edges matched, a line a matcher.", 400,
+    "Rejecting uncertain matches lowers both density and errors, so a fair comparison needs equal"
+      + " density. Lines show means over the pairs: OpenCV's matchers at their best setting with"
+      + " the uniqueness ratio swept, the others thresholded by their own confidence."));
+  made.append(figure(null, "Lower right is better.",
+    "Fraction of errors above one pixel against fraction of edges matched, one line per"
+      + " matcher.", 400,
     () => ({
       data: Object.entries(evaluation.curves).map(([name, points], i) => ({
         type: "scatter", mode: "lines+markers", name,
@@ -76,7 +79,7 @@ function density_section(evaluation) {
         hovertemplate: "%{y:.2f} % at %{x:.1f} %",
       })),
       layout: { xaxis: axis("edges matched, %"),
-        yaxis: axis("of them wrong by more than 1 px, %", { rangemode: "tozero" }) },
+        yaxis: axis("errors above 1 px, % of matched", { rangemode: "tozero" }) },
     })) || "");
   if (!against.length) return;
   const own = evaluation.equal_density.matcher;
@@ -85,7 +88,7 @@ function density_section(evaluation) {
     { head: "Best setting", text: true, cell: ([, e]) => e.setting },
     { head: "Density", cell: ([, e]) => percent(e.density) },
     { head: "Bad 1", small: own, cell: ([, e]) => percent(e.bad_1, 2) },
-    { head: "Bad 1", small: "the other's", cell: ([, e]) => percent(e.peer_bad_1, 2) },
+    { head: "Bad 1", small: "other matcher", cell: ([, e]) => percent(e.peer_bad_1, 2) },
     { head: "Ratio", small: "95 % over pairs", cell: ([, e]) => [significant(e.ratio),
       is_number(e.ratio_interval_95[0]) && small(`${significant(e.ratio_interval_95[0])} to `
         + significant(e.ratio_interval_95[1]))] },
@@ -94,14 +97,14 @@ function density_section(evaluation) {
 
 const root = (x) => is_number(x) ? Math.sqrt(x) : null;
 
-/** Of one bin of angles, over all pairs: shares weighted by edges. */
+/** Means per angle bin over all pairs, weighted by edges. */
 function angle_means(evaluation, name) {
   const bins = evaluation.scenes[0].matchers[name].by_angle.map((bin) =>
     ({ middle: 0.5 * (bin.from_deg + bin.to_deg), matched: 0, bad: 0, right: 0, squares: 0 }));
   for (const scene of evaluation.scenes) {
     scene.matchers[name].by_angle.forEach((bin, i) => {
       const matched = times(bin.edges, bin.density);
-      if (!(matched > 0) || !is_number(bin.bad_1)) return;  // nothing to tell of
+      if (!(matched > 0) || !is_number(bin.bad_1)) return;  // no matches in this bin
       const right = matched * (1 - bin.bad_1);
       bins[i].matched += matched;
       bins[i].bad += matched - right;
@@ -115,9 +118,9 @@ function angle_means(evaluation, name) {
 
 function angle_section(evaluation, names) {
   if (!have_plots() || !evaluation.scenes[0]?.matchers[names[0]]?.by_angle) return;
-  const made = section("angles", "By the angle of the edge", paragraph(
-    "An edge along the row says nothing of disparity, and one that crosses it at a small angle"
-    + " little. Bins of 10°, over all pairs."));
+  const made = section("angles", "Dependence on edge angle", paragraph(
+    "An edge along the row does not determine disparity, and one at a small angle to the row only"
+      + " weakly. Bins of 10°, over all pairs."));
   const lines = (value) => names.map((name, i) => {
     const bins = angle_means(evaluation, name);
     return { type: "scatter", mode: "lines+markers", name, x: bins.map((bin) => bin.middle),
@@ -126,9 +129,9 @@ function angle_section(evaluation, names) {
   const degrees = axis("angle to the row, degrees", { range: [0, 90], dtick: 10 });
   made.append(
     figure("Errors above 1 px", "Of matched edges.",
-      "Share of errors above one pixel by the angle of the edge to the row.", 320,
+      "Fraction of errors above one pixel by the angle of the edge to the row.", 320,
       () => ({ data: lines((bin) => in_percent(ratio(bin.bad, bin.matched))),
-        layout: { xaxis: degrees, yaxis: axis("wrong, %", { rangemode: "tozero" }) } })),
+        layout: { xaxis: degrees, yaxis: axis("errors, %", { rangemode: "tozero" }) } })),
     figure("Precision", "Root mean square of errors up to 1 px.",
       "Root mean square error by the angle of the edge to the row.", 320,
       () => ({ data: lines((bin) => root(ratio(bin.squares, bin.right))),

@@ -13,20 +13,20 @@ export function calibration_error_section(evaluation, names) {
   const { cells, draws, rigs } = evaluation.calibration_error;
   const rig = [...new Set(rigs)].join(", ");
   const made = section("calibration-error", "Under calibration error", paragraph(
-    `Every pair as ${draws === 1 ? "a rig" : `${draws} rigs`} drawn from the calibration's`
-    + ` covariance (${rig}) would rectify it. ${PSI_MEANING} Matches are scored against the`
-    + " disparities that the pair then has: a mismatch was matched to something else. What the"
-    + " geometry itself does to disparities stands apart, as bias; the error in found disparities"
-    + " holds both. Repair takes away what the rows differ by, found from corners of the pair."
-    + " What the rows of the pair as given differ by is taken away before any error is put in, so"
-    + " that ψ_c = 0 is the pair without it. An edge where rows are off may be found anywhere"
-    + " between its point's disparity and the place where it crosses the row: all of that counts as"
-    + " right."));
+    `Each pair is rectified with ${draws === 1 ? "a rig" : `${draws} rigs`} sampled from the`
+    + ` covariance of the calibration (${rig}). ${PSI_MEANING} Matches are scored against the true`
+    + " disparities after this rectification, so a mismatch is a wrong correspondence. Bias is"
+    + " the geometric effect of the calibration error on the true disparities; the error of the"
+    + " measured disparities includes both. Repair corrects the vertical misalignment estimated"
+    + " from corners of the pair. Any misalignment of the original pair is corrected first, so"
+    + " that ψ_c = 0 is the pair without it. If rows are misaligned, an edge may be matched"
+    + " anywhere between the disparity of its point and the position where it crosses the row:"
+    + " all of these count as correct."));
   const drawn = cells.filter((cell) => cell.psi_c > 0);
   if (drawn.length > 2) made.append(mismatch_figure(drawn, names) || "");
   const rows = cells.flatMap((cell) => names.map((name) =>
     ({ cell, name, ...cell.matchers[name] })));
-  made.append(table("Figures under each error, means over pairs and draws", [
+  made.append(table("Scores for each error, means over pairs and samples", [
     { head: "Error", text: true, cell: (row) => error_name(row.cell) },
     { head: "Repair", small: "pairs repaired", text: true, cell: (row) =>
       row.cell.repair ? `${row.cell.repaired} of ${row.cell.pairs}` : "no" },
@@ -38,7 +38,7 @@ export function calibration_error_section(evaluation, names) {
     { head: "Rows px", small: "vertical, RMS", cell: (row) => significant(row.cell.rows_rms_px) },
     { head: "Bias px", small: "geometric, RMS", cell: (row) =>
       significant(row.cell.geometric_bias_rms_px) },
-    { head: "Error px", small: "of found, RMS", cell: (row) =>
+    { head: "Error px", small: "measured, RMS", cell: (row) =>
       significant(row.disparity_error_rms_px) },
   ], rows));
 }
@@ -55,8 +55,8 @@ function mismatch_figure(cells, names) {
       line: { color: SERIES[i % SERIES.length], dash: repair ? "dot" : "solid" },
       hovertemplate: "%{y:.2f} %" };
   })).filter((trace) => trace.x.length);
-  return figure("Mismatch against calibration error", "Bars: 95 % over the pairs.",
-    "Share of mismatches against psi_c, with and without repair.", 400, () => ({ data: series,
+  return figure("Mismatch against calibration error", "Bars: 95 % intervals over the pairs.",
+    "Fraction of mismatches against psi_c, with and without repair.", 400, () => ({ data: series,
       layout: { xaxis: log_axis("ψ_c", cells.map((cell) => cell.psi_c)),
         yaxis: axis("mismatch, %", { rangemode: "tozero" }) } }));
 }

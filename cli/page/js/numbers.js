@@ -3,20 +3,20 @@
 
 export const is_number = (x) => typeof x === "number" && Number.isFinite(x);
 
-// JSON's null, where there is nothing to tell, counts as 0 to JavaScript; these keep it null, which
-// a plot leaves as a gap and a table as a dash.
+// JavaScript converts JSON's null (no value) to 0; these functions keep it null, which is shown as a
+// gap in plots and a dash in tables.
 export const times = (factor, x) => is_number(x) ? factor * x : null;
 export const in_percent = (share) => times(100, share);
 export const ratio = (a, b) => is_number(a) && is_number(b) && b !== 0 ? a / b : null;
 export const less = (a, b) => is_number(a) && is_number(b) ? a - b : null;
 
-/** The value below which `share` of them lie; sorts the list. */
+/** The quantile `share` of the list; sorts the list. */
 export const upper = (lengths, share) =>
   lengths.sort((a, b) => a - b)[Math.floor(share * (lengths.length - 1))];
 
 export const sum_of = (list, term) => list.reduce((sum, one) => sum + term(one), 0);
 
-/** Error bars in per cent from shares to the ends of their ranges; none where either is missing. */
+/** Error bars in per cent from fractions and their intervals; none where either is missing. */
 export function bars_in_percent(shares, ranges, more) {
   return { type: "data", symmetric: false, ...more,
     array: shares.map((share, i) => in_percent(less(ranges[i]?.[1], share))),

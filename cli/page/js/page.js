@@ -22,8 +22,8 @@ function masthead(report) {
 function notice_without_plots() {
   if (have_plots()) return;
   document.getElementById("report").append(element("p", { class: "notice" },
-    "This page has no plots, because vernier was built without them (",
-    element("code", {}, "-DVERNIER_PAGE_PLOTS=OFF"), "). All tables are here."));
+    "This page has no plots because vernier was built without plots (",
+    element("code", {}, "-DVERNIER_PAGE_PLOTS=OFF"), "). All tables are included."));
 }
 
 function colophon(report) {

@@ -16,23 +16,23 @@ const PARAMETER_MEANING = [
 ];
 
 const KIND_MEANING = {
-  mvb: "They are the minimum variance bound: what the corners' noise alone would allow, which on"
-    + " real images is too small.",
-  clustered: "They come from how much whole frames disagree (a sandwich covariance clustered by"
-    + " frame), so model and target errors that change from frame to frame are in them.",
-  jackknife: "They come from how much whole frames disagree, corrected for few frames and shrunk"
-    + " towards the shape of the bound (a small-sample, jackknife-type covariance), so model and"
-    + " target errors that change from frame to frame are in them.",
+  mvb: "They are the minimum variance bound, which only includes corner noise and is too small"
+    + " for real images.",
+  clustered: "They are estimated from the scatter between frames (cluster-robust sandwich"
+    + " covariance), so they include model and target errors that vary from frame to frame.",
+  jackknife: "They are estimated from the scatter between frames, corrected for few frames and"
+    + " shrunk towards the shape of the bound (small-sample, jackknife-type covariance), so they"
+    + " include model and target errors that vary from frame to frame.",
   prior: "They are assumed, not measured.",
   combined: "They combine a prior with measurements.",
 };
 
-const TRUE_BOUND = "They are the minimum variance bound, and here it holds: the views scatter as white"
-  + " noise does, as simulated ones do.";
+const TRUE_BOUND = "They are the minimum variance bound, and here it holds: the scatter of the"
+  + " views agrees with white noise, as for simulated views.";
 
 const CONVENTION = "x points right, y down, z forward.";
 
-/** Whether the covariance is the bound itself, so that there is nothing to compare it with. */
+/** Whether the covariance is the bound itself, so that a comparison with the bound is pointless. */
 export const is_bound = (rig) => rig.kind === "mvb";
 
 export function parameter_table(rig) {
@@ -41,15 +41,15 @@ export function parameter_table(rig) {
   const rows = rig.names.map((name, i) => ({ name, value: rig.values?.[i], sigma: rig.sigma?.[i],
     bound: beside?.[i] }));
   const meaning = rig.true_bound ? TRUE_BOUND : KIND_MEANING[rig.kind] ?? "";
-  const caption = "Parameters with their standard deviations σ, each with all others uncertain"
-    + ` too. ${meaning} ${CONVENTION}`
-    + (beside ? " Beside them the minimum variance bound: what corner noise alone would"
-      + " allow; the ratio says how much too sure the bound is." : "");
+  const caption = "Parameters with their marginal standard deviations σ." + ` ${meaning}`
+    + ` ${CONVENTION}`
+    + (beside ? " For comparison: the minimum variance bound, from corner noise only; the ratio"
+    + " shows how much the bound underestimates σ." : "");
   return element("div", {}, element("h3", {}, "Parameters"), table(caption, [
     { head: "Parameter", text: true, cell: (row) => element("code", {}, row.name) },
     { head: "Meaning", text: true, cell: (row) => parameter_meaning(row.name) },
     { head: "Value", cell: (row) => value_beside_sigma(row.value, row.sigma) },
-    { head: "σ", cell: (row) => row.sigma === 0 ? "held" : significant(row.sigma, 2) },
+    { head: "σ", cell: (row) => row.sigma === 0 ? "fixed" : significant(row.sigma, 2) },
     { head: "σ of the bound", cell: (row) => row.bound > 0 ? significant(row.bound, 2) : DASH },
     { head: "Ratio", cell: (row) => row.bound > 0 ? significant(ratio(row.sigma, row.bound), 2) : DASH },
   ], rows, { wide: false }));
@@ -70,17 +70,19 @@ export function directions_list(rig) {
       element("span", { class: "bar", "aria-hidden": "true" },
         element("i", { style: `width:${100 * Math.min(1, share)}%` })),
       element("span", {}, words))));
-  const condition = is_number(rig.scaled_condition) ? " The covariance has condition number"
-    + ` ${significant(rig.raw_condition, 2)}, and ${significant(rig.scaled_condition, 2)} once each`
-    + " parameter is counted in its own standard deviation." : "";
+  const condition = is_number(rig.scaled_condition) ? " The condition number of the covariance"
+    + ` is ${significant(rig.raw_condition, 2)}, or ${significant(rig.scaled_condition, 2)}`
+    + ` after scaling`
+    + " each parameter by its standard deviation." : "";
   const rest = all.slice(DIRECTIONS_SHOWN);
-  return element("div", {}, element("h3", {}, "Directions in which the calibration is loose"),
-    element("p", { class: "reading" }, "Errors of parameters come together. Counted in standard"
-      + " deviations, the uncertainty splits into independent directions (the singular vectors of"
-      + " the scaled covariance); the bar is each one's share of the whole. A few large shares"
-      + " mean that a few joint errors make up most of what is unknown."
+  return element("div", {}, element("h3", {}, "Principal directions of the uncertainty"),
+    element("p", { class: "reading" }, "Parameter errors are correlated. Scaled by the standard"
+      + " deviations, the uncertainty splits into independent directions (singular vectors of the"
+      + " scaled covariance); bars show the fraction of the total variance. A few large fractions"
+      + " mean that a few combined errors dominate the uncertainty."
       + condition),
     bars(all.slice(0, DIRECTIONS_SHOWN)),
-    rest.length > 0 && element("details", {}, element("summary", {}, `The other ${rest.length},`
-      + ` together ${percent(sum_of(rest, (one) => one.share))}`), bars(rest)));
+    rest.length > 0 && element("details", {}, element("summary", {}, `The other`
+      + ` ${rest.length}, ${percent(sum_of(rest, (one) => one.share))} in`
+      + ` total`), bars(rest)));
 }

@@ -6,39 +6,39 @@ import { is_number } from "./numbers.js";
 import { COLOUR, axis, draw_plot, figure, have_plots, room_px, segments_trace } from "./plot.js";
 import { headline_cell } from "./study.js";
 
-const PLAN_CUT_M = 2.3;       // edges that reach above a door's head clutter the plan
-const SHOWN_ERROR_M = 0.1;    // shorter errors would vanish under the dots
+const PLAN_CUT_M = 2.3;       // higher edges, above doors, are omitted for clarity
+const SHOWN_ERROR_M = 0.1;    // shorter errors would be hidden by the dots
 const MARKS = {
   success: { name: "within 1 m", color: COLOUR.blue, symbol: "circle", size: 6 },
-  failure: { name: "failed: answer over 1 m off", color: COLOUR.red, symbol: "x", size: 8 },
+  failure: { name: "failed: error above 1 m", color: COLOUR.red, symbol: "x", size: 8 },
   silent: { name: "failed: no answer", color: COLOUR.amber, symbol: "diamond-open", size: 9 },
 };
 
-/** A row of a cell's trial_list by names. */
+/** A row of a cell's trial_list as an object. */
 function trial_of([trial, x, y, , answer_x, answer_y, , error_m, success]) {
   const outcome = success ? "success" : is_number(answer_x) ? "failure" : "silent";
   return { trial, x, y, answer_x, answer_y, error_m, outcome };
 }
 
 export function plan_section(report) {
-  const made = section("plan", "Where it works and where it fails", world_words(report.world));
+  const made = section("plan", "Successes and failures on the map", world_words(report.world));
   const cells = (report.study?.cells ?? []).filter((cell) => cell.trial_list?.length);
   if (!have_plots()) {
     made.append(...cells.map((cell) => paragraph(plan_words(cell))));
     return;
   }
   if (!cells.length) {
-    made.append(figure("", "The plan of the world with the route, along which the map is recorded.",
+    made.append(figure("", "Plan of the world with the route along which the map is recorded.",
       "Plan of the world", plan_height(report), () => plan_plot(report, null)));
     return;
   }
   const first = Math.max(0, cells.indexOf(headline_cell(report.study)));
   const note = element("p", { "aria-live": "polite" }, plan_words(cells[first]));
-  const drawn = figure("", "A dot is where a query was asked. From failures, and from errors above"
-    + " 0.1 m, a line leads to the position that was answered. Look for failures that gather: they"
-    + " point to places that resemble each other or show too little structure. Point at a dot for"
-    + " its trial number and error; a click on an entry of the legend hides it.",
-    "Plan of the world with the queries, coloured by success, and lines to wrong answers.",
+  const drawn = figure("", "Dots are true query positions. For failures and errors above 0.1 m, a"
+    + " line leads to the estimated position. Clusters of failures indicate similar-looking"
+    + " locations or too little structure. Hover over a dot for its trial number and error; click"
+    + " a legend entry to hide it.",
+    "Plan of the world with the queries, coloured by success, and lines to wrong estimates.",
     plan_height(report), () => plan_plot(report, cells[first]));
   const choose = (i) => {
     note.replaceChildren(...nodes_of(plan_words(cells[i])));
@@ -57,8 +57,8 @@ function world_words(world) {
     ["objects", "objects"]].filter(([key]) => is_number(counts[key]))
     .map(([key, noun]) => `${count(counts[key])} ${noun}`);
   const repeated = is_number(counts.repeated_share)
-    ? ` ${percent(counts.repeated_share, 0)} of the edges belong to things that stand in it more`
-      + " than once (doors, windows, desks), which is what makes places alike." : "";
+    ? ` ${percent(counts.repeated_share, 0)} of the edges belong to repeated objects`
+      + " (doors, windows, desks), which make locations look alike." : "";
   return paragraph(`The world${world.name ? ` “${world.name}”` : ""} has ${parts.join(", ")}.`
     + repeated);
 }
@@ -66,9 +66,9 @@ function world_words(world) {
 function plan_words(cell) {
   const trials = cell.trial_list.map(trial_of);
   const number = (outcome) => trials.filter((t) => t.outcome === outcome).length;
-  return `${cell.label ? `${cell.label}: of` : "Of"} ${count(trials.length)} queries shown,`
-    + ` ${count(number("success"))} answered within 1 m, ${count(number("failure"))} answered`
-    + ` wrongly and ${count(number("silent"))} left unanswered.`;
+  return `${cell.label ? `${cell.label}: ` : ""}${count(trials.length)} queries shown:`
+    + ` ${count(number("success"))} localised within 1 m, ${count(number("failure"))} wrong and`
+    + ` ${count(number("silent"))} unanswered.`;
 }
 
 /** Box around the world, or around the trials where there is no world. */
@@ -93,7 +93,7 @@ function plan_extent(report) {
 function plan_height(report) {
   const { x, y } = plan_extent(report);
   const width = room_px() - 80;
-  const legend = width < 500 ? 130 : 0;  // an entry a line there
+  const legend = width < 500 ? 130 : 0;  // one legend entry per line
   const height = 110 + width * (y[1] - y[0]) / (x[1] - x[0]);
   return Math.round(Math.max(320, Math.min(860, height + legend)));
 }
@@ -130,7 +130,7 @@ function trial_traces(trials) {
     chosen.map((t) => [t.x, t.y, t.answer_x, t.answer_y]),
     { name, line: { color, width }, opacity: 0.65 });
   return [
-    lines(answered.filter((t) => t.outcome === "failure"), "to the wrong answer", COLOUR.red, 1),
+    lines(answered.filter((t) => t.outcome === "failure"), "to the wrong estimate", COLOUR.red, 1),
     lines(answered.filter((t) => t.outcome === "success" && t.error_m > SHOWN_ERROR_M),
       "error above 0.1 m", COLOUR.blue, 1.5),
     ...Object.keys(MARKS).map((outcome) =>

@@ -16,9 +16,8 @@ export const have_plots = () => typeof window.Plotly !== "undefined";
 // Plots are drawn once their place in the page, and so their width, is known.
 const waiting_plots = [];
 
-/**
- * A figure: heading, what is to be read from it, the plot. `draw` gives {data, layout}; `spoken`
- * stands for the picture where it cannot be seen. Nothing where Plotly is missing.
+/** A figure: heading, caption, plot. `draw` returns {data, layout}; `spoken` is the label for screen
+ * readers. Null without Plotly.
  */
 export function figure(heading, reading, spoken, height, draw) {
   if (!have_plots()) return null;
@@ -58,7 +57,7 @@ export function axis(title, more = {}) {
     automargin: true, ...more };
 }
 
-/** Ticks of a logarithmic axis over `values`: 1, 2 and 5 times the powers of ten, all written. */
+/** A logarithmic axis over `values` with labelled ticks at 1, 2 and 5 times powers of ten. */
 export function log_axis(title, values, more = {}) {
   const positive = values.filter((x) => is_number(x) && x > 0);
   const low = Math.floor(Math.log10(Math.min(...positive)));
@@ -72,7 +71,7 @@ export function log_axis(title, values, more = {}) {
     ticktext: ticks.map((t) => minus(String(Number(t.toPrecision(3))))), ...more });
 }
 
-/** Line segments as one trace: [x1, y1, x2, y2] each, parted by gaps. */
+/** Line segments [x1, y1, x2, y2] as one trace, separated by gaps. */
 export function segments_trace(segments, more) {
   const x = [], y = [];
   for (const [x1, y1, x2, y2] of segments) {
@@ -82,11 +81,11 @@ export function segments_trace(segments, more) {
   return { type: "scatter", mode: "lines", x, y, hoverinfo: "skip", ...more };
 }
 
-/** The width that a figure may take, px. */
+/** The available width of a figure, px. */
 export const room_px = () =>
   Math.min(1104, document.getElementById("report").clientWidth || 1104);
 
-/** The same of a figure that stands beside another where the page is wide (report.css). */
+/** The same for a figure next to another one on a wide page (report.css). */
 export function half_room_px() {
   const narrow = window.matchMedia?.("(max-width: 860px)").matches;
   return narrow ? room_px() : (room_px() - 36) / 2;

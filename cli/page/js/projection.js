@@ -6,20 +6,20 @@ import { significant } from "./format.js";
 import { is_number, upper } from "./numbers.js";
 import { COLOUR, figure, room_px } from "./plot.js";
 
-/** What the covariance means where points are seen: maps in pixels, and depth. */
+/** Effect of the covariance on projected points (maps in pixels) and on depth. */
 export function projection_content(rig) {
   const { projection } = rig;
   if (!projection) return [depth_part(rig)];
   const range = colour_range(projection.cameras);
   const [nearest, , farthest] = projection.boards_m;
   return [
-    element("p", {}, "Calibrate again and again with boards in the same places, and a point that"
-      + " is fixed to those boards would be predicted at a slightly different pixel each time."
-      + " The maps show the standard deviation of that pixel in its worst direction, by the"
-      + " covariance of the rig and of the boards' poses together. It is smallest where and as"
-      + ` far away as the boards stood (${significant(nearest, 2)} to ${significant(farthest, 2)} m`
-      + " here) and grows towards the edge of the image and away from that range. It says nothing"
-      + " of model error."),
+    element("p", {}, "If the calibration were repeated with the same board poses, a point fixed"
+      + " to the boards would be projected to a slightly different pixel each time. The maps show"
+      + " the standard deviation of this pixel in its worst direction, from the joint covariance"
+      + " of rig and board poses. It is smallest in the image region and at the"
+      + ` distance of the boards (${significant(nearest, 2)} to ${significant(farthest, 2)} m`
+      + " here), and grows towards the image border and outside this range. Model error is not"
+      + " included."),
     ...projection.cameras.map((one) => projection_figure(one, range)),
     projection_table(projection),
     depth_part(rig),
@@ -31,20 +31,20 @@ const distance_words = (d) => is_number(d) ? `${significant(d, 2)} m` : "infinit
 function projection_table({ cameras }) {
   const rows = cameras.flatMap((one) => one.figures.map((row) => ({ ...row, camera: one.camera })));
   const bound = rows.some((row) => is_number(row.centre_bound_px))
-    ? " The bound is what corner noise alone would allow." : "";
+    ? " The bound includes corner noise only." : "";
   return table(`Standard deviation of a projected point, px, in its worst direction.${bound}`, [
     { head: "Camera", text: true, cell: (row) => row.camera },
     { head: "Distance", text: true, cell: (row) => distance_words(row.distance_m)
-      + (row.boards ? " (as the boards)" : "") },
-    { head: "Middle", small: "of the image", cell: (row) => significant(row.centre_px, 2) },
-    { head: "Middle", small: "by the bound", cell: (row) => significant(row.centre_bound_px, 2) },
-    { head: "Median", small: "over the image", cell: (row) => significant(row.median_px, 2) },
-    { head: "Median", small: "by the bound", cell: (row) => significant(row.median_bound_px, 2) },
+      + (row.boards ? " (board distance)" : "") },
+    { head: "Centre", small: "of the image", cell: (row) => significant(row.centre_px, 2) },
+    { head: "Centre", small: "bound", cell: (row) => significant(row.centre_bound_px, 2) },
+    { head: "Median", small: "of the image", cell: (row) => significant(row.median_px, 2) },
+    { head: "Median", small: "bound", cell: (row) => significant(row.median_bound_px, 2) },
     { head: "Worst", small: "in the image", cell: (row) => significant(row.worst_px, 2) },
   ], rows, { wide: false });
 }
 
-/** One logarithmic range of colours for all maps, in powers of ten; the last 2 % share its end. */
+/** One logarithmic colour range for all maps, in powers of ten; the top 2 % are clipped. */
 function colour_range(cameras) {
   const sds = cameras.flatMap((one) => one.maps.flatMap((map) => map.sd_px.flat()))
     .filter((sd) => sd > 0);
@@ -56,14 +56,14 @@ function projection_figure(one, range) {
   const width = (room_px() - 70) / across;
   const rows = one.maps.length / across;
   const height = Math.round(70 + rows * (20 + 0.86 * width * one.size_px[1] / one.size_px[0]));
-  return figure(`Projection uncertainty, ${one.camera} camera`, "Standard deviation in pixels of"
-    + " where a point at each place of the image is seen, at three distances along the ray. All"
-    + " maps share the colours (the darkest is that much or more); lines join places of equal"
-    + " uncertainty, at steps of their own."
-    + (one.figures.some((row) => row.absent > 0) ? " Blank places are out of the lens model's"
-      + " reach: its distortion folds back before them." : ""),
-    `Maps of the projection uncertainty of the ${one.camera} camera; the table below has the`
-    + " figures.", height, () => projection_plot(one, range, across));
+  return figure(`Projection uncertainty, ${one.camera} camera`, "Standard deviation of the"
+    + " projected pixel over the image, at three distances along the ray. All maps use the same"
+    + " colours (darkest: this value or more); lines are contours of equal uncertainty, with"
+    + " different steps in each map."
+    + (one.figures.some((row) => row.absent > 0) ? " Blank regions cannot be unprojected: the"
+    + " lens distortion model folds over there." : ""),
+    `Maps of the projection uncertainty of the ${one.camera} camera; values are in the`
+    + " table below.", height, () => projection_plot(one, range, across));
 }
 
 function projection_plot(one, [low, high], across) {
@@ -108,7 +108,7 @@ function map_traces(one, map, [low, high], name, with_bar) {
   ];
 }
 
-/** Round values between two powers of ten: by 1, 2 and 5, or finer where these are few. */
+/** Round tick values between two powers of ten: 1, 2 and 5, or finer if these are too few. */
 function colour_ticks(low, high) {
   const among = (steps) => [-4, -3, -2, -1, 0, 1, 2, 3]
     .flatMap((power) => steps.map((step) => Number((step * 10 ** power).toPrecision(2))))
@@ -117,7 +117,7 @@ function colour_ticks(low, high) {
   return coarse.length > 2 ? coarse : among([1, 1.5, 2, 3, 4, 5, 7]);
 }
 
-/** A round step that gives about six lines. */
+/** A round step for about six contour lines. */
 function contour_step(low, high) {
   const wanted = Math.max(1e-6, (high - low) / 6);
   const power = 10 ** Math.floor(Math.log10(wanted));

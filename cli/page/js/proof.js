@@ -6,7 +6,7 @@ import { in_percent, is_number, times } from "./numbers.js";
 import { is_bound } from "./parameters.js";
 import { COLOUR, axis, figure } from "./plot.js";
 
-/** Whether the lens model and the covariance hold on views that took no part. */
+/** Cross-validation of lens model and covariance on held-out views. */
 export function proof_content(rig) {
   const { proof } = rig;
   return [
@@ -17,19 +17,20 @@ export function proof_content(rig) {
 }
 
 function models_table({ frames, rows }) {
-  const caption = `Lens models on views left out: each of ${count(frames)} frames is predicted by a`
-    + " calibration without it (its board's pose alone is fitted). Only a clearly smaller residual"
-    + " there speaks for the richer model; the gain is its mean over its scatter between views."
-    + " Largest move: how far a parameter goes when the model changes, in honest σ of the model in"
-    + " use. Beyond 3, no covariance on this page covers it.";
+  const caption = `Lens models on held-out views: each of ${count(frames)} frames is predicted by a`
+    + " calibration without it (only its board pose is fitted). Only a clearly smaller held-out"
+    + " residual justifies a richer model; the gain is the mean improvement divided by its"
+    + " standard deviation. Largest change: of a parameter when the model changes, in honest σ of the"
+    + " model in use. A change above 3 σ is a model error that no covariance on this page"
+    + " includes.";
   return element("div", {}, element("h3", {}, "Is the lens model rich enough?"), table(caption, [
     { head: "Model", text: true, cell: (row) => row.in_use ? `${row.model} (in use)` : row.model },
-    { head: "Left out", small: "RMS, px", cell: (row) => significant(row.held_out_rms_px, 4) },
+    { head: "Held out", small: "RMS, px", cell: (row) => significant(row.held_out_rms_px, 4) },
     { head: "Fitted", small: "RMS, px", cell: (row) => significant(row.fitted_rms_px, 4) },
     { head: "Better views", cell: (row) => is_number(row.better_views)
       ? `${count(row.better_views)} of ${count(frames)}` : DASH },
     { head: "Gain", small: "standard deviations", cell: (row) => fixed(row.gain_sigmas, 1) },
-    { head: "Largest move", text: true, cell: (row) => row.largest_move
+    { head: "Largest change", text: true, cell: (row) => row.largest_move
       ? `${row.largest_move} by ${fixed(row.largest_move_sigmas, 1)} σ` : DASH },
   ], rows, { chosen: (row) => row.in_use, wide: false }));
 }
@@ -39,7 +40,7 @@ const COVARIANCES = [
   { by: "bound", name: "minimum variance bound", suffix: "mvb", color: COLOUR.red },
 ];
 
-/** Those that a rig has: one where its covariance is the bound. */
+/** The covariances of a rig: only one if its covariance is the bound. */
 const covariances = (rig) => is_bound(rig) ? COVARIANCES.slice(1) : COVARIANCES;
 
 function left_out_content(left_out, by) {
@@ -47,20 +48,21 @@ function left_out_content(left_out, by) {
   const failed = left_out.failed ? ` ${counted(left_out.failed, "split")} could not be calibrated.`
     : "";
   return [
-    element("h3", {}, "Are the intervals true?"),
-    element("p", {}, `The rig was calibrated ${count(left_out.splits)} times from`
-      + ` ${count(left_out.training_frames)} of ${count(left_out.frames)} frames, and the boards of`
-      + " the other frames were measured with it: rows, columns and diagonals by triangulation,"
-      + " against what they are on the board. A true covariance puts 95 % of the errors inside"
-      + " their 95 % interval and makes error over stated σ one, root mean square. Of"
-      + ` ${count(edges.lengths)} lengths there lie inside: ` + by.map(({ name, suffix }) =>
-        `${percent(edges[`coverage_${suffix}`])} by the ${name}`).join(", ") + `.${failed}`),
+    element("h3", {}, "Are the intervals correct?"),
+    element("p", {}, `The rig was calibrated ${count(left_out.splits)} times with`
+      + ` ${count(left_out.training_frames)} of ${count(left_out.frames)} frames, and the boards in`
+      + " the other frames were measured by triangulation: rows, columns and diagonals, compared"
+      + " with the known board. With a correct covariance, 95 % of the errors are inside their"
+      + " 95 % interval and the RMS of error over predicted σ is 1. Inside the interval, of"
+      + ` ${count(edges.lengths)} lengths: ` + by.map(({ name, suffix }) =>
+        `${percent(edges[`coverage_${suffix}`])} with the ${name}`).join(", ") + `.${failed}`),
     element("div", { class: "pair table-first" }, left_out_table(left_out, by),
       coverage_bars(left_out.rows, by)),
-    element("p", { class: "reading" }, "Splits share frames, so these shares have no simple"
-      + " interval of their own. A single length carries its corners' noise as well"
-      + `${by.length > 1 ? ", alike under both covariances" : ""}; in the size of a board, the mean of its lengths, the noise averages out`
-      + " and the rig's error stays. Lengths test the rig only where the boards stood."),
+    element("p", { class: "reading" }, "Splits share frames, so these fractions have no simple"
+      + " interval. A single length also includes corner noise"
+      + `${by.length > 1 ? ", equally for both covariances" : ""};`
+      + " in the scale of a board (the mean of its lengths) the noise averages out and the rig's"
+      + " error remains. Lengths test the rig only at the board poses."),
   ];
 }
 
@@ -70,13 +72,13 @@ function left_out_table({ rows, boards }, by) {
   const lines = rows.flatMap((row) => by.map(({ by: name, suffix }) => ({ row, by: name,
     covered: row[`coverage_${suffix}`], z: row[`z_rms_${suffix}`],
     sigma: row[`sigma_${suffix}`] })));
-  return table(`Lengths on ${count(boards)} boards left out`, [
-    { head: "What", text: true, cell: (l) => l.row.what },
+  return table(`Lengths on ${count(boards)} held-out boards`, [
+    { head: "Quantity", text: true, cell: (l) => l.row.what },
     { head: "Covariance", text: true, cell: (l) => l.by },
     { head: "Inside 95 %", cell: (l) => percent(l.covered) },
-    { head: "Error over σ", small: "rms; 1 is true", cell: (l) => significant(l.z, 3) },
+    { head: "Error over σ", small: "rms; expected: 1", cell: (l) => significant(l.z, 3) },
     { head: "Error", small: "rms", cell: (l) => length(l.row, l.row.error_rms) },
-    { head: "Stated σ", small: "rms", cell: (l) => length(l.row, l.sigma) },
+    { head: "Predicted σ", small: "rms", cell: (l) => length(l.row, l.sigma) },
   ], lines, { wide: false });
 }
 
@@ -85,8 +87,8 @@ function coverage_bars(rows, by) {
     y: rows.map((row) => in_percent(row[`coverage_${suffix}`])), marker: { color },
     text: rows.map((row) => percent(row[`coverage_${suffix}`], 0)), textposition: "inside",
     insidetextfont: { color: "#fff" }, hovertemplate: `${name}: %{y:.1f} %<extra></extra>` });
-  return figure("", "Share of lengths inside their 95 % interval. The line is at 95 %: bars below"
-    + " it are intervals too narrow, above it too wide.",
+  return figure("", "Fraction of lengths inside their 95 % interval. The line is at 95 %: the"
+    + " intervals are too narrow below it, too wide above it.",
     "Coverage of 95 % intervals, as in the table.", 300,
     () => ({
       data: by.map(bars),

@@ -10,11 +10,11 @@ export function mean_figure(one) {
   const filled = structure.mean.filter((_, i) => structure.counts[i] > 2);
   const scale = magnification(upper(filled.map(([x, y]) => Math.hypot(x, y)), 0.95), size_px[0],
     0.9 / structure.columns);
-  return figure(`Mean residual by place, ${one.camera} camera`, "Arrows are the mean residual"
-    + ` of the corners in a cell (of three or more), ${count(scale)} times as long. The colour`
-    + " says how many standard deviations it lies from zero: independent noise passes 2.4 in one"
-    + ` cell of twenty. Here ${count(structure.beyond_95)} of ${count(structure.filled)} cells`
-    + ` do, where ${fixed(0.05 * structure.filled, 0)} are expected.`,
+  return figure(`Mean residual by image region, ${one.camera} camera`, "Arrows: mean residual"
+    + ` of cells with at least three corners, magnified ${count(scale)} times. Colour: distance`
+    + " from zero in standard deviations; independent noise exceeds 2.4 in one cell of twenty."
+    + ` Here ${count(structure.beyond_95)} of ${count(structure.filled)} cells exceed it,`
+    + ` ${fixed(0.05 * structure.filled, 0)} are expected.`,
     `Mean residuals of the ${one.camera} camera over its image.`, image_height(size_px),
     () => mean_plot(one, scale));
 }
@@ -53,11 +53,11 @@ function arrow(x, y, dx, dy) {
 
 export function histogram_figure(one) {
   const { structure: s } = one;
-  return figure(`Residuals against the normal, ${one.camera} camera`, "Residuals of both"
-    + " coordinates, counted in standard deviations of the corner noise. The line is what a"
-    + " normal error would give; the outermost bars hold all beyond ± 5 σ."
-    + ` Beyond 3 σ: ${percent(s.beyond_3_sigma, 2)}, of a normal error`
-    + " 0.27 %. A tall middle with long tails means that some views or corners are noisier than"
+  return figure(`Residuals and normal distribution, ${one.camera} camera`,
+    "Residuals of both coordinates, in standard deviations of the corner noise. Line: normal"
+      + " distribution. The outermost bars include everything beyond ± 5 σ."
+    + ` Beyond 3 σ: ${percent(s.beyond_3_sigma, 2)}; normal distribution:`
+    + " 0.27 %. A high peak with heavy tails means that some views or corners are noisier than"
     + " others.", `Histogram of residuals of the ${one.camera} camera.`,
     image_height(one.size_px), () => histogram_plot(one));
 }

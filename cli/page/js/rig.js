@@ -12,38 +12,38 @@ import { tile } from "./study.js";
 import { views_content } from "./view_influence.js";
 
 const KIND_REASON = {
-  jackknife: (frames, free) => "the small-sample form of the sandwich (kind jackknife), because"
-    + ` ${frames} frames for ${free} parameters are fewer than three a parameter`,
-  clustered: (frames, free) => "the sandwich clustered by frame, because"
-    + ` ${frames} frames for ${free} parameters are three a parameter or more`,
-  mvb: (frames, free, rig) => "the minimum variance bound itself: the corners' noise was taken to be"
-    + ` white${rig.true_bound ? ", and the views scatter as such noise does" : ""}`,
-  prior: () => "as the rig file states it: assumed, not measured",
-  combined: () => "of several calibrations or batches combined",
+  jackknife: (frames, free) => "small-sample sandwich (kind jackknife), because" + ` ${frames}`
+    + ` frames for ${free} parameters are fewer than three per parameter`,
+  clustered: (frames, free) => "sandwich clustered by frame, because" + ` ${frames} frames for`
+    + ` ${free} parameters are at least three per parameter`,
+  mvb: (frames, free, rig) => "minimum variance bound: corner noise is assumed to be"
+    + ` white${rig.true_bound ? ", which agrees with the scatter of the views" : ""}`,
+  prior: () => "from the rig file: assumed, not measured",
+  combined: () => "combined from several calibrations or batches",
 };
 
-/** The sections of every rig; with several, a table of all before them. */
+/** The sections of all rigs, preceded by a comparison table if there are several. */
 export function rigs_sections(report) {
   const rigs = report.rigs ?? [];
   if (rigs.length > 1) calibrations_section(rigs);
   rigs.forEach((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig", rigs.length > 1));
 }
 
-/** The sections that a rig has: [name of the part, heading, words in the contents, builder]. */
+/** The available sections of a rig: [name, heading, builder]. */
 function rig_parts(rig) {
   return [
     [rig.corners?.length, "corners", "Corners and residuals", corners_content],
-    [rig.projection || rig.depth?.length, "projection", "Uncertainty in pixels and in depth",
+    [rig.projection || rig.depth?.length, "projection", "Projection and depth uncertainty",
       projection_content],
-    [rig.view_influence?.length, "views", "Influence of single views", views_content],
-    [rig.proof, "proof", "Proof on views left out", proof_content],
+    [rig.view_influence?.length, "views", "Influence of individual views", views_content],
+    [rig.proof, "proof", "Cross-validation on held-out views", proof_content],
   ].filter(([there]) => there).map(([, ...part]) => part);
 }
 
 function rig_sections(rig, id, several) {
   const of_rig = several ? ` · ${rig.file ?? id}` : "";
   const parts = rig_parts(rig);
-  const first = section_named(id, `The stereo rig and how well it is known${of_rig}`,
+  const first = section_named(id, `The stereo rig and its uncertainty${of_rig}`,
     several ? rig.file ?? id : "The rig");
   if (several && parts.length) {
     first.append(element("ul", { class: "parts" }, parts.map(([name, heading]) =>
@@ -60,8 +60,8 @@ function rig_content(rig) {
   return [
     cameras_words(rig),
     rig.missing && element("p", { class: "notice" }, rig.missing),
-    findings("Doubts", rig.calibration?.doubts),
-    findings("Warnings of the calibration", rig.calibration?.warnings),
+    findings("Reasons not to trust this calibration", rig.calibration?.doubts),
+    findings("Calibration warnings", rig.calibration?.warnings),
     calibration_tiles(rig.calibration), summary_table(rig),
     element("div", { class: "pair table-first" }, parameter_table(rig), directions_list(rig)),
     correlation_part(rig),
@@ -74,7 +74,7 @@ function findings(heading, list) {
     element("ul", {}, list.map((words) => element("li", {}, words))));
 }
 
-/** How the calibration was made, in words. */
+/** Summary of the calibration settings and data. */
 function summary_table(rig) {
   const { calibration } = rig;
   if (!calibration) return null;
@@ -86,27 +86,28 @@ function summary_table(rig) {
     ["Views", `${counted(calibration.views, "frame")}${is_number(calibration.images)
       ? `, ${counted(calibration.images, "image")} with corners` : ""}`],
     ["Corners", is_number(calibration.corners_used) ? `${count(calibration.corners_used)} used,`
-      + ` ${count(calibration.corners_left_out)} left out as outliers`
+      + ` ${count(calibration.corners_left_out)} rejected as outliers`
       + ` (${percent(ratio(calibration.corners_left_out, all))})` : DASH],
     ["Parameters", `${count(rig.free_parameters ?? rig.names?.length)} estimated; `
-      + (calibration.held?.length ? `held: ${calibration.held.join(", ")}` : "none held")],
-    ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates less parameters and six a`
-      + " frame for the board's pose"],
-    ["Prior", calibration.prior_dof > 0 ? `knows ${counted(calibration.prior_dof, "parameter")};`
-      + ` the solution is χ² = ${significant(calibration.prior_chi2, 3)} from it` : "none"],
-    ["Board", warp ? `bent by ${significant(1e3 * warp[0], 2)} mm along its rows and`
-      + ` ${significant(1e3 * warp[1], 2)} mm along its columns, estimated too`
-      : "taken as its file says, no warp estimated"],
-    ["Covariance", reason ? reason + (inflation ? `. It is ${significant(inflation, 2)} times the`
-      + " bound in standard deviation, on average" : "") : "none"],
+      + (calibration.held?.length ? `fixed: ${calibration.held.join(", ")}` : "none fixed")],
+    ["Degrees of freedom", `${count(calibration.dof)}: corner coordinates minus parameters and`
+      + ` six per frame for the board pose`],
+    ["Prior", calibration.prior_dof > 0 ? `of`
+      + ` ${counted(calibration.prior_dof, "parameter")}; χ² =`
+      + ` ${significant(calibration.prior_chi2, 3)} at the solution` : "none"],
+    ["Board", warp ? `estimated warp: ${significant(1e3 * warp[0], 2)} mm along rows,`
+      + ` ${significant(1e3 * warp[1], 2)} mm along columns`
+      : "as specified; no warp estimated"],
+    ["Covariance", reason ? reason + (inflation ? `. On average, its σ is`
+      + ` ${significant(inflation, 2)} times that of the bound` : "") : "none"],
   ];
-  return table("How it was calibrated", [
-    { head: "What", text: true, cell: ([name]) => name },
-    { head: "Here", text: true, cell: ([, words]) => words },
+  return table("Calibration summary", [
+    { head: "Item", text: true, cell: ([name]) => name },
+    { head: "Value", text: true, cell: ([, words]) => words },
   ], rows, { wide: false });
 }
 
-/** Geometric mean of σ over the bound's σ; nothing where the two are the same. */
+/** Geometric mean of σ divided by the bound's σ; null if the covariance is the bound. */
 function typical_inflation(rig) {
   if (is_bound(rig)) return null;
   const ratios = (rig.sigma ?? []).map((s, i) => ratio(s, rig.sigma_mvb?.[i]))
@@ -127,12 +128,12 @@ function calibration_tiles(calibration) {
   const { rms_px, pixel_sigma_px, chi2, dof, views } = calibration;
   return element("dl", { class: "tiles" },
     tile("Residual, RMS", is_number(rms_px) ? `${significant(rms_px, 3)} px` : null,
-      "a coordinate of a corner"),
+      "per corner coordinate"),
     tile("Corner noise", is_number(pixel_sigma_px) ? `${significant(pixel_sigma_px, 2)} px` : null,
-      "standard deviation used as weight"),
-    tile("χ² a degree of freedom", dof > 0 ? significant(ratio(chi2, dof), 3) : null,
-      `χ² = ${significant(chi2, 4)}, ${count(dof)} degrees; 1 is expected if the noise is as`
-      + " stated"),
+      "standard deviation used for weighting"),
+    tile("χ² per degree of freedom", dof > 0 ? significant(ratio(chi2, dof), 3) : null,
+      `χ² = ${significant(chi2, 4)}, ${count(dof)} degrees; 1 is expected if the noise is`
+        + " correct"),
     tile("Views", count(views), "frames used"));
 }
 
@@ -140,22 +141,21 @@ function calibrations_section(rigs) {
   const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
   const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
   const beside = (rig) => is_bound(rig) ? null : covered(rig, "coverage_mvb");
-  section("calibrations", "Calibrations side by side", table(
-    "A smaller residual alone does not make a model right: a richer one always fits its own views"
-    + " better, so views left out are the judge. And no covariance covers what a model cannot"
-    + " follow.", [
+  section("calibrations", "Comparison of calibrations", table(
+    "A smaller residual alone does not mean a better model: a richer model always fits its own"
+      + " views better, so compare held-out views. No covariance includes lens model error.", [
       { head: "Calibration", text: true, cell: (rig) => rig.name ?? rig.file ?? DASH },
       { head: "Views", cell: (rig) => count(rig.calibration?.views) },
       { head: "Residual RMS", small: "px",
         cell: (rig) => significant(rig.calibration?.rms_px, 3) },
       { head: "Corner noise", small: "px",
         cell: (rig) => significant(rig.calibration?.pixel_sigma_px, 3) },
-      { head: "Views left out", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
+      { head: "Held-out views", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
       { head: "σ over bound", small: "on average",
         cell: (rig) => significant(typical_inflation(rig), 2) },
-      { head: "Boards left out", small: "inside 95 %",
+      { head: "Held-out boards", small: "inside 95 %",
         cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
-      { head: "Boards left out", small: "inside 95 %, bound",
+      { head: "Held-out boards", small: "inside 95 %, bound",
         cell: (rig) => percent(beside(rig), 0) },
     ], rigs, { wide: false }));
 }

@@ -8,9 +8,9 @@ import {
 import { is_number } from "./numbers.js";
 
 const PROTOCOLS = {
-  near_path: "queries up to 0.1 m off the recorded route, heading within ± 5° of it",
-  path: "queries up to 0.3 m off the recorded route, heading within ± 15° of it",
-  anywhere: "queries up to 0.6 m off the recorded route, any heading",
+  near_path: "queries up to 0.1 m from the recorded route, heading within ± 5° of it",
+  path: "queries up to 0.3 m from the recorded route, heading within ± 15° of it",
+  anywhere: "queries up to 0.6 m from the recorded route, any heading",
 };
 
 const METHODS = {
@@ -18,13 +18,12 @@ const METHODS = {
   pgh_baseline: "pairwise geometric histograms, baseline",
 };
 
-export const PSI_MEANING = "ψ_c is the factor on the standard deviations of the rig's calibration: 1"
-  + " takes the calibration to be as uncertain as its covariance says, 0.1 ten times better,"
-  + " 10 ten times worse.";
+export const PSI_MEANING = "ψ_c is the scale factor for the standard deviations of the rig's"
+  + " calibration: 1 uses its covariance unchanged, 0.1 is ten times better, 10 ten times worse.";
 
 export const cell_key = (cell, key) => (cell.settings || {})[key];
 
-/** The cell with ψ_c as calibrated, else the first. */
+/** The cell with ψ_c = 1, otherwise the first. */
 export function headline_cell(study) {
   const nominal = study.cells.find((cell) => cell_key(cell, "sources.calibration") === 1);
   return nominal || study.cells[0];
@@ -40,7 +39,7 @@ export function headline(report) {
     element("h2", { id: "headline-heading" },
       study.cells.length > 1 ? `Localisation success at ${cell.label}` : "Localisation success"),
     element("div", {}, element("div", { class: "figure" }, percent(cell.success)),
-      paragraph("of queries answered within 1 m of the truth")),
+      paragraph("of queries localised within 1 m of the true position")),
     element("div", { class: "words" }, headline_words(study, cell)),
     element("dl", { class: "tiles" }, headline_tiles(report, cell)));
   document.getElementById("report").append(box);
@@ -48,21 +47,22 @@ export function headline(report) {
 
 function headline_words(study, cell) {
   const range = cell.success_interval_95;
-  const words = [`In ${counted(cell.trials, "trial")} the robot placed itself within 1 m of where`
-    + ` it stood ${percent(cell.success)} of the time.`];
+  const words = [`In ${counted(cell.trials, "trial")}, the robot localised itself within 1 m of`
+    + ` its true`
+    + ` position ${percent(cell.success)} of the time.`];
   if (range) {
-    words.push(` With 95 % confidence the rate lies between ${percent(range[0])} and`
+    words.push(` The 95 % confidence interval is ${percent(range[0])} to`
       + ` ${percent(range[1])}.`);
   } else if (cell.success_interval_95_missing) {
-    words.push(` The rate has no interval: it ${cell.success_interval_95_missing}.`);
+    words.push(` No confidence interval: ${cell.success_interval_95_missing}.`);
   }
   const clustered = cell.success_interval_95 && cell.success_interval_binomial_95;
-  const notes = ["An unanswered query counts as a failure; heading is not judged."];
+  const notes = ["Unanswered queries count as failures; heading is not evaluated."];
   if (clustered) {
-    notes.push(" The interval allows for trials that share a recorded map.");
+    notes.push(" The interval accounts for trials that share a recorded map.");
   }
   if (cell_key(cell, "sources.calibration") === 1) {
-    notes.push(" ψ_c = 1 takes the rig's calibration to be as uncertain as its covariance says.");
+    notes.push(" ψ_c = 1 uses the covariance of the rig's calibration unchanged.");
   }
   return [element("p", {}, words), element("p", {}, notes)];
 }
@@ -75,11 +75,11 @@ function headline_tiles(report, cell) {
   const world = report.world?.name ?? cell_key(cell, "world.file");
   return [
     tile("Query protocol", protocol, PROTOCOLS[protocol]),
-    tile("World", world, is_number(ceiling) && `its ceiling is ${percent(ceiling)}: what an `
-      + "exhaustive search without noise reaches"),
+    tile("World", world, is_number(ceiling) && `ceiling ${percent(ceiling)}: success of an`
+      + ` exhaustive search without noise`),
     tile("Median error", metres(cell.median_error_m), is_number(cell.median_heading_error_deg)
       && `and ${significant(cell.median_heading_error_deg, 2)}° in heading, of answered queries`),
-    tile("CPU time a query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)
+    tile("CPU time per query", milliseconds(cell.cpu_ms_mean), is_number(cell.cpu_ms_p95)
       && `mean; 95 % take less than ${milliseconds(cell.cpu_ms_p95)}`),
     tile("Trials", count(cell.trials), study.cells.length > 1
       && `in each of ${study.cells.length} cells`),
@@ -97,12 +97,11 @@ export function cells_section(report) {
   const study = report.study;
   const headline_of_study = headline_cell(study);
   const several = study.cells.length > 1;
-  const made = section("cells", several ? "All cells" : "Figures of the trials", paragraph(
-    several && "A cell is one choice of settings, run on the same queries as the others. ",
-    "Success: the answer lies within 1 m of the truth, unanswered queries counting as"
-    + " failures. Coverage: the share of queries that got an answer."
-    + " Errors are medians over answered queries. CPU time runs from features in memory to"
-    + " the answer."));
+  const made = section("cells", several ? "All cells" : "Results of the trials", paragraph(
+    several && "A cell is one combination of settings; all cells use the same queries. ",
+    "Success: position within 1 m of the truth; unanswered queries count as failures. Coverage:"
+      + " fraction of answered queries. Errors are medians over answered queries. CPU time is"
+      + " from features in memory to the answer."));
   made.append(table(several ? `Results by cell; ${headline_of_study.label} is the headline`
     : "Results", cell_columns(study), study.cells,
     { chosen: (cell) => several && cell === headline_of_study }));
@@ -119,13 +118,13 @@ function cell_columns(study) {
     { head: "Trials", cell: (cell) => count(cell.trials) },
     { head: "Success", small: "95 % interval", cell: (cell) => [percent(cell.success),
       cell.success_interval_95 && small(range_percent(cell.success_interval_95))] },
-    { head: "Binomial", small: "if trials were independent",
+    { head: "Binomial", small: "assuming independent trials",
       cell: (cell) => range_percent(cell.success_interval_binomial_95) },
     { head: "Ceiling", small: "of the world", cell: (cell) =>
       one_ceiling ? DASH : percent(ceiling_of(study, cell)) },
     share("Coverage", "coverage"),
     share("Success", "success_when_answered", "of answered"),
-    share("Place found", "node_success", "map place within 1 m"),
+    share("Node found", "node_success", "map node within 1 m"),
     { head: "Error", small: "median", cell: (cell) => metres(cell.median_error_m) },
     { head: "Heading", small: "median error", cell: (cell) =>
       is_number(cell.median_heading_error_deg)
@@ -138,29 +137,28 @@ function cell_columns(study) {
 }
 
 export function comparisons_section(study) {
-  const test = study.comparisons[0]?.test ?? "McNemar's test, trials taken as independent";
+  const test = study.comparisons[0]?.test ?? "McNemar's test, assuming independent trials";
   const made = section("comparisons", "Paired comparisons", paragraph(
-    "Cells ran on the same queries with the same random numbers, so the sharper question is where"
-    + " they disagree: queries that only one of the two answered within 1 m. p is the chance"
-    + ` of a split at least this uneven if neither cell were better (${test}).`));
+    "All cells use the same queries and random numbers, so paired comparisons are more sensitive:"
+      + " they count queries that only one of two cells localised within 1 m. p is the probability"
+    + ` of a difference at least this large if neither cell were better (${test}).`));
   if (study.comparisons.some((row) => "p_value_holm" in row)) {
-    made.append(paragraph("Where cells are compared several times, one small p is to be expected by"
-      + " chance. The p of Holm is adjusted for the number of comparisons: a cell is called the better"
-      + " one where it is below 0.05. If all cells are alike, that happens in any row with a"
-      + " probability of at most 5 %."));
+    made.append(paragraph("With several comparisons a small p may occur by chance. Holm's p is"
+      + " adjusted for their number: a cell is called better if it is below 0.05. If all cells are"
+      + " equal, that happens anywhere in the table with a probability of at most 5 %."));
   } else if (study.comparisons.length > 3) {
-    made.append(paragraph(`With ${study.comparisons.length} comparisons, one p below 0.05 is to be`
-      + " expected now and then by chance; p is not corrected for their number."));
+    made.append(paragraph(`With ${study.comparisons.length} comparisons, a p below 0.05 may occur`
+      + " by chance; p is not corrected for multiple comparisons."));
   }
   const both_count = (head, key) => ({ head, cell: (row) => count(row[key]) });
-  made.append(table("Queries by which of the two cells answered within 1 m", [
+  made.append(table("Queries localised within 1 m by one, both or neither of the two cells", [
     { head: "Cell A against cell B", text: true, cell: (row) => `${row.a} against ${row.b}` },
     both_count("Both", "both"), both_count("Only A", "only_a"), both_count("Only B", "only_b"),
     both_count("Neither", "neither"),
-    { head: "A less B", small: "points of success", cell: (row) => points(row) },
-    { head: "p", small: "by itself", cell: (row) => p_value(p_of(row)) },
-    { head: "p", small: "adjusted, Holm", cell: (row) => p_value(row.p_value_holm) },
-    { head: "In words", text: true, cell: verdict },
+    { head: "A minus B", small: "success, percentage points", cell: (row) => points(row) },
+    { head: "p", small: "unadjusted", cell: (row) => p_value(p_of(row)) },
+    { head: "p", small: "adjusted (Holm)", cell: (row) => p_value(row.p_value_holm) },
+    { head: "Conclusion", text: true, cell: verdict },
   ], study.comparisons));
 }
 
@@ -172,12 +170,12 @@ function points(row) {
   return is_number(d) ? `${d > 0 ? "+" : ""}${fixed(d, 1)}` : DASH;
 }
 
-/** By map where the study says so; older results have McNemar's alone. */
+/** p by map if available; older results only have McNemar's p. */
 const p_of = (row) => ("p_value" in row ? row.p_value : row.mcnemar_p);
 
 function verdict(row) {
   const p = "p_value_holm" in row ? row.p_value_holm : p_of(row);
   if (!is_number(p)) return DASH;
-  if (p >= 0.05) return "no difference shown";
+  if (p >= 0.05) return "no significant difference";
   return difference(row) > 0 ? `${row.a} is better` : `${row.b} is better`;
 }

@@ -8,26 +8,26 @@ import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 
 const SOURCE_MEANING = {
   "sources.calibration": PSI_MEANING,
-  "sources.lateral_shift_px": "ψ_l is the size, in pixels, of the shift of edges by illumination.",
-  "sources.edge_loss": "ψ_e is the share of each edge's length that is missing.",
-  "sources.endpoint_sigma_px": "ψ_g is the standard deviation, in pixels, of line ends.",
-  "sources.stereo_mismatch": "ψ_s is the share of edges matched to a wrong partner.",
-  "sources.corner_loss": "ψ_cd is the share of corner pairs not found again.",
-  "sources.corner_mismatch": "ψ_cm is the share of corner pairs with a wrong partner.",
+  "sources.lateral_shift_px": "ψ_l is the shift of edges by illumination, in pixels.",
+  "sources.edge_loss": "ψ_e is the missing fraction of each edge's length.",
+  "sources.endpoint_sigma_px": "ψ_g is the standard deviation of line endpoints, in pixels.",
+  "sources.stereo_mismatch": "ψ_s is the fraction of edges with a wrong stereo match.",
+  "sources.corner_loss": "ψ_cd is the fraction of corner pairs that are not detected.",
+  "sources.corner_mismatch": "ψ_cm is the fraction of corner pairs with a wrong match.",
 };
 
-/** Success and median error against what was swept, or cell by cell where nothing was. */
+/** Success and median error against the swept setting, or by cell without a sweep. */
 export function sweep_section(study) {
   const swept = study.sweep;
   const label = swept ? swept.label || swept.key : "the cell";
-  const made = section("sweep", swept ? `What ${label} does` : "Cell by cell");
+  const made = section("sweep", swept ? `Effect of ${label}` : "Results by cell");
   if (swept && SOURCE_MEANING[swept.key]) made.append(paragraph(SOURCE_MEANING[swept.key]));
   const plots = [success_figure(study, label), error_figure(study, label)].filter(Boolean);
   if (plots.length) made.append(element("div", { class: "pair" }, plots));
-  else made.append(paragraph("The table of all cells holds the figures."));
+  else made.append(paragraph("The values are in the table of all cells."));
 }
 
-/** One series a combination of the other settings that differ between cells. */
+/** One series per combination of the other settings that differ between cells. */
 function sweep_series(study) {
   if (!study.sweep) return [{ name: "", cells: study.cells }];
   const others = varying_settings(study.cells).filter((key) => key !== study.sweep.key);
@@ -46,7 +46,7 @@ export function varying_settings(cells) {
     new Set(cells.map((cell) => JSON.stringify(cell_key(cell, key) ?? null))).size > 1);
 }
 
-/** Where cells stand on the x axis: {axis, at: cell => x}. */
+/** The x axis and the position of cells on it: {axis, at: cell => x}. */
 function sweep_axis(study) {
   const swept = study.sweep;
   if (!swept) {
@@ -57,7 +57,7 @@ function sweep_axis(study) {
   const values = study.cells.map(at);
   const positive = values.filter((x) => x > 0);
   const wide = Math.max(...positive) / Math.min(...positive) > 20;
-  // Zero has no place on a logarithmic axis: such values, and words, stand evenly spaced.
+  // A logarithmic axis cannot show zero: such values, and text values, are evenly spaced.
   if (!values.every(is_number) || (wide && values.some((x) => x <= 0))) {
     return { axis: axis(title, { type: "category" }), at: (cell) => setting(at(cell)) };
   }
@@ -67,12 +67,12 @@ function sweep_axis(study) {
 
 function success_figure(study, label) {
   const ceilings = study.cells.map((cell) => ceiling_of(study, cell)).filter(is_number);
-  const ceiling = ceilings.length ? " The dashed line is the ceiling of the world: what an"
-    + " exhaustive search without any noise reaches in it, and so the most that can be asked." : "";
-  return figure("Success", `${spread_words(study, "success", percent)} Dots are rates over all`
-    + ` trials of a cell, bars their 95 % intervals.${ceiling}`,
-    `Success rate with 95 per cent intervals against ${label}; the numbers are in the table of`
-    + " all cells.", 400, () => success_plot(study));
+  const ceiling = ceilings.length ? " Dashed line: ceiling of the world, the success of an"
+    + " exhaustive search without noise." : "";
+  return figure("Success", `${spread_words(study, "success", percent)} Dots: success rate of`
+    + ` a cell; bars: 95 % intervals.${ceiling}`,
+    `Success rate with 95 per cent intervals against ${label}; values are in the table of`
+      + " all cells.", 400, () => success_plot(study));
 }
 
 /** "Success goes from 89 % (ψ_c = 0.1) to 34 % (ψ_c = 10)." */
@@ -83,7 +83,7 @@ function spread_words(study, key, write) {
   const [low, high] = [sorted[0], sorted[sorted.length - 1]];
   const what = key === "success" ? "Success" : "The median error";
   if (cells.length === 1 || low[key] === high[key]) return `${what} is ${write(low[key])}.`;
-  return `${what} lies between ${write(low[key])} (${low.label}) and ${write(high[key])}`
+  return `${what} ranges from ${write(low[key])} (${low.label}) to ${write(high[key])}`
     + ` (${high.label}).`;
 }
 
@@ -125,10 +125,9 @@ function ceiling_marks(study) {
 
 function error_figure(study, label) {
   if (!study.cells.some((cell) => is_number(cell.median_error_m))) return null;
-  return figure("Median error", `${spread_words(study, "median_error_m", metres)} Half of the`
-    + " answered queries lie nearer to the truth than this. Failures among the answers count;"
-    + " queries without an answer do not.",
-    `Median position error against ${label}; the numbers are in the table of all cells.`, 400,
+  return figure("Median error", `${spread_words(study, "median_error_m", metres)} Over` + " all"
+    + " answered queries, including wrong answers; unanswered queries are excluded.",
+    `Median position error against ${label}; values are in the table of all cells.`, 400,
     () => error_plot(study));
 }
 

@@ -8,24 +8,23 @@ import { COLOUR, axis, figure } from "./plot.js";
 const view_name = ({ images, frame }) => images?.length ? images[0].replace(/\.\w+$/, "")
   : `frame ${frame}`;
 
-/** What every frame did to the estimate. */
+/** Influence of every frame on the estimate. */
 export function views_content(rig) {
   const views = rig.view_influence;
   const together = Math.sqrt(sum_of(views, (v) => v.influence ** 2)
     / sum_of(views, (v) => v.influence_noise ** 2));
   return [
-    element("p", {}, "The estimate is where the pulls of all views balance. A view's influence is"
-      + " how far the estimate moves if its pull is taken away, as one length over all parameters"
-      + " in standard deviations of the minimum variance bound; beside it stands what"
-      + " independent noise alone would give a view that knows as much. Far more than that, and"
-      + " than the other views, means that the view has an error of its own: a board bent or"
-      + " moving, blur, wrong corners, or a pose at which the camera model fails. Look at that"
-      + " image before leaving it out: a view that knows much pulls much, and a set without it may"
-      + " only look better."),
-    element("p", {}, `All views together pull ${significant(together, 2)} times as hard as`
-      + " independent noise would"
-      + (together > 1.2 ? ": that is by how much the covariance from the views' scatter is wider"
-        + " than the bound." : ".")),
+    element("p", {}, "The influence of a view is the change of the estimate without this view's"
+      + " residuals, as a single length over all parameters in standard deviations of the minimum"
+      + " variance bound. For comparison, the value expected from independent noise alone is"
+      + " shown. A view with a much larger influence than this, and than the other views, has a"
+      + " specific error: bent or moving board, blur, wrong corners, or a pose at which the"
+      + " camera model fails. Inspect the image before removing the view: informative views have"
+      + " a large influence, and a set without them may only appear to be better."),
+    element("p", {}, `The overall influence is ${significant(together, 2)} times that expected`
+      + " from independent noise"
+      + (together > 1.2 ? ": the covariance from the scatter of the views is wider than the bound"
+      + " by about this factor." : ".")),
     influence_figure(views, standing_out(views, together)), rms_figure(rig), views_table(views),
   ];
 }
@@ -35,21 +34,20 @@ const views_axis = (views) => axis("", { type: "category", tickangle: views.leng
 
 const MOST_BARS = 60;
 
-/** The ratio to what noise gives from which a view stands out, from noise and from the others. */
+/** The ratio to the noise expectation above which a view is highlighted. */
 const standing_out = (views, together) =>
   Math.max(views.length > MOST_BARS ? 3 : 2, 1.5 * together);
 
 function influence_figure(views, far) {
   const many = views.length > MOST_BARS;
-  const reading = "How far the estimate moves without the view's pull, in standard deviations of"
+  const reading = "Change of the estimate without the view's residuals, in standard deviations of"
     + " the bound"
-    + (many ? ", against what independent noise would give (root mean square)."
-      + " On the line the two are the same."
-      : ". Marks: what independent noise would give (root mean square).")
-    + ` Orange: more than ${significant(far, 2)} times that, which noise seldom gives and 1.5 times`
-    + " what the views give on the whole.";
+    + (many ? ", against the expectation from independent noise (root mean square). Line: equality."
+      : ". Marks: expected from independent noise (root mean square).")
+    + ` Orange: more than ${significant(far, 2)} times that, which is unlikely for noise and 1.5`
+    + " times the overall ratio.";
   return figure("Influence of every view", reading,
-    "Influence of every view; the table below has the largest.", many ? 440 : 360,
+    "Influence of every view; the largest are in the table below.", many ? 440 : 360,
     () => (many ? influence_cloud : influence_bars)(views, far));
 }
 
@@ -60,20 +58,20 @@ function influence_bars(views, far) {
     y: views.map((v) => wanted(v) ? v.influence : null),
     hovertemplate: "%{x}: %{y:.2f}<extra></extra>" });
   const data = [bars("influence", COLOUR.sky, (v) => !stands_out(v)),
-    bars("influence, stands out", COLOUR.red, stands_out)]
+    bars("high influence", COLOUR.red, stands_out)]
     .filter((trace) => trace.y.some(is_number));
   return {
     data: [...data, { type: "scatter", mode: "markers", name: "independent noise", x,
       y: views.map((v) => v.influence_noise), marker: { symbol: "line-ew", size: 12,
         line: { color: COLOUR.ink, width: 2.4 } },
-      hovertemplate: "noise would give %{y:.2f}<extra></extra>" }],
+      hovertemplate: "expected from noise: %{y:.2f}<extra></extra>" }],
     layout: { bargap: 0.25, barmode: "overlay", xaxis: { ...views_axis(views),
       categoryorder: "array", categoryarray: x },
     yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
   };
 }
 
-/** Too many views for bars: a point each. */
+/** For many views: a point per view instead of bars. */
 function influence_cloud(views, far) {
   const stands_out = (v) => v.influence > far * v.influence_noise;
   const points = (name, color, list) => ({ type: "scatter", mode: "markers", name,
@@ -83,12 +81,12 @@ function influence_cloud(views, far) {
   const end = Math.max(...views.map((v) => v.influence_noise));
   return {
     data: [points("view", COLOUR.blue, views.filter((v) => !stands_out(v))),
-      points("view that stands out", COLOUR.red, views.filter(stands_out)),
-      { type: "scatter", mode: "lines", name: "as noise gives", x: [0, end], y: [0, end],
+      points("view with high influence", COLOUR.red, views.filter(stands_out)),
+      { type: "scatter", mode: "lines", name: "expected from noise", x: [0, end], y: [0, end],
         line: { color: COLOUR.ink, width: 1.4, dash: "dot" }, hoverinfo: "skip" }]
       .filter((trace) => trace.x.length),
     layout: { hovermode: "closest",
-      xaxis: axis("what independent noise gives, standard deviations", { rangemode: "tozero" }),
+      xaxis: axis("expected from independent noise, standard deviations", { rangemode: "tozero" }),
       yaxis: axis("influence, standard deviations", { rangemode: "tozero" }) },
   };
 }
@@ -96,9 +94,9 @@ function influence_cloud(views, far) {
 function rms_figure(rig) {
   const views = rig.view_influence;
   const whole = rig.calibration?.rms_px;
-  return figure("Residual of every view", "Root mean square residual a coordinate; the line is that"
-    + " of all views. A view may fit well and still pull hard, and the other way round.",
-    "Residual of every view; the table below has numbers.", 300, () => ({
+  return figure("Residual of every view", "Root mean square residual per coordinate; line: all"
+    + " views. A view with a small residual may still have a large influence, and vice versa.",
+    "Residual of every view; values are in the table below.", 300, () => ({
       data: [{ type: "bar", name: "rms", x: views.map(view_name), y: views.map((v) => v.rms_px),
         marker: { color: COLOUR.grey }, hovertemplate: "%{x}: %{y:.3f} px<extra></extra>" }],
       layout: { bargap: views.length > MOST_BARS ? 0 : 0.25, xaxis: views_axis(views),
@@ -114,23 +112,23 @@ function views_table(views) {
   const rows = [...views].sort((a, b) => b.influence / b.influence_noise
     - a.influence / a.influence_noise).slice(0, most);
   const caption = (views.length > most ? `The ${most} of ${count(views.length)} views` : "Views")
-    + " by influence over what noise would give. Leverage: how many parameters' worth of"
-    + " information the view brings (all views together: the number of parameters). Best known"
-    + " direction: the view's share of all that is known there; near 100 % it stands alone. If left"
-    + " out: how far the estimate would move, its information gone too, and which parameter most"
-    + " (in its honest σ).";
+    + " sorted by influence relative to noise. Leverage: information of the view in units of"
+    + " parameters (all views together: the number of parameters). Best determined direction: the"
+    + " view's fraction of the information in that direction; near 100 % no other view"
+    + " contributes. If removed: change of the estimate without the view and its information, and"
+    + " the parameter that changes most (in its honest σ).";
   return table(caption, [
     { head: "Frame", text: true, cell: (v) => v.images?.length
       ? `${v.frame}: ${v.images.join(", ")}` : String(v.frame) },
     { head: "Corners", cell: (v) => count(v.corners) },
     { head: "RMS", small: "px", cell: (v) => significant(v.rms_px, 3) },
     { head: "Influence", cell: (v) => significant(v.influence, 3) },
-    { head: "Noise gives", cell: (v) => significant(v.influence_noise, 3) },
+    { head: "Expected", small: "from noise", cell: (v) => significant(v.influence_noise, 3) },
     { head: "Ratio", cell: (v) => significant(ratio(v.influence, v.influence_noise), 2) },
     { head: "Leverage", cell: (v) => significant(v.leverage, 3) },
-    { head: "Best known", small: "direction", cell: (v) => percent(v.largest_share, 0) },
-    { head: "If left out", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },
-    { head: "Moves most", text: true, cell: ({ largest_move: m }) => m
+    { head: "Best determined", small: "direction", cell: (v) => percent(v.largest_share, 0) },
+    { head: "If removed", small: "bound's σ", cell: (v) => significant(v.influence_left_out, 3) },
+    { head: "Largest change", text: true, cell: ({ largest_move: m }) => m
       ? `${m.name} by ${m.sigmas > 0 ? "+" : ""}${fixed(m.sigmas, 2)} σ` : DASH },
   ], rows);
 }

@@ -1067,7 +1067,7 @@ class Simulation(Case):
 
 
 class Study(Case):
-    def study(self, trials=60):
+    def study(self, trials=24):
         file = self.folder / 's.toml'
         file.write_text(f'[study]\ntrials = {trials}\nprotocol = "near_path"\n[map]\n'
                         'spacing_m = 2\n[sweep]\n"sources.calibration" = [0.1, 10]\n')
@@ -1097,7 +1097,7 @@ class Study(Case):
         self.assertTrue(0 <= comparison['mcnemar_p'] <= 1)
         self.assertEqual(comparison['p_value_holm'], comparison['p_value'])  # it is the only one
         counts = [comparison[key] for key in ('both', 'only_a', 'only_b', 'neither')]
-        self.assertEqual(sum(counts), 60)
+        self.assertEqual(sum(counts), 24)
         for i in range(2):
             self.works('study', file, '-o', self.folder / f'part{i}', '--shard', f'{i}/2', '-q')
         merged = self.works('study', 'merge', self.folder / 'part0', self.folder / 'part1', '-o',
@@ -1185,7 +1185,7 @@ class Study(Case):
         self.assertIn('blocks are missing', done.stderr)
 
     def test_killed_and_resumed(self):
-        file = self.study(200)
+        file = self.study(48)
         running = subprocess.Popen([PROGRAM, 'study', file, '-o', self.folder / 'killed',
                                     '--threads', '1'], stderr=subprocess.PIPE, text=True)
         for line in running.stderr:
@@ -1195,7 +1195,7 @@ class Study(Case):
         running.wait()
         running.stderr.close()
         resumed = self.works('study', file, '-o', self.folder / 'killed', '--json')
-        self.assertRegex(resumed.stderr, r': 0 of ([1-9]|1[0-3]),')  # of 14; one or more were kept
+        self.assertRegex(resumed.stderr, r': 0 of ([1-9]|1[01]),')  # of 12; one or more were kept
         whole = self.works('study', file, '-o', self.folder / 'whole', '--json')
         self.assertEqual(self.untimed(resumed.stdout), self.untimed(whole.stdout))
 

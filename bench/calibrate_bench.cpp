@@ -7,7 +7,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/simulated_board.h"
 #include "datasets/shipped.h"
 

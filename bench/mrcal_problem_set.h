@@ -5,7 +5,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"

@@ -8,7 +8,6 @@
 #include "datasets/shipped.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
-#include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/study/ceiling.h"
 #include "sim/visibility.h"

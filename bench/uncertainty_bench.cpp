@@ -12,7 +12,7 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/covariance_estimators.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"

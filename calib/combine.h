@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
-#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
 namespace vernier {
@@ -50,27 +48,10 @@ struct Combination {
 /// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
 /// several files counts once, and one that is another input's calibration not at all). Before it is
 /// taken in, every input is compared with all before it:
-/// of pairs, the prior's offset (prior_consistency.h); of calibrations, their difference
+/// of pairs, the prior's offset (calib/estimate/prior_consistency.h); of calibrations, their difference
 /// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
 /// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
 /// lens models than the first.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
-
-/// Evidence of one input, its knowledge of the rig as a prior where it has no other.
-JointEvidence evidence_of(const CombineInput& input);
-
-/// The information filter of Thacker and Mayhew (1991): batch after batch, what is known is kept as
-/// a mean and a covariance only, linearised where each batch left it.
-struct InformationFilterResult {
-  Rig rig;
-  Covariance covariance;        ///< the bound that the filter believes
-  double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
-  std::string worst_parameter;  ///< … in that one's bound, and of which parameter
-  double min_sigma_ratio = 1;   ///< smallest of its standard deviations over the batch's …
-  std::string min_parameter;    ///< … and of which parameter
-};
-InformationFilterResult information_filter(const std::vector<CombineInput>& inputs,
-                                           const Combination& batch,
-                                           const CombineOptions& options = {});
 
 }  // namespace vernier

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/held_parameters.h"
-#include "calib/observability.h"
+#include "calib/data_and_prior.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -74,15 +72,12 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const JointOptions& options = {},
                                       const std::string& place = "");
 
-/// Whether pairs and prior agree (calib/prior_consistency.h), of a calibration from both; where
+/// Whether pairs and prior agree (calib/estimate/prior_consistency.h), of a calibration from both; where
 /// parameters that the prior knows were held, it is the prior given these values. Nothing (p 1)
 /// where the prior does not know all that is free. The calibration may have used the prior with
 /// standard deviations `looseness` times as large.
 PriorConsistency consistency_with(const GaussianRigPrior& prior,
                                   const RigEstimate& estimate,
                                   double looseness = 1);
-
-/// The parameters that `prior` does not name, held where its rig has them.
-std::vector<HeldParameter> held_by(const GaussianRigPrior& prior);
 
 }  // namespace vernier

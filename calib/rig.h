@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,18 @@ Eigen::VectorXd difference(const Rig& to, const Rig& from);
 /// Index of the first intrinsic parameter of a camera, and of its pose (camera >= 1).
 int intrinsics_index(const Rig& rig, int camera);
 int pose_index(const Rig& rig, int camera);
+
+/// A camera and where it is, before the rig's frame is chosen.
+struct PlacedCamera {
+  Camera camera;
+  Pose T_camera_reference;
+};
+
+/// The rig in the frame of the first camera: T_i_first = T_i_reference T_first_reference⁻¹.
+/// Cameras without a name, or with another's, become left, right, camera2 …
+Rig rig_of(std::vector<PlacedCamera> cameras);
+
+/// left, right, camera2 …: the names of cameras that have none.
+std::string default_camera_name(std::size_t index);
 
 }  // namespace vernier

@@ -46,22 +46,11 @@ struct RigDifference {
   double p_value = 1;  ///< of a d² this large or larger
 };
 
-/// Throws Error (naming `place_b`) where the rigs are not of the same cameras: their number, their
-/// names or their image sizes.
-void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b);
-
-/// Throws Error as above, or where a covariance is not one of its rig's parameters.
+/// Throws Error where the rigs are not of the same cameras (their number, their names or their
+/// image sizes), or where a covariance is not one of its rig's parameters.
 RigDifference rig_difference(const Rig& a,
                              const Covariance& covariance_a,
                              const Rig& b,
                              const Covariance& covariance_b);
-
-/// How many views (of one camera in one frame) of `a` are the same image in `b`: the pixels of the
-/// corners that both found are the same, or the image's name is and they lie within 2 px (rms, per
-/// coordinate).
-int shared_views(const CalibrationEvidence& a,
-                 const Rig& rig_a,
-                 const CalibrationEvidence& b,
-                 const Rig& rig_b);
 
 }  // namespace vernier

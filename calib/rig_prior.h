@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct RigPrior {
 /// What is known of a rig from elsewhere: `covariance` is over the parameters it names, any subset
 /// of those of `rig`, whose other values say nothing. Over a whole rotation it is in the left
 /// tangent; over a part of one it is of these components of the rotation vector, as held ones are
-/// (calib/held_parameters.h), and says nothing of the others.
+/// (HeldParameter), and says nothing of the others.
 struct GaussianRigPrior {
   Rig rig;
   Covariance covariance;
@@ -38,6 +39,15 @@ Covariance full_covariance(const GaussianRigPrior& known);
 /// semi-definite, naming the direction, and where it is singular: a direction known exactly is to
 /// be held instead.
 RigPrior rig_prior(const Rig& like, const GaussianRigPrior& known);
+
+/// A parameter of the rig that is not estimated. A component of a rotation is held as that
+/// component of the rotation vector.
+struct HeldParameter {
+  std::string name;  ///< such as "left.ax" (see parameter_names)
+  /// Nothing: ax 1, the centre in the middle of the image, no distortion; a focal length or a part
+  /// of a pose where the start has it.
+  std::optional<double> value;
+};
 
 /// The prior of single parameters, independent of each other.
 struct ParameterPrior {

@@ -45,4 +45,15 @@ std::optional<PointTriangulation> triangulate_point_with_jacobian(const Rig& rig
 /// where it is not in front of both.
 std::optional<PixelPair> pixel_pair(const Rig& rig, const Eigen::Vector3d& x_m, int other = 1);
 
+/// Depth where the rays of two pixels pass nearest each other under a rig; not positive where they
+/// part. Throws Error unless the rig is a pair.
+double triangulated_depth_m(const Rig& rig,
+                            const Eigen::Vector2d& left_px,
+                            const Eigen::Vector2d& right_px);
+
+/// The same, or nothing where the rig has no ray for one of the pixels.
+std::optional<double> try_triangulated_depth_m(const Rig& rig,
+                                               const Eigen::Vector2d& left_px,
+                                               const Eigen::Vector2d& right_px);
+
 }  // namespace vernier

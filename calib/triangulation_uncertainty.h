@@ -4,9 +4,13 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
+#include "calib/interval.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
 #include "calib/triangulation.h"
 
 namespace vernier {
@@ -57,5 +61,24 @@ class TriangulationUncertainty {
   bool stabilised_ = false;
   Eigen::MatrixXd covariance_;  ///< of the rig, then (stabilised) of the boards' motion
 };
+
+/// How well a pair knows the depth of a point on the left optical axis, as far as its calibration
+/// decides (no matching error).
+struct DepthUncertainty {
+  double range_m = 0;
+  double sigma_linear_m = 0;      ///< J C Jᵀ
+  double sigma_sampled_m = 0;     ///< over the draws with a positive depth
+  double non_physical_share = 0;  ///< draws in which the rays do not meet in front of the rig
+  /// 2.5 and 97.5 % over all draws; those in which the rays part count as beyond every depth, so an
+  /// end can be infinite.
+  Interval interval_95_m{0, 0};
+};
+
+/// Linear and sampled, side by side: the pixels are those of the estimate, the rig that reads them
+/// is drawn. Depth is not linear in the parameters, so trust the sampled one where they part.
+/// Throws Error unless ranges are above 0 and finite, and samples at least 2.
+std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
+                                                const std::vector<double>& ranges_m,
+                                                const SamplingOptions& options = {});
 
 }  // namespace vernier

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/rig.h"
@@ -12,15 +13,33 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
-#include "stereo/segment.h"
 
 namespace vernier::sim {
+
+/// How far from the recorded route queries are asked. Worth more than any other setting, so it is
+/// part of every result.
+enum class QueryProtocol {
+  near_path,  ///< ± 0.1 m across the route, ± 5°
+  path,       ///< ± 0.3 m, ± 15°
+  anywhere,   ///< ± 0.6 m, any heading
+};
+
+std::string_view name(QueryProtocol protocol);
+/// Throws Error for a name that is none of near_path, path, anywhere.
+QueryProtocol query_protocol(std::string_view name);
+
+/// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
+/// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place
+/// from the route. Throws Error where 1000 draws find no place.
+localise::Pose2D draw_query(const Visibility& visibility,
+                            QueryProtocol protocol,
+                            double eye_height_m,
+                            std::uint64_t seed,
+                            std::uint32_t trial);
 
 /// Which rig the map's recorder was told.
 enum class MapRig {
@@ -39,15 +58,6 @@ struct ExperimentSettings {
   bool knows_endpoint_sigma = false;  ///< the estimator is told sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
-
-/// The end-point error that the estimator reckons with: 0.15 px, or max(0.1 px, psi_g) where it
-/// knows psi_g.
-double told_endpoint_sigma_px(const ExperimentSettings& settings);
-
-/// The sensed segments in space, in the left camera's frame of the rig that the estimator is told.
-std::vector<stereo::SpaceSegment> reconstruct(const Rig& told,
-                                              const StereoObservation& sighting,
-                                              const ExperimentSettings& settings);
 
 /// One localisation trial: where the robot was, what was answered, and what that cost.
 struct TrialResult {

@@ -8,7 +8,6 @@
 
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
 #include "stereo/rectification.h"

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "localise/place.h"
+
 namespace vernier::sim {
 
 /// A straight edge of the wire frame, in metres, z up. `object` says what it belongs to.
@@ -91,5 +93,25 @@ struct WorldExtent {
   Eigen::Vector3d low_m, high_m;
 };
 WorldExtent extent(const World& world);
+
+/// A point of a route and the direction of travel there.
+struct RoutePoint {
+  localise::Pose2D pose;
+  double leg_position_m = 0;  ///< from the start of its leg
+  int leg = 0;
+};
+
+/// Length of all legs, metres.
+double route_length_m(const std::vector<RouteLeg>& route);
+
+/// The point at `s_m` metres along all legs, one after another (clamped to the route's ends).
+RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m);
+
+/// Places to record a map at: every leg divided evenly into steps of at most `spacing_m`, the
+/// start included and the end left to the next leg. With `headings` = 0 one a place, looking
+/// along the route; else that many all around. Throws Error for an empty route or spacing <= 0.
+std::vector<localise::Pose2D> map_poses(const std::vector<RouteLeg>& route,
+                                        double spacing_m,
+                                        int headings = 0);
 
 }  // namespace vernier::sim

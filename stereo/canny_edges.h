@@ -2,12 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 
 namespace vernier::stereo {
+
+/// A point of an edge in an image, one a pixel at most.
+struct EdgePoint {
+  int x = 0, y = 0;          ///< its pixel, where the gradient is the largest across the edge
+  Eigen::Vector2f pixel_px;  ///< the edge itself, on the normal through that pixel's centre
+  float row_x_px = 0;        ///< where the edge crosses row y; within 1.5 px of x
+  Eigen::Vector2f normal;    ///< unit, towards the brighter side
+  float strength = 0;        ///< gradient, grey levels a pixel
+  float sigma_px = 0;        ///< standard deviation along the normal, from the image's noise
+  int string = 0;            ///< connected edge that it is part of
+};
 
 struct CannyOptions {
   double scale_px = 1.0;   ///< σ of the Gaussian that the gradient is taken behind

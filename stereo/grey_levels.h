@@ -25,4 +25,14 @@ struct GreyLevels {
 /// Error for what is no image or is cut off.
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
+/// Two images of which every row shows the same epipolar plane.
+struct RectifiedPair {
+  GreyLevels left, right;
+};
+
+/// Disparities u_left − u_right that are searched, both ends included.
+struct DisparityRange {
+  int min_px = 0, max_px = 64;
+};
+
 }  // namespace vernier::stereo

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 
@@ -45,20 +45,6 @@ struct MatcherScore {
   int stated = 0;
   double coverage_95 = 0, z_rms = 0;
 };
-
-/// Whether an edge is one of those that are asked about: its truth is known, it is not too near to
-/// the row nor to the border.
-bool is_scored(const EdgePoint& edge,
-               const TruthAtEdge& truth,
-               int width_px,
-               const EvaluationOptions& options);
-
-/// Whether the right image does not show an edge, by the rule.
-bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule);
-
-/// Found less true disparity; at a step of the truth by the rule `either` its size, to the nearest
-/// that counts. 0 between the point's and its crossing's (TruthAtEdge::crossing_px).
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule);
 
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/joint_calibration.h"
+#include "calib/estimate/held_parameters.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,11 +21,11 @@
 #include "calib/calibration/pair_checks.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
-#include "calib/observability.h"
+#include "calib/estimate/observability.h"
+#include "calib/estimate/prior_consistency.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -282,18 +283,6 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
                            covariance_of_free(*estimate.covariance_mvb, rig, held),
                            covariance_of_free(estimate.covariance->matrix, rig, held),
                            clusters_of(estimate), looseness);
-}
-
-std::vector<HeldParameter> held_by(const GaussianRigPrior& prior) {
-  std::vector<HeldParameter> held;
-  const std::vector<std::string> names = parameter_names(prior.rig);
-  const Eigen::VectorXd a = parameters(prior.rig);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& known = prior.covariance.names;
-    if (std::find(known.begin(), known.end(), names[i]) != known.end()) continue;
-    held.push_back({names[i], a[static_cast<Eigen::Index>(i)]});
-  }
-  return held;
 }
 
 JointCalibration calibrate_jointly(const JointEvidence& evidence,

@@ -14,9 +14,10 @@
 
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/opencv_models.h"
-#include "calib/prior_consistency.h"
+#include "calib/estimate/prior_consistency.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 

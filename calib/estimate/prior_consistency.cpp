@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/prior_consistency.h"
+#include "calib/estimate/prior_consistency.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "calib/base/decompositions.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
 #include "calib/statistics/distributions.h"
 
-namespace vernier {
-
-using namespace internal;
+namespace vernier::internal {
 
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
@@ -65,4 +64,4 @@ PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
   return agreement;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -17,8 +17,8 @@
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/fisheye4.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 

@@ -44,7 +44,7 @@ ReducedNormalEquations equations_with_warp(const BoardObservations& observations
 /// Throws Error where the views say nothing about it.
 ReducedNormalEquations without_warp(const ReducedNormalEquations& equations);
 
-/// The equations of z where the parameters move by E z (calib/held_parameters.h).
+/// The equations of z where the parameters move by E z (calib/estimate/held_parameters.h).
 ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E);
 

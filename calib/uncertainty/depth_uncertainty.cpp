@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/depth_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,10 +9,10 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "calib/uncertainty/sampled_propagation.h"
 
 namespace vernier {
@@ -28,17 +27,6 @@ void check_pair(const Rig& rig) {
               "give a rig of two");
 }
 
-/// Depth of the left ray where it passes nearest the right one.
-double depth_of(const Rig& rig, const Eigen::Vector3d& a, const Eigen::Vector3d& right_ray) {
-  const Pose T_left_right = rig.T_camera_first[1].inverse();
-  const Eigen::Vector3d b = T_left_right.R * right_ray;
-  // least squares for λ a = t + μ b
-  Eigen::Matrix<double, 3, 2> A;
-  A << a, -b;
-  const Eigen::Vector2d scale = (A.transpose() * A).ldlt().solve(A.transpose() * T_left_right.t);
-  return scale[0] * a.z();
-}
-
 void check_ranges(const std::vector<double>& ranges_m, int samples) {
   for (const double range : ranges_m) {
     if (range > 0 && std::isfinite(range)) continue;
@@ -49,23 +37,6 @@ void check_ranges(const std::vector<double>& ranges_m, int samples) {
 }
 
 }  // namespace
-
-double triangulated_depth_m(const Rig& rig,
-                            const Eigen::Vector2d& left_px,
-                            const Eigen::Vector2d& right_px) {
-  check_pair(rig);
-  return depth_of(rig, unproject(rig.cameras[0], left_px), unproject(rig.cameras[1], right_px));
-}
-
-std::optional<double> try_triangulated_depth_m(const Rig& rig,
-                                               const Eigen::Vector2d& left_px,
-                                               const Eigen::Vector2d& right_px) {
-  check_pair(rig);
-  const auto left = try_unproject(rig.cameras[0], left_px);
-  const auto right = try_unproject(rig.cameras[1], right_px);
-  if (!left || !right) return std::nullopt;
-  return depth_of(rig, *left, *right);
-}
 
 std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
                                                 const std::vector<double>& ranges_m,

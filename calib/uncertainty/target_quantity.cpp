@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/triangulation.h"
 
 namespace vernier::internal {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/combine.h"
+#include "calib/calibration/information_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,9 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/formats/pairs_file.h"
 #include "calib/joint_calibration.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"

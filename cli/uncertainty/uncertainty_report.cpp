@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/estimate/rig_pair.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"

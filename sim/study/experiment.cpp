@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
+#include "sim/study/told_rig.h"
 
 #include <time.h>
 
@@ -15,21 +16,16 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
-#include "sim/route.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
+#include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
-#include "stereo/reconstruction/triangulate.h"
-#include "stereo/segment.h"
+#include "sim/world.h"
 
 namespace vernier::sim {
 
 using namespace localise;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace internal;
 
 namespace {
 
@@ -55,18 +51,6 @@ PlaceView interpret(const Rig& told,
 }
 
 }  // namespace
-
-double told_endpoint_sigma_px(const ExperimentSettings& settings) {
-  return settings.knows_endpoint_sigma ? std::max(0.1, settings.sources.endpoint_sigma_px)
-                                       : TriangulationOptions().endpoint_sigma_px;
-}
-
-std::vector<SpaceSegment> reconstruct(const Rig& told,
-                                      const StereoObservation& sighting,
-                                      const ExperimentSettings& settings) {
-  const TriangulationOptions options{.endpoint_sigma_px = told_endpoint_sigma_px(settings)};
-  return triangulate(told, sighting.segments, options);
-}
 
 MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,

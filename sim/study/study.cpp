@@ -29,11 +29,11 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
 #include "sim/study/success_interval.h"
+#include "sim/study/told_rig.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {

@@ -13,7 +13,7 @@
 #include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"

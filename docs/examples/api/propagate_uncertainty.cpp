@@ -4,11 +4,11 @@
 #include <limits>
 #include <string>
 
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 
 int main(int, char** argv) {

@@ -11,6 +11,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/information_filter.h"
 #include "calib/camera.h"
 #include "calib/combine.h"
 #include "calib/estimate/simulated_pairs.h"

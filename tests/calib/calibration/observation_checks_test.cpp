@@ -10,7 +10,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"

@@ -7,7 +7,7 @@
 #include "calib/board_observations.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"

@@ -8,9 +8,8 @@
 #include <string>
 
 #include "calib/error.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"

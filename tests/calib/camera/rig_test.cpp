@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {

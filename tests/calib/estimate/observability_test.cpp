@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/observability.h"
+#include "calib/estimate/observability.h"
+#include "calib/data_and_prior.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_difference.h"
+#include "calib/estimate/same_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +13,7 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"

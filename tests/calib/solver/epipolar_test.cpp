@@ -6,8 +6,8 @@
 
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/estimate/simulated_pairs.h"
-#include "calib/held_parameters.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"

@@ -6,8 +6,8 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/held_parameters.h"
-#include "calib/radial1.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"

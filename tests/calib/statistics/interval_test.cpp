@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "calib/depth_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "calib/validation/monte_carlo_check.h"
 

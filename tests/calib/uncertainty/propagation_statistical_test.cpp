@@ -6,7 +6,6 @@
 
 #include "calib/calibrate.h"
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_estimate.h"

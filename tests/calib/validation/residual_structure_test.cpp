@@ -8,8 +8,7 @@
 
 #include "calib/calibrate.h"
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"

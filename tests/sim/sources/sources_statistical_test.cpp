@@ -5,8 +5,8 @@
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
+#include "sim/uncertainty_source.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/small_office.h"
 

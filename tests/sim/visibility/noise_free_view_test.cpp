@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/noise_free_view.h"
+#include "sim/visibility/stretch_feature.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,6 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"

@@ -9,7 +9,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
@@ -18,8 +18,8 @@
 #include "calib/statistics/random.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/triangulate.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/rectification_covariance.h"
-#include "stereo/rectified_geometry.h"
 #include "stereo/segment.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/numeric_jacobian.h"

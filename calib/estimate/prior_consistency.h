@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+#include "calib/data_and_prior.h"
 
-/// Whether new data and what was known before them can be of one rig.
-struct PriorConsistency {
-  double chi2 = 0;      ///< squared, in standard deviations of agreement, over the directions seen
-  int dof = 0;          ///< directions that the data improved
-  int clusters = 0;     ///< that the scatter was estimated from; 0: it is known
-  double p_value = 1;   ///< of a χ² this large or larger, by the law below
-  double in_sigma = 0;  ///< along the direction that disagrees most …
-  std::string description;  ///< … which is this
-};
+namespace vernier::internal {
 
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
 /// and C the honest covariance of the estimate, all over the same directions, the offset of a
@@ -43,4 +35,4 @@ PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    int clusters = 0,
                                    double looseness = 1);
 
-}  // namespace vernier
+}  // namespace vernier::internal

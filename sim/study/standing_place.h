@@ -2,27 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <Eigen/Core>
 #include <string>
-#include <string_view>
 
 #include "localise/place.h"
+#include "sim/experiment.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
-namespace vernier::sim {
+namespace vernier::sim::internal {
 
-/// How far from the recorded route queries are asked. Worth more than any other setting, so it is
-/// part of every result.
-enum class QueryProtocol {
-  near_path,  ///< ± 0.1 m across the route, ± 5°
-  path,       ///< ± 0.3 m, ± 15°
-  anywhere,   ///< ± 0.6 m, any heading
-};
-
-std::string_view name(QueryProtocol protocol);
-/// Throws Error for a name that is none of near_path, path, anywhere.
-QueryProtocol query_protocol(std::string_view name);
+inline constexpr double robot_radius_m = 0.12;
+inline constexpr double robot_top_m = 0.2;  ///< above its camera
 
 /// Half the span across the route (metres) and of heading (radians).
 struct ProtocolSpan {
@@ -42,13 +33,4 @@ std::string standing_fault(const Visibility& visibility,
                            const localise::Pose2D& pose,
                            double eye_height_m);
 
-/// Where trial `trial` asks: uniform along the route, across it and in heading; drawn again (from
-/// the same stream) where a robot of 0.12 m radius could not stand or a surface parts the place
-/// from the route. Throws Error where 1000 draws find no place.
-localise::Pose2D draw_query(const Visibility& visibility,
-                            QueryProtocol protocol,
-                            double eye_height_m,
-                            std::uint64_t seed,
-                            std::uint32_t trial);
-
-}  // namespace vernier::sim
+}  // namespace vernier::sim::internal

@@ -56,7 +56,7 @@ void all_sources(benchmark::State& state) {
   const Sensor sensor(rig().rig, {});
   const NoiseFreeView seen = look(visibility(), rig().rig, places()[40]);
   std::uint32_t trial = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, 1, trial++, 0));
+  for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, {.trial = trial++}));
 }
 
 void aliases_of_a_pose(benchmark::State& state) {

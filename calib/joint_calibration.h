@@ -34,6 +34,7 @@ struct JointOptions {
   bool reject_outliers = true;  ///< of the pairs
   /// Noise is known to be white (simulated): the covariance is the bound.
   bool white_noise = false;
+  std::string place;  ///< what messages call the pairs, such as their file; empty: "pairs"
 };
 
 /// A rig from all of it, with what the pairs did to what was known before them.
@@ -65,16 +66,15 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 
 /// The calibration of a pair of cameras from matched corners of any scene and what was known
 /// before, with its input looked at first (check_pairs, check_sides, check_scene); starts at the
-/// prior's rig. A parameter that the prior does not name is known exactly. `place` names the pairs
-/// in messages. Throws Error where there are fewer pairs than free parameters.
+/// prior's rig. A parameter that the prior does not name is known exactly. Throws Error where there
+/// are fewer pairs than free parameters.
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const GaussianRigPrior& prior,
-                                      const JointOptions& options = {},
-                                      const std::string& place = "");
+                                      const JointOptions& options = {});
 
-/// Whether pairs and prior agree (calib/estimate/prior_consistency.h), of a calibration from both; where
-/// parameters that the prior knows were held, it is the prior given these values. Nothing (p 1)
-/// where the prior does not know all that is free. The calibration may have used the prior with
+/// Whether pairs and prior agree (calib/estimate/prior_consistency.h), of a calibration from both;
+/// where parameters that the prior knows were held, it is the prior given these values. Nothing (p
+/// 1) where the prior does not know all that is free. The calibration may have used the prior with
 /// standard deviations `looseness` times as large.
 PriorConsistency consistency_with(const GaussianRigPrior& prior,
                                   const RigEstimate& estimate,

@@ -47,13 +47,9 @@ std::optional<PixelPair> pixel_pair(const Rig& rig, const Eigen::Vector3d& x_m, 
 
 /// Depth where the rays of two pixels pass nearest each other under a rig; not positive where they
 /// part. Throws Error unless the rig is a pair.
-double triangulated_depth_m(const Rig& rig,
-                            const Eigen::Vector2d& left_px,
-                            const Eigen::Vector2d& right_px);
+double triangulated_depth_m(const Rig& rig, const PixelPair& pair);
 
 /// The same, or nothing where the rig has no ray for one of the pixels.
-std::optional<double> try_triangulated_depth_m(const Rig& rig,
-                                               const Eigen::Vector2d& left_px,
-                                               const Eigen::Vector2d& right_px);
+std::optional<double> try_triangulated_depth_m(const Rig& rig, const PixelPair& pair);
 
 }  // namespace vernier

@@ -79,6 +79,13 @@ struct TrialResult {
   bool success() const { return answered() && error_m <= 1.0; }
 };
 
+/// Trials that share a recorded map: first, first + 1 …
+struct TrialBlock {
+  std::uint32_t block = 0;  ///< which map
+  std::uint32_t first = 0;
+  std::uint32_t count = 1;
+};
+
 /// The noise-free looks of a map's places: they depend on world, true rig and mount alone, so
 /// blocks and cells that differ in noise share them.
 using MapViews = std::vector<NoiseFreeView>;
@@ -97,12 +104,10 @@ class LocalisationExperiment {
                          std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings);
 
-  /// The trials first, first + 1 … of one block: the map is recorded once, with draws of the
+  /// The trials of one block: the map is recorded once, with draws of the
   /// block's own. With MapRig::same the map is recorded again for every trial. Results depend on
   /// (settings, block, trial) only.
-  std::vector<TrialResult> run_block(std::uint32_t block,
-                                     std::uint32_t first,
-                                     std::uint32_t count) const;
+  std::vector<TrialResult> run_block(const TrialBlock& block) const;
 
   /// The map as recorded in a block, told `rig`.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;

@@ -58,14 +58,18 @@ struct CurvePoint {
   double density = 0, bad_1 = 0, mismatch = 0;
 };
 
-/// The curve as the least confident matches are left out one by one, at `points` densities evenly
+struct DensityCurveOptions {
+  int points = 20;
+  EvaluationOptions scored;  ///< which edges count, and what is right
+};
+
+/// The curve as the least confident matches are left out one by one, at so many densities evenly
 /// from all to none, the densest first. Of equal confidences all or none are left out.
 std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       const std::vector<EdgeDisparity>& found,
                                       const std::vector<TruthAtEdge>& truth,
                                       int width_px,
-                                      int points,
-                                      const EvaluationOptions& options = {});
+                                      const DensityCurveOptions& options = {});
 
 /// bad_1 of a curve at a density, linearly between its points; that of the nearer end beyond them.
 double bad_1_at(const std::vector<CurvePoint>& curve, double density);

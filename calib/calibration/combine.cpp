@@ -103,17 +103,18 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
-                                    const JointOptions& options) {
+                                    JointOptions options) {
+  options.place = input.name;
   // Against a prior so much wider that, wrong, it does not hold the rig away from the pairs; as it
   // is where they do not determine the rig against so little knowledge.
   constexpr double wider = 10;
   GaussianRigPrior loose = before;
   loose.covariance.matrix *= wider * wider;
   try {
-    const JointCalibration with = calibrate_from_pairs(pairs, loose, options, input.name);
+    const JointCalibration with = calibrate_from_pairs(pairs, loose, options);
     return consistency_with(before, with.estimate, wider);
   } catch (const Error&) {
-    const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
+    const JointCalibration with = calibrate_from_pairs(pairs, before, options);
     return consistency_with(before, with.estimate);
   }
 }

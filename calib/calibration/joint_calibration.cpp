@@ -279,10 +279,11 @@ PriorConsistency consistency_with(const GaussianRigPrior& prior,
     offset -= by_given * (white * moved(given));
     covariance -= by_given * by_given.transpose();
   }
-  return prior_consistency(offset, free_names(rig, held), covariance,
-                           covariance_of_free(*estimate.covariance_mvb, rig, held),
-                           covariance_of_free(estimate.covariance->matrix, rig, held),
-                           clusters_of(estimate), looseness);
+  return prior_consistency(offset, free_names(rig, held),
+                           {.prior = covariance,
+                            .bound = covariance_of_free(*estimate.covariance_mvb, rig, held),
+                            .honest = covariance_of_free(estimate.covariance->matrix, rig, held)},
+                           {.clusters = clusters_of(estimate), .looseness = looseness});
 }
 
 JointCalibration calibrate_jointly(const JointEvidence& evidence,
@@ -337,8 +338,8 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const GaussianRigPrior& prior,
-                                      const JointOptions& options,
-                                      const std::string& place) {
+                                      const JointOptions& options) {
+  const std::string& place = options.place;
   check_pairs(pairs, prior.rig, place);
   JointOptions with_held = options;
   std::vector<std::string> unlisted;

@@ -111,8 +111,10 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   const Eigen::MatrixXd before = prior.information(known, known).inverse();
   PriorConsistency agreement;
   try {
-    agreement = prior_consistency(offset, names, before, bound(known, known), honest(known, known),
-                                  clusters);
+    agreement = prior_consistency(
+        offset, names,
+        {.prior = before, .bound = bound(known, known), .honest = honest(known, known)},
+        {.clusters = clusters});
   } catch (const Error&) {  // a prior that no double can invert says nothing here
     return {};
   }

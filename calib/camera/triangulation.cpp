@@ -151,19 +151,16 @@ std::optional<PixelPair> pixel_pair(const Rig& rig, const Vector3d& x_m, int oth
   return PixelPair{project(rig.cameras[0], x_m), project(rig.cameras[other], x_other)};
 }
 
-double triangulated_depth_m(const Rig& rig,
-                            const Eigen::Vector2d& left_px,
-                            const Eigen::Vector2d& right_px) {
+double triangulated_depth_m(const Rig& rig, const PixelPair& pair) {
   check_two_cameras(rig);
-  return depth_of(rig, unproject(rig.cameras[0], left_px), unproject(rig.cameras[1], right_px));
+  return depth_of(rig, unproject(rig.cameras[0], pair.first_px),
+                  unproject(rig.cameras[1], pair.other_px));
 }
 
-std::optional<double> try_triangulated_depth_m(const Rig& rig,
-                                               const Eigen::Vector2d& left_px,
-                                               const Eigen::Vector2d& right_px) {
+std::optional<double> try_triangulated_depth_m(const Rig& rig, const PixelPair& pair) {
   check_two_cameras(rig);
-  const auto left = try_unproject(rig.cameras[0], left_px);
-  const auto right = try_unproject(rig.cameras[1], right_px);
+  const auto left = try_unproject(rig.cameras[0], pair.first_px);
+  const auto right = try_unproject(rig.cameras[1], pair.other_px);
   if (!left || !right) return std::nullopt;
   return depth_of(rig, *left, *right);
 }

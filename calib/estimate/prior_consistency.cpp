@@ -15,11 +15,10 @@ namespace vernier::internal {
 
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
-                                   const Eigen::MatrixXd& prior,
-                                   const Eigen::MatrixXd& bound,
-                                   const Eigen::MatrixXd& honest,
-                                   int clusters,
-                                   double looseness) {
+                                   const PriorAndEstimate& covariance,
+                                   const PriorConsistencyOptions& options) {
+  const auto& [prior, bound, honest] = covariance;
+  const auto [clusters, looseness] = options;
   constexpr double min_share = 0.05;
   const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
   const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {

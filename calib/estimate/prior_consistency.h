@@ -10,6 +10,18 @@
 
 namespace vernier::internal {
 
+/// The covariances that are compared, all over the same directions.
+struct PriorAndEstimate {
+  Eigen::MatrixXd prior;   ///< C_0 below
+  Eigen::MatrixXd bound;   ///< C_mvb, of the estimate
+  Eigen::MatrixXd honest;  ///< C, of the estimate
+};
+
+struct PriorConsistencyOptions {
+  int clusters = 0;      ///< of data, that the scatter was estimated from; 0: it is known
+  double looseness = 1;  ///< times the prior's standard deviations, of the estimate's prior
+};
+
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
 /// and C the honest covariance of the estimate, all over the same directions, the offset of a
 /// right prior and right data has the covariance
@@ -29,10 +41,7 @@ namespace vernier::internal {
 /// equation. Throws Error where C_0 is singular.
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
-                                   const Eigen::MatrixXd& prior,
-                                   const Eigen::MatrixXd& bound,
-                                   const Eigen::MatrixXd& honest,
-                                   int clusters = 0,
-                                   double looseness = 1);
+                                   const PriorAndEstimate& covariance,
+                                   const PriorConsistencyOptions& options = {});
 
 }  // namespace vernier::internal

@@ -50,14 +50,14 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
   std::vector<DepthUncertainty> result;
   for (const double range : ranges_m) {
     const Eigen::Vector3d x(0, 0, range);
-    const Eigen::Vector2d left = project(rig.cameras[0], x);
-    const Eigen::Vector2d right = project(rig.cameras[1], rig.T_camera_first[1] * x);
+    const PixelPair pair{project(rig.cameras[0], x),
+                         project(rig.cameras[1], rig.T_camera_first[1] * x)};
     DepthUncertainty u{range, 0, 0, 0, {}};
     // J D U √s column by column: central differences along the principal directions
     constexpr double step = 1e-3;
     for (Eigen::Index k = 0; k < factor.cols(); ++k) {
       const auto depth = [&](double s) {
-        return triangulated_depth_m(retract(rig, s * factor.col(k)), left, right);
+        return triangulated_depth_m(retract(rig, s * factor.col(k)), pair);
       };
       u.sigma_linear_m += std::pow(psi_c * (depth(step) - depth(-step)) / (2 * step), 2);
     }
@@ -67,7 +67,7 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
     std::vector<double> depths;
     for (int i = 0; i < samples; ++i) {
       const auto depth = try_triangulated_depth_m(
-          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), left, right);
+          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), pair);
       const bool meets = depth && *depth > 0;
       depths.push_back(meets ? *depth : std::numeric_limits<double>::infinity());
       if (!meets) continue;

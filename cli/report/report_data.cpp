@@ -131,7 +131,7 @@ Json report_view(const Study& study) {
   options.with_corners = true;
   const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);
-  const StereoObservation sighting = sensor.sense(seen, settings.seed, 0, 0);
+  const StereoObservation sighting = sensor.sense(seen, {.seed = settings.seed});
   const Json both = sighting_json(study.rig.rig, seen, sighting);
   // A line counts as mismatched where its true and sensed disparity differ by more than shifts do.
   Json sensed = Json::array();

@@ -113,7 +113,8 @@ void run(const SimulateArguments& options, Session& session) {
   looking.with_corners = true;
   const NoiseFreeView seen = look(visibility, rig.estimate.rig, pose, looking);
   const Sensor sensor(rig.estimate.rig, sources);
-  const StereoObservation sighting = sensor.sense(seen, options.seed, options.trial, 0);
+  const StereoObservation sighting =
+      sensor.sense(seen, {.seed = options.seed, .trial = options.trial});
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
   json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(told)}};

@@ -247,9 +247,9 @@ void run_study(const Study& study, const StudyRun& run) {
     const LocalisationExperiment experiment(
         visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment);
     StoredBlock block{job.key, job.block,
-                      experiment.run_block(static_cast<std::uint32_t>(job.block),
-                                           static_cast<std::uint32_t>(job.first),
-                                           static_cast<std::uint32_t>(job.count))};
+                      experiment.run_block({.block = static_cast<std::uint32_t>(job.block),
+                                            .first = static_cast<std::uint32_t>(job.first),
+                                            .count = static_cast<std::uint32_t>(job.count)})};
     const std::lock_guard lock(mutex);
     store.put(block);
     if (run.progress) run.progress(++done, total);

@@ -117,8 +117,8 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       const std::vector<EdgeDisparity>& found,
                                       const std::vector<TruthAtEdge>& truth,
                                       int width_px,
-                                      int points,
-                                      const EvaluationOptions& options) {
+                                      const DensityCurveOptions& how) {
+  const auto& [points, options] = how;
   check_sizes(edges, found, truth);
   struct Match {
     float confidence;

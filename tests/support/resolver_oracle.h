@@ -31,8 +31,9 @@ inline constexpr double sigma_px = 0.2;
 
 /// Two cameras of one model with enough views for every model.
 inline SimulatedBoard scene(const Rig& rig, int frames = 24, double pixel_sigma_px = sigma_px) {
-  return simulate_board(rig, {9, 7, 0.03}, 7, 0,
-                        {.frames = frames, .pixel_sigma_px = pixel_sigma_px, .distance_m = 0.9});
+  return simulate_board(
+      rig, {9, 7, 0.03},
+      {.seed = 7, .frames = frames, .pixel_sigma_px = pixel_sigma_px, .distance_m = 0.9});
 }
 
 /// Corners left out so that no two views have the same ones.

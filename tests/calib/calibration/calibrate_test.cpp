@@ -21,7 +21,8 @@ class ExactViews : public testing::TestWithParam<const char*> {};
 
 TEST_P(ExactViews, GiveTheTrueRigBack) {
   const Rig truth = test::stereo_rig(camera_model(GetParam()));
-  const SimulatedBoard board = simulate_board(truth, {}, 4, 0, {.frames = 20, .pixel_sigma_px = 0});
+  const SimulatedBoard board =
+      simulate_board(truth, {}, {.seed = 4, .frames = 20, .pixel_sigma_px = 0});
   const RigEstimate estimate =
       calibrate(board.observations, {.model = camera_model(GetParam()), .pixel_sigma_px = 1e-3});
   const Eigen::VectorXd sd = estimate.covariance_mvb->diagonal().cwiseSqrt();
@@ -35,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(Models,
                          testing::Values("pinhole", "radial1", "opencv4", "opencv5"));
 
 TEST(Calibrate, IsTheSameToTheBitTwice) {
-  const auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  const auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   EXPECT_EQ(parameters(calibrate(observations).rig), parameters(calibrate(observations).rig));
 }
 
@@ -44,7 +45,7 @@ TEST(Calibrate, OneCameraAndThreeCameras) {
   rig.cameras.push_back(rig.cameras[0]);
   rig.cameras[2].name = "camera2";
   rig.T_camera_first.push_back({rotation_from_vector({0, 0.05, 0}), {0.15, 0, 0}});
-  const SimulatedBoard three = simulate_board(rig, {}, 6, 0, {.pixel_sigma_px = 0});
+  const SimulatedBoard three = simulate_board(rig, {}, {.seed = 6, .pixel_sigma_px = 0});
   EXPECT_LT(difference(calibrate(three.observations).rig, rig).norm(), 1e-5);
 
   BoardObservations one = three.observations;
@@ -56,7 +57,7 @@ TEST(Calibrate, OneCameraAndThreeCameras) {
 }
 
 TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
-  const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, 6, 0, {.frames = 60});
+  const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, {.seed = 6, .frames = 60});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::clustered);
   // White noise: both say the same within the sandwich's own scatter.
@@ -67,7 +68,7 @@ TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
 }
 
 TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 6, 0, {.frames = 13});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 6, .frames = 13});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
   const Eigen::ArrayXd ratio =
@@ -79,7 +80,7 @@ TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
 }
 
 TEST(Calibrate, TwoViewsAreTooFew) {
-  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   std::erase_if(observations.views, [](const BoardView& view) { return view.frame > 1; });
   try {
     calibrate(observations);
@@ -90,7 +91,7 @@ TEST(Calibrate, TwoViewsAreTooFew) {
 }
 
 TEST(Calibrate, CamerasWithoutACommonFrameAreNamed) {
-  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   std::erase_if(observations.views,
                 [](const BoardView& view) { return (view.frame < 10) != (view.camera == 0); });
   try {

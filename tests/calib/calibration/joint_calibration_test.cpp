@@ -193,8 +193,8 @@ TEST(Combine, TheInformationFilterSaysHowFarItIsFromTheBatch) {
 
 TEST(Combine, BoardsPairsAndDatasheetsGoThroughOneCost) {
   const Rig truth = test::stereo_rig();
-  const SimulatedBoard first = simulate_board(truth, {8, 6, 0.03}, 71);
-  const SimulatedBoard second = simulate_board(truth, {7, 5, 0.04}, 72);
+  const SimulatedBoard first = simulate_board(truth, {8, 6, 0.03}, {.seed = 71});
+  const SimulatedBoard second = simulate_board(truth, {7, 5, 0.04}, {.seed = 72});
   const RigEstimate a = calibrate(first.observations), b = calibrate(second.observations);
   const GaussianRigPrior known = datasheet(truth, 71, 0);
   const PairObservations pairs = simulate_pairs(truth, 73);
@@ -298,7 +298,7 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
 class BadPairs : public testing::Test {
  protected:
   std::string said(const PairObservations& pairs) const {
-    return error_message([&] { calibrate_from_pairs(pairs, known_, {}, "p.csv"); });
+    return error_message([&] { calibrate_from_pairs(pairs, known_, {.place = "p.csv"}); });
   }
   Rig truth_ = test::stereo_rig();
   GaussianRigPrior known_ = datasheet(truth_, 96, 0);
@@ -351,13 +351,13 @@ TEST_F(BadPairs, SoAreBadPriors) {
   GaussianRigPrior bad = known_;
   bad.covariance.matrix(0, 5) = bad.covariance.matrix(5, 0) = 150;  // of variances of 100
   const std::string indefinite =
-      error_message([&] { calibrate_from_pairs(pairs_, bad, {}, "p.csv"); });
+      error_message([&] { calibrate_from_pairs(pairs_, bad, {.place = "p.csv"}); });
   EXPECT_NE(indefinite.find("not positive semi-definite"), std::string::npos) << indefinite;
   EXPECT_NE(indefinite.find("left focal length"), std::string::npos) << indefinite;
   bad = known_;
   bad.covariance.matrix(0, 5) = bad.covariance.matrix(5, 0) = 100;
   const std::string singular =
-      error_message([&] { calibrate_from_pairs(pairs_, bad, {}, "p.csv"); });
+      error_message([&] { calibrate_from_pairs(pairs_, bad, {.place = "p.csv"}); });
   EXPECT_NE(singular.find("singular"), std::string::npos) << singular;
 }
 

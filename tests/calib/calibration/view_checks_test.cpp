@@ -34,11 +34,10 @@ std::string complaint_of(const BoardObservations& observations) {
 class ViewChecks : public testing::TestWithParam<std::uint64_t> {
  protected:
   BoardObservations good_ =
-      simulate_board(test::stereo_rig(),
-                     {},
-                     GetParam(),
-                     0,
-                     {.frames = 13, .pixel_sigma_px = GetParam() % 2 ? 0.2 : 0.5})
+      simulate_board(
+          test::stereo_rig(),
+          {},
+          {.seed = GetParam(), .frames = 13, .pixel_sigma_px = GetParam() % 2 ? 0.2 : 0.5})
           .observations;
 };
 

@@ -45,7 +45,7 @@ Eigen::VectorXd residuals(const SimulatedBoard& board, const Eigen::VectorXd& de
 
 TEST(Covariance, SchurComplementIsTheBlockOfTheFullInverse) {
   const SimulatedBoard board =
-      simulate_board(test::stereo_rig(), {6, 5, 0.04}, 2, 0, {.frames = 8});
+      simulate_board(test::stereo_rig(), {6, 5, 0.04}, {.seed = 2, .frames = 8});
   const int n = parameter_count(board.truth.rig);
   const Eigen::MatrixXd J =
       test::numeric_jacobian([&](const Eigen::VectorXd& d) { return residuals(board, d); },
@@ -64,7 +64,7 @@ TEST(Covariance, SchurComplementIsTheBlockOfTheFullInverse) {
 }
 
 TEST(Covariance, InformationAddsUp) {
-  const SimulatedBoard board = simulate_board(test::stereo_rig(), {}, 2);
+  const SimulatedBoard board = simulate_board(test::stereo_rig(), {}, {.seed = 2});
   const auto whole = reduced_normal_equations(board.observations, board.truth, 0.2);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(16, 16);
   for (int parity = 0; parity < 2; ++parity) {
@@ -85,7 +85,7 @@ TEST(Covariance, InformationAddsUp) {
 
 TEST(Covariance, AFreeDirectionIsNamed) {
   // One frame, fronto-parallel: focal length and distance cannot be told apart.
-  SimulatedBoard board = simulate_board(test::stereo_rig(Pinhole{}), {}, 2, 0, {.frames = 1});
+  SimulatedBoard board = simulate_board(test::stereo_rig(Pinhole{}), {}, {.seed = 2, .frames = 1});
   board.observations.views.pop_back();
   board.truth.rig.cameras.pop_back();
   board.truth.rig.T_camera_first.pop_back();
@@ -137,7 +137,7 @@ TEST(ScaledDecomposition, AHeldParameterStaysHeld) {
 
 /// The board of every frame seen by one row of its corners alone.
 SimulatedBoard rows_of_boards(std::uint64_t seed) {
-  SimulatedBoard board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 1});
+  SimulatedBoard board = simulate_board(test::stereo_rig(), {}, {.seed = seed, .frames = 1});
   for (BoardView& view : board.observations.views) {
     view.ids.resize(9);
     view.pixels_px.resize(9);

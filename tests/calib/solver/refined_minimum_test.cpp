@@ -56,7 +56,7 @@ TEST(SquareRootSystem, SolvesLikeTheDenseLeastSquaresProblem) {
 }
 
 SimulatedBoard stereo_board() {
-  return simulate_board(test::stereo_rig(OpenCv4{}), {9, 6, 0.04}, 7, 0, {.frames = 15});
+  return simulate_board(test::stereo_rig(OpenCv4{}), {9, 6, 0.04}, {.seed = 7, .frames = 15});
 }
 
 TEST(RefinedMinimum, TheScoreVanishesThere) {

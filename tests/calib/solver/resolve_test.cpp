@@ -59,8 +59,9 @@ TEST(Resolver, FramesThatSomeCamerasMissed) {
 TEST(Resolver, OtherPixelsAreAnotherCalibration) {
   const Rig rig = test::stereo_rig(OpenCv4{});
   const SimulatedBoard board = scene(rig);
-  const auto other = simulate_board(rig, {9, 7, 0.03}, 7, 5,
-                                    {.frames = 24, .pixel_sigma_px = 0.2, .distance_m = 0.9});
+  const auto other = simulate_board(
+      rig, {9, 7, 0.03},
+      {.seed = 7, .trial = 5, .frames = 24, .pixel_sigma_px = 0.2, .distance_m = 0.9});
   Eigen::Matrix2Xd pixels(2, 24 * 2 * 63);
   Eigen::Index i = 0;
   for (const BoardView& view : other.observations.views) {

@@ -32,8 +32,8 @@ namespace {
 constexpr double sigma_px = 0.2;
 
 SimulatedBoard first_views(double noise_px, int frames = 8) {
-  return simulate_board(test::stereo_rig(), {}, 11, 0,
-                        {.frames = frames, .pixel_sigma_px = noise_px});
+  return simulate_board(test::stereo_rig(), {},
+                        {.seed = 11, .frames = frames, .pixel_sigma_px = noise_px});
 }
 
 RigEstimate calibrated(const BoardObservations& observations) {

@@ -65,8 +65,8 @@ double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 /// A calibration from ten noisy views with the noise known to be white.
 const RigEstimate& estimate() {
   static const RigEstimate estimate = [] {
-    const SimulatedBoard board = simulate_board(test::stereo_rig(), {6, 5, 0.05}, 7, 0,
-                                                {.frames = 10, .pixel_sigma_px = 0.2});
+    const SimulatedBoard board = simulate_board(test::stereo_rig(), {6, 5, 0.05},
+                                                {.seed = 7, .frames = 10, .pixel_sigma_px = 0.2});
     return calibrate(board.observations, {.pixel_sigma_px = 0.2, .white_noise = true});
   }();
   return estimate;
@@ -79,8 +79,8 @@ class BruteForce : public testing::Test {
   static constexpr double h_px = 0.02;
 
   void SetUp() override {
-    const SimulatedBoard board =
-        simulate_board(test::stereo_rig(), {4, 3, 0.1}, 5, 0, {.frames = 6, .pixel_sigma_px = 0});
+    const SimulatedBoard board = simulate_board(test::stereo_rig(), {4, 3, 0.1},
+                                                {.seed = 5, .frames = 6, .pixel_sigma_px = 0});
     observations_ = board.observations;
     truth_ = board.truth;
   }
@@ -162,8 +162,8 @@ void BruteForce::compare() {
   for (int c = 0; c < 2; ++c) {
     const ProjectionUncertainty ours(joint, c, PointFixedTo::boards);
     const Pose& T = truth_.rig.T_camera_first[c];
-    EXPECT_LT(relative_difference(ours.covariance_of_point(T * x, false), C[c][0]), 1e-5);
-    EXPECT_LT(relative_difference(ours.covariance_of_point(T.R * x, true), C[c][1]), 1e-5);
+    EXPECT_LT(relative_difference(ours.covariance_of_point(T * x), C[c][0]), 1e-5);
+    EXPECT_LT(relative_difference(ours.covariance_of_direction(T.R * x), C[c][1]), 1e-5);
   }
   const auto told = [&](TriangulationFrame frame) {
     return TriangulationUncertainty(joint, frame).at(pair, 0)->calibration;
@@ -228,8 +228,8 @@ Eigen::MatrixXd dense_covariance(const BoardObservations& observations, const Bo
 }
 
 TEST(JointInformation, IsTheInverseOfTheFullNormalMatrixForFlatAndWarpedBoards) {
-  const SimulatedBoard board =
-      simulate_board(test::stereo_rig(), {5, 4, 0.05}, 9, 0, {.frames = 7, .pixel_sigma_px = 0});
+  const SimulatedBoard board = simulate_board(test::stereo_rig(), {5, 4, 0.05},
+                                              {.seed = 9, .frames = 7, .pixel_sigma_px = 0});
   for (const Eigen::Vector2d& warp_m : {Eigen::Vector2d(0, 0), Eigen::Vector2d(8e-4, -5e-4)}) {
     BoardState state = board.truth;
     state.warp_m = warp_m;
@@ -322,8 +322,8 @@ TEST(ProjectionUncertainty, AnHonestCovarianceThatIsAMultipleOfTheBoundScalesEve
 // and P the prior's, an honest covariance C S C + C P C with the first part nine times as large
 // says that the views are three times as noisy.
 TEST(ProjectionUncertainty, APriorIsNotInflatedWithTheViews) {
-  const SimulatedBoard board =
-      simulate_board(test::stereo_rig(), {6, 5, 0.05}, 7, 0, {.frames = 10, .pixel_sigma_px = 0.2});
+  const SimulatedBoard board = simulate_board(test::stereo_rig(), {6, 5, 0.05},
+                                              {.seed = 7, .frames = 10, .pixel_sigma_px = 0.2});
   std::vector<ParameterPrior> known;
   const Eigen::VectorXd values = parameters(test::stereo_rig());
   const std::vector<std::string> names = parameter_names(test::stereo_rig());
@@ -362,7 +362,7 @@ TEST(ProjectionUncertainty, PixelsWithoutARayAreAbsentAndCounted) {
   const Eigen::MatrixXd C = Eigen::MatrixXd::Identity(16, 16);
   const ProjectionUncertainty u(rig, C, 0, PointFixedTo::camera);
   EXPECT_FALSE(u.covariance({0, 0}, 1));
-  const ProjectionGrid grid = projection_grid(u, 9, 7, 1);
+  const ProjectionGrid grid = projection_grid(u, {.columns = 9, .rows = 7});
   int nans = 0;
   for (const auto& c : grid.covariance) nans += c.hasNaN();
   EXPECT_EQ(nans, grid.absent);
@@ -373,7 +373,7 @@ TEST(ProjectionUncertainty, PixelsWithoutARayAreAbsentAndCounted) {
 TEST(ProjectionUncertainty, GridIsThatOfTheImageRowByRow) {
   const ProjectionUncertainty u(estimate().rig, estimate().covariance->matrix, 0,
                                 PointFixedTo::camera);
-  const ProjectionGrid grid = projection_grid(u, 5, 4, 1);
+  const ProjectionGrid grid = projection_grid(u, {.columns = 5, .rows = 4});
   EXPECT_EQ(grid.x_px.back(), 639);
   EXPECT_EQ(grid.y_px.back(), 479);
   EXPECT_EQ(grid.covariance[1 * 5 + 3], *u.covariance({grid.x_px[3], grid.y_px[1]}, 1));
@@ -387,8 +387,11 @@ TEST(ProjectionUncertainty, BadInputIsNamed) {
   const ProjectionUncertainty u(rig, C, 0, PointFixedTo::camera);
   EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, 0); }), "a distance of 0 m");
   EXPECT_PRED2(says, error_output([&] { u.covariance({1, 1}, std::nan("")); }), "distance of nan");
-  EXPECT_PRED2(says, error_output([&] { projection_grid(u, 0, 0, 1); }), "a grid of 0x0");
-  EXPECT_PRED2(says, error_output([&] { projection_grid(u, 3, 3, -1); }), "a distance of -1 m");
+  EXPECT_PRED2(says, error_output([&] { projection_grid(u, {.columns = 0, .rows = 0}); }),
+               "a grid of 0x0");
+  EXPECT_PRED2(
+      says, error_output([&] { projection_grid(u, {.columns = 3, .rows = 3, .distance_m = -1}); }),
+      "a distance of -1 m");
   EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 2, PointFixedTo::camera); }),
                "no camera 2: it has 2");
   EXPECT_PRED2(says, error_output([&] { ProjectionUncertainty(rig, C, 0, PointFixedTo::boards); }),

@@ -21,7 +21,7 @@ namespace {
 
 RigEstimate estimate() {
   static const RigEstimate estimate =
-      calibrate(simulate_board(test::stereo_rig(), {}, 3).observations);
+      calibrate(simulate_board(test::stereo_rig(), {}, {.seed = 3}).observations);
   return estimate;
 }
 

@@ -37,9 +37,7 @@ struct Calibrated {
                       const std::vector<HeldParameter>& held = {})
       : board(simulate_board(test::stereo_rig(model),
                              {8, 6, 0.03},
-                             3,
-                             0,
-                             {.frames = 20, .pixel_sigma_px = 0, .distance_m = 0.8})) {
+                             {.seed = 3, .frames = 20, .pixel_sigma_px = 0, .distance_m = 0.8})) {
     problem.held = held_mask(board.truth.rig, held);
     const auto E = free_directions(board.truth.rig, problem.held);
     const auto equations =

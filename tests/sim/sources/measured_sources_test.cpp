@@ -62,9 +62,10 @@ const StereoTruth& truth() {
 struct Frame {
   Frame(const SourceSettings& settings, std::uint32_t trial, std::uint32_t frame, bool clean_left) {
     const NoiseFreeView look = plane.look(frame);
-    sighting = Sensor(plane.rig(), settings, 1).sense(look, 5, trial, frame);
-    const StereoObservation clean =
-        Sensor(plane.rig(), no_sources(), 1).sense(look, 5, trial, frame);
+    sighting =
+        Sensor(plane.rig(), settings, 1).sense(look, {.seed = 5, .trial = trial, .frame = frame});
+    const StereoObservation clean = Sensor(plane.rig(), no_sources(), 1)
+                                        .sense(look, {.seed = 5, .trial = trial, .frame = frame});
     RandomStream draws({.seed = 6, .trial = trial, .frame = frame});
     left = test::drawn_edges(test::lines_of(clean_left ? clean : sighting, true), plane,
                              point_noise_px, draws);

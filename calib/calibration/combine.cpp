@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/combine.h"
-#include "calib/calibration/combine_evidence.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 #include <cstddef>
 #include <set>
 
+#include "calib/calibration/combine_evidence.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
 #include "calib/camera.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_difference.h"
-#include "calib/estimate/same_rig.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +17,7 @@
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_and_boards.h"
-#include "calib/uncertainty/joint_information.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/solver/normal_equations.h"
 #include "calib/statistics/scaled_root.h"
+#include "calib/uncertainty/joint_information.h"
 
 namespace vernier {
 

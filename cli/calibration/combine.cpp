@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/combine.h"
-#include "calib/calibration/information_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/calibration/information_filter.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
 #include "calib/formats/pairs_file.h"

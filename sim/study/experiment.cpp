@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
-#include "sim/study/told_rig.h"
 
 #include <time.h>
 
@@ -18,6 +17,7 @@
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "sim/study/told_rig.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world.h"

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calib/interval.h"
@@ -68,43 +64,5 @@ std::string command_key(const std::string& command);
 
 /// Reads all stores of the folder. Throws Error where two shards disagree on a block.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
-
-/// Figures of a cell.
-struct CellSummary {
-  int trials = 0;
-  int maps = 0;  ///< recorded for them
-  double success = 0;
-  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
-  std::string why_no_interval;                  ///< "needs 6 maps, has 1"; empty where there is one
-  Interval success_interval_binomial_95;        ///< Wilson as if trials were independent
-  double coverage = 0;                          ///< share answered
-  double success_when_answered = 0;
-  double node_success = 0;               ///< of the map's node instead of the refined pose
-  double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
-  double median_error_m = 0;             ///< over answered trials
-  double median_heading_error_rad = 0;
-  double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
-};
-CellSummary summarise(const CellResult& cell);
-
-/// Whether two cells asked in the same places: every trial that both have begins at the same pose,
-/// and there is one. Not so where the seed or the protocol of the queries is swept.
-bool share_queries(const CellResult& a, const CellResult& b);
-
-/// Two cells on the same trials: in how many both succeeded, one alone, neither. The p-values are
-/// those of "neither is better", not a number for fewer than six maps.
-struct PairedComparison {
-  int both = 0, only_a = 0, only_b = 0, neither = 0;
-  int maps = 0;
-  double p_value = std::numeric_limits<double>::quiet_NaN();    ///< paired t over maps
-  double mcnemar_p = std::numeric_limits<double>::quiet_NaN();  ///< exact, as if independent
-};
-
-/// Throws Error where the cells do not share their queries.
-PairedComparison compare(const CellResult& a, const CellResult& b);
-
-/// Pairs of cells worth a comparison: each with the nearest one before it that shares its queries.
-std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
-    const std::vector<CellResult>& cells);
 
 }  // namespace vernier::sim::internal

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/noise_free_view.h"
-#include "sim/visibility/stretch_feature.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/visibility.h"
+#include "sim/visibility/stretch_feature.h"
 #include "sim/world.h"
 
 namespace vernier::sim {

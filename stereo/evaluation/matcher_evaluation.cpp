@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/matcher_evaluation.h"
-#include "stereo/evaluation/edge_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "calib/error.h"
 #include "stereo/canny_edges.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/estimate/observability.h"
-#include "calib/data_and_prior.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
 #include "calib/camera.h"
+#include "calib/data_and_prior.h"
 #include "calib/estimate/simulated_pairs.h"
 #include "calib/pair_observations.h"
 #include "calib/pose.h"

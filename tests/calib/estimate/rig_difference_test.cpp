@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/rig_difference.h"
-#include "calib/estimate/same_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +12,7 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
-#include "sim/study/standing_place.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +12,7 @@
 
 #include "calib/error.h"
 #include "localise/place.h"
+#include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/small_office.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/noise_free_view.h"
-#include "sim/visibility/stretch_feature.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +15,7 @@
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
+#include "sim/visibility/stretch_feature.h"
 #include "sim/world.h"
 #include "stereo/reconstruction/triangulate.h"
 #include "stereo/rectification.h"

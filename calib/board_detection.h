@@ -69,7 +69,7 @@ struct ImageDetections {
 };
 
 /// Observations from the images of one or more cameras, one pattern a camera: images of the same
-/// number are one frame (calib/base/frame_numbering.h). Frames whose board was found by some
+/// number are one frame (calib/board/frame_numbering.h). Frames whose board was found by some
 /// cameras only count for those. An image that cannot be read is refused as one without a board is.
 /// Throws Error where a camera has no frame number in common with those before it or one twice,
 /// none of its images can be read, sizes disagree, no board is found, or more images show a board

@@ -13,11 +13,11 @@
 #include <variant>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/yaml_node.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
 #include "calib/formats/imported_rig.h"
+#include "calib/formats/yaml_node.h"
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"

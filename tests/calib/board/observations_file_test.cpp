@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/frame_numbering.h"
+#include "calib/board/frame_numbering.h"
 #include "calib/board_target.h"
 #include "calib/error.h"
 #include "calib/simulated_board.h"

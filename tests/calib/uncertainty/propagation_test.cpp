@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <limits>
+#include <memory>
 
 #include "calib/board/board_warp.h"
 #include "calib/board/view_linearisation.h"
@@ -239,7 +240,8 @@ TEST(JointInformation, IsTheInverseOfTheFullNormalMatrixForFlatAndWarpedBoards) 
                              state.frames,
                              state.T_first_board,
                              full.topLeftCorner(n, n),
-                             conditional_board_poses(board.observations, state),
+                             std::make_shared<const ConditionalBoardPoses>(
+                                 conditional_board_poses(board.observations, state)),
                              1.0};
     const Eigen::VectorXd sd = full.diagonal().cwiseSqrt();
     const Eigen::MatrixXd difference = sd.cwiseInverse().asDiagonal() *

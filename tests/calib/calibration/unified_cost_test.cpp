@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -20,6 +20,7 @@
 #include "calib/simulated_board.h"
 #include "calib/solver/normal_equations.h"
 #include "tests/support/bent_board.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/error_message.h"
 #include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
@@ -60,7 +61,7 @@ TEST(HeldParameters, BoundIsTheInverseOfWhatIsLeftOfTheInformation) {
   const Eigen::MatrixXd S =
       reduced_normal_equations(e.evidence->observations, state, 0.2).information;
   const auto n = S.rows() - 1;  // left.f_px is the first
-  const Eigen::MatrixXd expected = S.bottomRightCorner(n, n).inverse();
+  const Eigen::MatrixXd expected = test::inverse(S.bottomRightCorner(n, n));
   const Eigen::VectorXd sd = expected.diagonal().cwiseSqrt();
   const Eigen::MatrixXd off = sd.cwiseInverse().asDiagonal() *
                               (e.covariance_mvb->bottomRightCorner(n, n) - expected) *

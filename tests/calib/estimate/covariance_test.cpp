@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
@@ -17,6 +17,7 @@
 #include "calib/solver/normal_equations.h"
 #include "calib/statistics/scaled_root.h"
 #include "calib/uncertainty/joint_information.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/error_message.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
@@ -53,7 +54,7 @@ TEST(Covariance, SchurComplementIsTheBlockOfTheFullInverse) {
   Eigen::MatrixXd H = J.transpose() * J / 0.04;
   const Eigen::VectorXd s = H.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd full =
-      s.asDiagonal() * (s.asDiagonal() * H * s.asDiagonal()).inverse() * s.asDiagonal();
+      s.asDiagonal() * test::inverse(s.asDiagonal() * H * s.asDiagonal()) * s.asDiagonal();
   const auto equations = reduced_normal_equations(board.observations, board.truth, 0.2);
   const Eigen::MatrixXd C = minimum_variance_bound(equations, parameter_names(board.truth.rig));
   const Eigen::VectorXd sd = C.diagonal().cwiseSqrt();

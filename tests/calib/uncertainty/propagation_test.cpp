@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <limits>
 #include <memory>
 
+#include "calib/base/decompositions.h"
 #include "calib/board/board_warp.h"
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
@@ -223,8 +224,8 @@ Eigen::MatrixXd dense_covariance(const BoardObservations& observations, const Bo
   const Eigen::MatrixXd J = test::numeric_jacobian(residuals, Eigen::VectorXd::Zero(all), 1e-5);
   const Eigen::VectorXd scale = J.colwise().norm().cwiseInverse();
   const Eigen::MatrixXd scaled = J * scale.asDiagonal();
-  const Eigen::MatrixXd inverse =
-      (scaled.transpose() * scaled).ldlt().solve(Eigen::MatrixXd::Identity(all, all));
+  const Eigen::MatrixXd inverse = solve_symmetric(
+      scaled.transpose() * scaled, Eigen::MatrixXd(Eigen::MatrixXd::Identity(all, all)));
   return (scale.asDiagonal() * inverse * scale.asDiagonal()).topLeftCorner(all - warp, all - warp);
 }
 
@@ -379,8 +380,8 @@ TEST(ProjectionUncertainty, GridIsThatOfTheImageRowByRow) {
   EXPECT_EQ(grid.x_px.back(), 639);
   EXPECT_EQ(grid.y_px.back(), 479);
   EXPECT_EQ(grid.covariance[1 * 5 + 3], *u.covariance({grid.x_px[3], grid.y_px[1]}, 1));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(grid.covariance[0]);
-  EXPECT_NEAR(worst_sd(grid.covariance[0]), std::sqrt(eigen.eigenvalues()[1]), 1e-12);
+  EXPECT_NEAR(worst_sd(grid.covariance[0]), std::sqrt(symmetric_eigenvalues(grid.covariance[0])[1]),
+              1e-12);
 }
 
 TEST(ProjectionUncertainty, BadInputIsNamed) {

@@ -48,8 +48,8 @@ struct Combination {
 /// evidence is a prior; one with evidence brings that, its own priors included (the same prior of
 /// several files counts once, and one that is another input's calibration not at all). Before it is
 /// taken in, every input is compared with all before it:
-/// of pairs, the prior's offset (calib/estimate/prior_consistency.h); of calibrations, their difference
-/// (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
+/// of pairs, the prior's offset (calib/estimate/prior_consistency.h); of calibrations, their
+/// difference (rig_difference.h). One that disagrees, as after a knock, is left out and said to be.
 /// Throws Error where the first inputs do not determine the rig, or inputs are of other cameras or
 /// lens models than the first.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});

@@ -23,8 +23,8 @@ void check_sides(const PairObservations& pairs,
 /// Looks at the scene with the solved rig; the noise of the pairs is `sigma_scale` times what they
 /// state. Doubts: the corners of every image pair lie on one
 /// plane, or farther than parallax can tell (a homography explains 95 % of them within their
-/// noise), which leaves more directions unseen (unobservable_directions, calib/estimate/observability.h).
-/// Warnings: most image pairs do.
+/// noise), which leaves more directions unseen (unobservable_directions,
+/// calib/estimate/observability.h). Warnings: most image pairs do.
 ObservationDiagnosis check_scene(const PairObservations& pairs,
                                  const Rig& rig,
                                  double sigma_scale = 1);

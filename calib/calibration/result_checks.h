@@ -22,9 +22,9 @@ inline constexpr double largest_scaled_condition = 1e11;
 /// Do the views determine the rig's free parameters? `bound` is over these.
 std::optional<std::string> ill_conditioning_warning(const Covariance& bound, const Rig& rig);
 
-/// Do data and prior contradict each other, at p < 1e-4 (calib/estimate/prior_consistency.h)? `bound` and
-/// `honest` are over all parameters of the rig, zero where one is held; `clusters` as there. Names
-/// the parameter that moved most in the prior's standard deviations.
+/// Do data and prior contradict each other, at p < 1e-4 (calib/estimate/prior_consistency.h)?
+/// `bound` and `honest` are over all parameters of the rig, zero where one is held; `clusters` as
+/// there. Names the parameter that moved most in the prior's standard deviations.
 std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
                                                   const Rig& rig,
                                                   const Eigen::MatrixXd& bound,

@@ -14,10 +14,11 @@ namespace vernier::internal {
 struct RefinedMinimum {
   BoardState state;
   Eigen::MatrixXd unit_bound;  ///< minimum variance bound at a noise of 1 px, of all parameters
-  Eigen::MatrixXd free_bound;  ///< the same of the free directions (calib/estimate/held_parameters.h)
-  double cost_px2 = 0;         ///< Σ r²
-  double last_step_px = 0;     ///< length of the last step in standard deviations, times σ in px
-  bool converged = false;      ///< else the state is the start, and the bound is there
+  Eigen::MatrixXd
+      free_bound;           ///< the same of the free directions (calib/estimate/held_parameters.h)
+  double cost_px2 = 0;      ///< Σ r²
+  double last_step_px = 0;  ///< length of the last step in standard deviations, times σ in px
+  bool converged = false;   ///< else the state is the start, and the bound is there
 };
 
 /// Takes a state near the minimum to it by Gauss and Newton's steps, which need no look at the

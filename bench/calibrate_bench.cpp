@@ -7,7 +7,7 @@
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/simulated_board.h"
 #include "datasets/shipped.h"
 
@@ -19,11 +19,10 @@ const SimulatedBoard& board(int frames) {
   static std::map<int, SimulatedBoard> boards;
   auto found = boards.find(frames);
   if (found == boards.end()) {
-    const SimulatedBoardOptions options{.frames = frames, .distance_m = 0.8};
-    found = boards
-                .emplace(frames,
-                         simulate_board(datasets::nominal_truth(), {10, 10, 0.025}, 5, 0, options))
-                .first;
+    const SimulatedBoardOptions options{.seed = 5, .frames = frames, .distance_m = 0.8};
+    found =
+        boards.emplace(frames, simulate_board(datasets::nominal_truth(), {10, 10, 0.025}, options))
+            .first;
   }
   return found->second;
 }

@@ -15,9 +15,7 @@
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 #include "sim/experiment.h"
-#include "sim/query_protocol.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 

@@ -5,7 +5,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
@@ -29,8 +29,8 @@ inline StereoProblem stereo_problem(int frames) {
     camera.parameters.conservativeResize(8);
     camera.parameters.tail<4>() << k1, 0.03, 4e-4, -3e-4;
   }
-  const SimulatedBoardOptions options{.frames = frames, .distance_m = 0.8};
-  SimulatedBoard board = simulate_board(rig, {10, 10, 0.025}, 5, 0, options);
+  const SimulatedBoardOptions options{.seed = 5, .frames = frames, .distance_m = 0.8};
+  SimulatedBoard board = simulate_board(rig, {10, 10, 0.025}, options);
   BoardState start = initial_state(board.observations, {OpenCv4{}, OpenCv4{}});
   return {std::move(board.observations), std::move(start)};
 }

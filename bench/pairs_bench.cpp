@@ -13,7 +13,7 @@
 #include "calib/rig_prior.h"
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/resolve_pairs.h"
-#include "tests/support/jet_sampson.h"
+#include "tests/support/jet_oracles.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 

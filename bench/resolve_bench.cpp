@@ -19,9 +19,9 @@
 #include "calib/board_state.h"
 #include "calib/calibration/covariance_estimators.h"
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_solver.h"
-#include "calib/opencv_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
@@ -70,8 +70,8 @@ const Scene& scene(int frames) {
     camera.parameters.conservativeResize(8);
     camera.parameters.tail<4>() << k1, 0.03, 4e-4, -3e-4;
   }
-  const SimulatedBoardOptions options{.frames = frames, .distance_m = 0.8};
-  Scene made{simulate_board(rig, {10, 10, 0.025}, 5, 0, options), {}, {}};
+  const SimulatedBoardOptions options{.seed = 5, .frames = frames, .distance_m = 0.8};
+  Scene made{simulate_board(rig, {10, 10, 0.025}, options), {}, {}};
   made.start = start_near(made.board.truth);
   made.pixels_px.resize(2, 200 * frames);
   Eigen::Index i = 0;

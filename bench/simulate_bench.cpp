@@ -8,7 +8,6 @@
 #include "datasets/shipped.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
-#include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/study/ceiling.h"
 #include "sim/visibility.h"
@@ -57,7 +56,7 @@ void all_sources(benchmark::State& state) {
   const Sensor sensor(rig().rig, {});
   const NoiseFreeView seen = look(visibility(), rig().rig, places()[40]);
   std::uint32_t trial = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, 1, trial++, 0));
+  for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, {.trial = trial++}));
 }
 
 void aliases_of_a_pose(benchmark::State& state) {

@@ -9,11 +9,10 @@
 
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/dense_matchers.h"
 #include "stereo/matching/stretch_correlation.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {

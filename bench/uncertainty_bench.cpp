@@ -12,7 +12,7 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/calibration/covariance_estimators.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig.h"
 #include "calib/rig_and_boards.h"
@@ -32,8 +32,8 @@ using namespace vernier::internal;
 const RigEstimate& estimate() {
   static const RigEstimate estimate = [] {
     if (const char* file = std::getenv("VERNIER_BENCH_RIG")) return read_rig(file).estimate;
-    const SimulatedBoardOptions options{.frames = 40, .distance_m = 0.8};
-    const auto board = simulate_board(datasets::nominal_truth(), {10, 10, 0.025}, 5, 0, options);
+    const SimulatedBoardOptions options{.seed = 5, .frames = 40, .distance_m = 0.8};
+    const auto board = simulate_board(datasets::nominal_truth(), {10, 10, 0.025}, options);
     return calibrate(board.observations, {.model = OpenCv4{}});
   }();
   return estimate;
@@ -51,14 +51,14 @@ void grid_from_evidence(benchmark::State& state) {
     joint.rig_covariance = minimum_variance_bound(
         reduced_normal_equations(evidence.observations, solved, joint.board_sigma_px), names);
     const ProjectionUncertainty u(joint, 1, PointFixedTo::boards);
-    benchmark::DoNotOptimize(projection_grid(u, 60, 45, distance_m));
+    benchmark::DoNotOptimize(projection_grid(u, {.distance_m = distance_m}));
   }
 }
 
 void grid_prepared(benchmark::State& state) {
   const ProjectionUncertainty u(rig_and_boards(estimate(), CovarianceChoice::mvb), 1,
                                 PointFixedTo::boards);
-  for (auto _ : state) benchmark::DoNotOptimize(projection_grid(u, 60, 45, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(projection_grid(u));
 }
 
 void sampled_points(benchmark::State& state) {

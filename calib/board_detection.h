@@ -70,7 +70,7 @@ struct ImageDetections {
 };
 
 /// Observations from the images of one or more cameras, one pattern per camera: images with the
-/// same number form one frame (calib/base/frame_numbering.h). A frame counts for the cameras that
+/// same number form one frame (calib/board/frame_numbering.h). A frame counts for the cameras that
 /// found the board. An image that cannot be read is refused like one without a board. Throws Error
 /// if a camera shares no frame number with those before it or has one twice, if none of its images
 /// can be read, sizes differ, no board is found, or more images show a board of more corners than

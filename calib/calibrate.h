@@ -8,8 +8,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
-#include "calib/held_parameters.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
 

@@ -11,9 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 
 namespace vernier {
 

@@ -6,11 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
-#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
 namespace vernier {
@@ -50,26 +48,10 @@ struct Combination {
 /// one with evidence contributes that, its own priors included (a prior contained in several files
 /// counts once, and one that is the calibration of another input not at all). Every input is
 /// compared with all previous ones before it is used: pairs by the prior's offset
-/// (prior_consistency.h), calibrations by their difference (rig_difference.h). An inconsistent one,
-/// as after a mechanical shock, is excluded and reported. Throws Error if the first inputs do not
-/// determine the rig, or inputs differ from the first in cameras or lens models.
+/// (calib/estimate/prior_consistency.h), calibrations by their difference (rig_difference.h). An
+/// inconsistent one, as after a mechanical shock, is excluded and reported. Throws Error if the
+/// first inputs do not determine the rig, or inputs differ from the first in cameras or lens
+/// models.
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options = {});
-
-/// Evidence of one input; the rig's estimate as a prior if it has no other.
-JointEvidence evidence_of(const CombineInput& input);
-
-/// The information filter of Thacker and Mayhew (1991): batch by batch, only a mean and a
-/// covariance are kept, linearised where each batch left them.
-struct InformationFilterResult {
-  Rig rig;
-  Covariance covariance;        ///< the filter's bound
-  double worst_in_sigma = 0;    ///< its largest distance from the batch solution …
-  std::string worst_parameter;  ///< … in that one's bound, and of which parameter
-  double min_sigma_ratio = 1;   ///< smallest of its standard deviations over the batch's …
-  std::string min_parameter;    ///< … and of which parameter
-};
-InformationFilterResult information_filter(const std::vector<CombineInput>& inputs,
-                                           const Combination& batch,
-                                           const CombineOptions& options = {});
 
 }  // namespace vernier

@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/held_parameters.h"
-#include "calib/observability.h"
+#include "calib/data_and_prior.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -36,6 +34,7 @@ struct JointOptions {
   bool reject_outliers = true;  ///< of the pairs
   /// The noise is known to be white (simulated): use the bound as covariance.
   bool white_noise = false;
+  std::string place;  ///< what messages call the pairs, such as their file; empty: "pairs"
 };
 
 /// A calibration from all evidence, with the effect of the pairs on the prior knowledge.
@@ -69,22 +68,17 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 
 /// Calibrates a pair of cameras from matched corners of any scene and a prior, after checks of the
 /// input (check_pairs, check_sides, check_scene); starts at the prior's rig. A parameter that the
-/// prior does not name is fixed. `place` names the pairs in messages. Throws Error if there are
-/// fewer pairs than free parameters.
+/// prior does not name is fixed. Throws Error if there are fewer pairs than free parameters.
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const GaussianRigPrior& prior,
-                                      const JointOptions& options = {},
-                                      const std::string& place = "");
+                                      const JointOptions& options = {});
 
-/// Consistency of pairs and prior (calib/prior_consistency.h) in a calibration from both. If
-/// parameters that the prior covers were held, the prior is conditioned on their values. Empty
+/// Consistency of pairs and prior (calib/estimate/prior_consistency.h) in a calibration from both.
+/// If parameters that the prior covers were held, the prior is conditioned on their values. Empty
 /// result (p 1) if the prior does not cover all free parameters. The calibration may have used the
 /// prior with standard deviations `looseness` times as large.
 PriorConsistency consistency_with(const GaussianRigPrior& prior,
                                   const RigEstimate& estimate,
                                   double looseness = 1);
-
-/// The parameters that `prior` does not name, held at the values of its rig.
-std::vector<HeldParameter> held_by(const GaussianRigPrior& prior);
 
 }  // namespace vernier

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,14 +41,5 @@ int count_coarse_corners(const std::filesystem::path& file);
 void write_corners(const BoardObservations& observations,
                    const BoardTarget& target,
                    const std::filesystem::path& file);
-
-/// Camera and frame of an image from its name.
-struct ImageName {
-  std::string camera;      ///< the name without its last number
-  std::int64_t frame = 0;  ///< the last number (calib/base/frame_numbering.h)
-};
-
-/// Throws Error for a name without a number, or with one of more than 18 digits.
-ImageName parse_image_name(const std::filesystem::path& image);
 
 }  // namespace vernier

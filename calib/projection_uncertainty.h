@@ -45,12 +45,16 @@ class ProjectionUncertainty {
   /// camera's model cannot be inverted. Throws Error unless distance_m > 0.
   std::optional<Eigen::Matrix2d> covariance(const Eigen::Vector2d& pixel, double distance_m) const;
 
-  /// For a point x in the camera's frame, m, or (at infinity) a direction.
-  Eigen::Matrix2d covariance_of_point(const Eigen::Vector3d& x_camera, bool at_infinity) const;
+  /// For a point in the camera's frame, m.
+  Eigen::Matrix2d covariance_of_point(const Eigen::Vector3d& x_camera) const;
+  /// For a point at infinity, by its direction in the camera's frame.
+  Eigen::Matrix2d covariance_of_direction(const Eigen::Vector3d& x_camera) const;
 
   const Camera& camera() const { return camera_; }
 
  private:
+  enum class Range { finite, infinite };
+  Eigen::Matrix2d covariance_at(const Eigen::Vector3d& x_camera, Range range) const;
   void keep(const Eigen::MatrixXd& joint, const Rig& rig, int camera, bool with_motion);
 
   Camera camera_;
@@ -63,6 +67,11 @@ class ProjectionUncertainty {
 /// Standard deviation in the worst direction: the square root of the larger eigenvalue.
 double worst_sd(const Eigen::Matrix2d& covariance);
 
+struct ProjectionGridOptions {
+  int columns = 60, rows = 45;
+  double distance_m = 1;  ///< along each pixel's ray; or infinity
+};
+
 /// Covariances over a camera's image on mrcal's grid: columns x rows pixels from the first to the
 /// last pixel.
 struct ProjectionGrid {
@@ -74,8 +83,6 @@ struct ProjectionGrid {
 
 /// Throws Error unless columns and rows are at least 2 and distance_m > 0.
 ProjectionGrid projection_grid(const ProjectionUncertainty& uncertainty,
-                               int columns,
-                               int rows,
-                               double distance_m);
+                               const ProjectionGridOptions& options = {});
 
 }  // namespace vernier

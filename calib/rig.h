@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,8 @@ int parameter_count(const Rig& rig);
 Eigen::VectorXd parameters(const Rig& rig);
 
 /// The rig moved by `delta` in its tangent: intrinsics add, a rotation becomes exp([w]x) R (left
-/// tangent, radians), a translation adds. Covariances are expressed in this tangent. Throws Error if
-/// the size of `delta` is not the number of parameters, and as parameters() does.
+/// tangent, radians), a translation adds. Covariances are expressed in this tangent. Throws Error
+/// if the size of `delta` is not the number of parameters, and as parameters() does.
 Rig retract(const Rig& rig, const Eigen::VectorXd& delta);
 
 /// The delta with retract(from, delta) = to.
@@ -41,5 +42,18 @@ Eigen::VectorXd difference(const Rig& to, const Rig& from);
 /// Index of the first intrinsic parameter of a camera, and of its pose (camera >= 1).
 int intrinsics_index(const Rig& rig, int camera);
 int pose_index(const Rig& rig, int camera);
+
+/// A camera and its pose, before the rig's frame is chosen.
+struct PlacedCamera {
+  Camera camera;
+  Pose T_camera_reference;
+};
+
+/// The rig in the frame of the first camera: T_i_first = T_i_reference T_first_reference⁻¹. Cameras
+/// without a name, or with a repeated one, are named left, right, camera2 …
+Rig rig_of(std::vector<PlacedCamera> cameras);
+
+/// Default camera names: left, right, camera2 ….
+std::string default_camera_name(std::size_t index);
 
 }  // namespace vernier

@@ -46,22 +46,11 @@ struct RigDifference {
   double p_value = 1;  ///< of a d² this large or larger
 };
 
-/// Throws Error (naming `place_b`) if the rigs differ in the number, names or image sizes of their
-/// cameras.
-void check_same_cameras(const Rig& a, const Rig& b, const std::string& place_b);
-
-/// Throws Error as above, or if a covariance is not over its rig's parameters.
+/// Throws Error if the rigs differ in the number, names or image sizes of their cameras, or if a
+/// covariance is not over its rig's parameters.
 RigDifference rig_difference(const Rig& a,
                              const Covariance& covariance_a,
                              const Rig& b,
                              const Covariance& covariance_b);
-
-/// Number of views (one camera in one frame) of `a` that are the same image in `b`: the pixels of
-/// the common corners are equal, or the image's name is and they differ by less than 2 px (rms, per
-/// coordinate).
-int shared_views(const CalibrationEvidence& a,
-                 const Rig& rig_a,
-                 const CalibrationEvidence& b,
-                 const Rig& rig_b);
 
 }  // namespace vernier

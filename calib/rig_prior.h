@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct RigPrior {
 /// A prior from another source: `covariance` is over the parameters it names, any subset of those
 /// of `rig`; the other values of `rig` are ignored. For a whole rotation it is in the left tangent;
 /// for a part of one it is of these components of the rotation vector, like held ones
-/// (calib/held_parameters.h), and does not constrain the others.
+/// (HeldParameter), and does not constrain the others.
 struct GaussianRigPrior {
   Rig rig;
   Covariance covariance;
@@ -37,6 +38,15 @@ Covariance full_covariance(const GaussianRigPrior& known);
 /// exist). Throws Error if the covariance is not symmetric or not positive semi-definite, naming
 /// the direction, and if it is singular: a direction known exactly must be held instead.
 RigPrior rig_prior(const Rig& like, const GaussianRigPrior& known);
+
+/// A parameter of the rig that is not estimated. A component of a rotation is held as that
+/// component of the rotation vector.
+struct HeldParameter {
+  std::string name;  ///< such as "left.ax" (see parameter_names)
+  /// std::nullopt: ax 1, the principal point at the image centre, no distortion; a focal length or
+  /// a component of a pose keeps its start value.
+  std::optional<double> value;
+};
 
 /// The prior of a single parameter, independent of the others.
 struct ParameterPrior {

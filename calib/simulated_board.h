@@ -12,6 +12,8 @@
 namespace vernier {
 
 struct SimulatedBoardOptions {
+  std::uint64_t seed = 1;   ///< of poses and noise
+  std::uint32_t trial = 0;  ///< of the noise alone
   int frames = 20;
   double pixel_sigma_px = 0.2;  ///< white noise on each coordinate; 0 for none
   double distance_m = 1.0;      ///< of the board's centre, varied by a third either way
@@ -29,8 +31,6 @@ struct SimulatedBoard {
 /// can be found in 1000 tries.
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
-                              std::uint64_t seed,
-                              std::uint32_t trial = 0,
                               const SimulatedBoardOptions& options = {});
 
 }  // namespace vernier

@@ -45,4 +45,11 @@ std::optional<PointTriangulation> triangulate_point_with_jacobian(const Rig& rig
 /// std::nullopt if it is not in front of both.
 std::optional<PixelPair> pixel_pair(const Rig& rig, const Eigen::Vector3d& x_m, int other = 1);
 
+/// Depth of the closest approach of the rays of two pixels; not positive if they diverge. Throws
+/// Error unless the rig is a pair.
+double triangulated_depth_m(const Rig& rig, const PixelPair& pair);
+
+/// The same; std::nullopt if the rig has no ray for one of the pixels.
+std::optional<double> try_triangulated_depth_m(const Rig& rig, const PixelPair& pair);
+
 }  // namespace vernier

@@ -8,9 +8,13 @@ set(vernier_components calib stereo localise sim)  # each brings those to its le
 set(vernier_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vernier)
 
 # vernier_dependencies(MODULE RESULT): the find_dependency lines for what a module links, and for
-# nothing else.
+# nothing else. Stops where it links a package that is not listed here: who uses the installed
+# library could not find it.
 function(vernier_dependencies module result)
   get_target_property(needs ${module} INTERFACE_LINK_LIBRARIES)
+  # An installed static library asks for what it links privately as $<LINK_ONLY:package>.
+  list(TRANSFORM needs REPLACE "^\\$<LINK_ONLY:(.+)>$" "\\1")
+  list(FILTER needs EXCLUDE REGEX "^vernier::")  # brought by the component itself
   set(lines "")
   foreach(package IN ITEMS "Eigen3::|Eigen3 3.4" "Ceres::|Ceres 2.1" "fmt::|fmt"
                            "Highway::|Highway" "yaml-cpp|yaml-cpp" "TBB::|TBB" "SQLite::|SQLite3"
@@ -18,16 +22,26 @@ function(vernier_dependencies module result)
     string(REPLACE "|" ";" package "${package}")
     list(GET package 0 namespace)
     list(GET package 1 arguments)
-    if(needs MATCHES "${namespace}")
+    set(others ${needs})
+    list(FILTER others EXCLUDE REGEX "^${namespace}")
+    if(NOT "${others}" STREQUAL "${needs}")
       string(APPEND lines "  find_dependency(${arguments})\n")
     endif()
+    set(needs ${others})
   endforeach()
-  if(needs MATCHES "opencv_")
-    string(REGEX MATCHALL "opencv_[a-z0-9]+" parts "${needs}")
+  set(parts ${needs})
+  list(FILTER parts INCLUDE REGEX "^opencv_")
+  list(FILTER needs EXCLUDE REGEX "^opencv_")
+  if(parts)
     list(REMOVE_DUPLICATES parts)
     list(TRANSFORM parts REPLACE "^opencv_" "")
     list(JOIN parts " " parts)
     string(APPEND lines "  find_dependency(OpenCV 4.6 COMPONENTS ${parts})\n")
+  endif()
+  if(needs)
+    message(FATAL_ERROR "${module} links ${needs}, and vernier_dependencies in "
+                        "cmake/VernierInstall.cmake does not know the package to find for it: add "
+                        "it to the list there, or link it as HEADER_ONLY")
   endif()
   set(${result} "${lines}" PARENT_SCOPE)
 endfunction()

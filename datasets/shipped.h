@@ -42,8 +42,8 @@ inline Rig nominal_truth() {
 /// 0.8 m, with corner noise of 0.2 px.
 inline RigEstimate nominal() {
   const SimulatedBoard board =
-      simulate_board(nominal_truth(), {9, 6, 0.04}, 1, 0,
-                     {.frames = 20, .pixel_sigma_px = 0.2, .distance_m = 0.8});
+      simulate_board(nominal_truth(), {9, 6, 0.04},
+                     {.seed = 1, .frames = 20, .pixel_sigma_px = 0.2, .distance_m = 0.8});
   return calibrate(board.observations, {.pixel_sigma_px = 0.2, .white_noise = true});
 }
 

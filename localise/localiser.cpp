@@ -5,7 +5,6 @@
 #include "calib/error.h"
 #include "localise/baseline_localiser.h"
 #include "localise/pgh_localiser.h"
-#include "localise/topological_map.h"
 
 namespace vernier::localise {
 

@@ -11,7 +11,6 @@
 #include "localise/pgh.h"
 #include "localise/place.h"
 #include "localise/rank.h"
-#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

@@ -4,7 +4,6 @@
 
 #include "localise/localiser.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 
 #include "localise/bhattacharyya.h"
+#include "localise/localiser.h"
 #include "localise/pgh.h"
-#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

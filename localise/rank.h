@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "localise/localiser.h"
 #include "localise/pgh.h"
-#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/topological_map.h"
+#include "localise/localiser.h"
 
 #include <utility>
 

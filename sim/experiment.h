@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/rig.h"
@@ -12,15 +13,33 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
-#include "stereo/segment.h"
 
 namespace vernier::sim {
+
+/// How far from the recorded route queries are drawn. It affects results more than any other
+/// setting and is part of every result.
+enum class QueryProtocol {
+  near_path,  ///< ± 0.1 m across the route, ± 5°
+  path,       ///< ± 0.3 m, ± 15°
+  anywhere,   ///< ± 0.6 m, any heading
+};
+
+std::string_view name(QueryProtocol protocol);
+/// Throws Error for a name other than near_path, path, anywhere.
+QueryProtocol query_protocol(std::string_view name);
+
+/// Pose of query `trial`: uniform along the route, across it and in heading; drawn again (from the
+/// same stream) where a robot of 0.12 m radius could not stand or a surface separates the position
+/// from the route. Throws Error after 1000 draws without success.
+localise::Pose2D draw_query(const Visibility& visibility,
+                            QueryProtocol protocol,
+                            double eye_height_m,
+                            std::uint64_t seed,
+                            std::uint32_t trial);
 
 /// Which rig is assumed when the map is recorded.
 enum class MapRig {
@@ -39,15 +58,6 @@ struct ExperimentSettings {
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
-
-/// End-point standard deviation assumed by the estimator: 0.15 px, or max(0.1 px, psi_g) with
-/// knows_endpoint_sigma.
-double told_endpoint_sigma_px(const ExperimentSettings& settings);
-
-/// Triangulates the sensed segments, in the left camera frame of the rig assumed by the estimator.
-std::vector<stereo::SpaceSegment> reconstruct(const Rig& told,
-                                              const StereoObservation& sighting,
-                                              const ExperimentSettings& settings);
 
 /// One localisation trial: true pose, answer and time.
 struct TrialResult {
@@ -69,6 +79,13 @@ struct TrialResult {
   bool success() const { return answered() && error_m <= 1.0; }
 };
 
+/// Trials that share a recorded map: first, first + 1 …
+struct TrialBlock {
+  std::uint32_t block = 0;  ///< which map
+  std::uint32_t first = 0;
+  std::uint32_t count = 1;
+};
+
 /// Noise-free views from the map's nodes. They depend only on world, true rig and mount, so blocks
 /// and cells that differ in noise share them.
 using MapViews = std::vector<NoiseFreeView>;
@@ -87,12 +104,10 @@ class LocalisationExperiment {
                          std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings);
 
-  /// Runs trials first, first + 1 … of one block: the map is recorded once, with draws of its own.
-  /// With MapRig::same the map is recorded again for every trial. Results depend on (settings,
-  /// block, trial) only.
-  std::vector<TrialResult> run_block(std::uint32_t block,
-                                     std::uint32_t first,
-                                     std::uint32_t count) const;
+  /// Runs the trials of one block: the map is recorded once, with draws of its own. With
+  /// MapRig::same the map is recorded again for every trial. Results depend on (settings, block,
+  /// trial) only.
+  std::vector<TrialResult> run_block(const TrialBlock& block) const;
 
   /// The map as recorded in a block under the assumption of `rig`.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;

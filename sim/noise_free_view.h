@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,13 +11,6 @@
 #include "sim/visibility.h"
 
 namespace vernier::sim {
-
-/// Identity of a visible run of a segment, `run` counting from 0: with S segments in the world
-///
-///     32 (S (run div 32) + segment) + run mod 32
-///
-/// so that no two runs share their draws. Throws Error if it exceeds 31 bits.
-std::uint32_t stretch_feature(int segment, int run, std::size_t segments);
 
 /// An edge visible in both cameras, without error: ends in the true left camera frame.
 struct VisibleEdge {

@@ -8,7 +8,6 @@
 
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
 #include "stereo/rectification.h"
@@ -23,17 +22,21 @@ struct StereoObservation {
   std::vector<SensedCorner> corners;
 };
 
+/// Where in an experiment a look stands: with it every draw has its place.
+struct SensingDraw {
+  std::uint64_t seed = 1;
+  std::uint32_t trial = 0;
+  std::uint32_t frame = 0;  ///< of the trial
+};
+
 /// The true rig observing the world through all enabled error sources.
 class Sensor {
  public:
   /// Throws Error for settings out of range or a rig without exactly two cameras.
   Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
 
-  /// The same (look, seed, trial, frame) gives the same observation to the bit.
-  StereoObservation sense(const NoiseFreeView& look,
-                          std::uint64_t seed,
-                          std::uint32_t trial,
-                          std::uint32_t frame) const;
+  /// The same look and draw give the same observation to the bit.
+  StereoObservation sense(const NoiseFreeView& look, const SensingDraw& draw = {}) const;
 
   const Rig& rig() const { return rig_; }
 

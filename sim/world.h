@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "localise/place.h"
+
 namespace vernier::sim {
 
 /// A straight edge of the wire frame, in metres, z up. `object` is its owner.
@@ -89,5 +91,25 @@ struct WorldExtent {
   Eigen::Vector3d low_m, high_m;
 };
 WorldExtent extent(const World& world);
+
+/// A point of a route and the direction of travel.
+struct RoutePoint {
+  localise::Pose2D pose;
+  double leg_position_m = 0;  ///< from the start of its leg
+  int leg = 0;
+};
+
+/// Total length of all legs, metres.
+double route_length_m(const std::vector<RouteLeg>& route);
+
+/// The point at `s_m` metres along all legs in sequence (clamped to the ends of the route).
+RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m);
+
+/// Poses at which a map is recorded: every leg is divided evenly into steps of at most `spacing_m`,
+/// including its start but not its end. With `headings` = 0 one per position, facing along the
+/// route; else that many all around. Throws Error for an empty route or spacing <= 0.
+std::vector<localise::Pose2D> map_poses(const std::vector<RouteLeg>& route,
+                                        double spacing_m,
+                                        int headings = 0);
 
 }  // namespace vernier::sim

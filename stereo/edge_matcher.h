@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo {
 

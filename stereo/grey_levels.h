@@ -25,4 +25,14 @@ struct GreyLevels {
 /// empty string. Throws Error for a file that is not an image or is truncated.
 GreyLevels read_grey_levels(const std::filesystem::path& file, std::string* remark = nullptr);
 
+/// Two images in which corresponding rows show the same epipolar plane.
+struct RectifiedPair {
+  GreyLevels left, right;
+};
+
+/// Search range of disparities u_left − u_right, both ends included.
+struct DisparityRange {
+  int min_px = 0, max_px = 64;
+};
+
 }  // namespace vernier::stereo

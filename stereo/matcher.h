@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "stereo/edge_point.h"
-#include "stereo/rectified_pair.h"
+#include "stereo/canny_edges.h"
+#include "stereo/grey_levels.h"
 
 namespace vernier::stereo {
 

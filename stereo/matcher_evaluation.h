@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 
@@ -48,21 +48,6 @@ struct MatcherScore {
   double coverage_95 = 0, z_rms = 0;
 };
 
-/// Whether an edge is scored: its ground truth is known, and it is neither too close to horizontal
-/// nor to the border.
-bool is_scored(const EdgePoint& edge,
-               const TruthAtEdge& truth,
-               int width_px,
-               const EvaluationOptions& options);
-
-/// Whether an edge is not visible in the right image, by the rule.
-bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule);
-
-/// Found minus true disparity; at a discontinuity under rule `either`, the absolute difference to
-/// the nearest valid disparity. 0 between the point's disparity and that of its crossing
-/// (TruthAtEdge::crossing_px).
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule);
-
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,
                       const std::vector<TruthAtEdge>& truth,
@@ -75,14 +60,18 @@ struct CurvePoint {
   double density = 0, bad_1 = 0, mismatch = 0;
 };
 
-/// Curve obtained by dropping the least confident matches, at `points` densities spaced evenly from
+struct DensityCurveOptions {
+  int points = 20;
+  EvaluationOptions scored;  ///< which edges count, and what is right
+};
+
+/// Curve obtained by dropping the least confident matches, at so many densities spaced evenly from
 /// all to none, densest first. Matches of equal confidence are dropped together.
 std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       const std::vector<EdgeDisparity>& found,
                                       const std::vector<TruthAtEdge>& truth,
                                       int width_px,
-                                      int points,
-                                      const EvaluationOptions& options = {});
+                                      const DensityCurveOptions& options = {});
 
 /// bad_1 of a curve at a density, interpolated linearly; clamped beyond its ends.
 double bad_1_at(const std::vector<CurvePoint>& curve, double density);

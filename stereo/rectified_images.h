@@ -8,8 +8,7 @@
 
 #include "calib/rig.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_geometry.h"
-#include "stereo/rectified_pair.h"
+#include "stereo/rectification.h"
 
 namespace vernier::stereo {
 

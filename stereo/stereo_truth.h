@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 
 namespace vernier::stereo {
 

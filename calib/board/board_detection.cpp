@@ -12,9 +12,9 @@
 #include <set>
 #include <variant>
 
-#include "calib/base/frame_numbering.h"
 #include "calib/base/grey_image.h"
 #include "calib/board/chessboard_finder.h"
+#include "calib/board/frame_numbering.h"
 #include "calib/board/marker_board.h"
 #include "calib/board_observations.h"
 #include "calib/board_target.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,9 +14,9 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/frame_numbering.h"
 #include "calib/base/text_lines.h"
 #include "calib/board/corner_lines.h"
+#include "calib/board/frame_numbering.h"
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "calib/error.h"
@@ -152,24 +151,6 @@ class CornerReader {
 };
 
 }  // namespace
-
-ImageName parse_image_name(const std::filesystem::path& image) {
-  const std::string stem = image.stem().string();
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) {
-    throw Error(image.string(), "its name has no frame number",
-                "name images like left01.png, right01.png");
-  }
-  std::size_t first = last;
-  while (first > 0 && std::isdigit(static_cast<unsigned char>(stem[first - 1]))) --first;
-  std::int64_t frame = 0;
-  const auto parsed = std::from_chars(stem.data() + first, stem.data() + last + 1, frame);
-  if (parsed.ec != std::errc()) {
-    throw Error(image.string(), "its frame number is too large", "use up to 18 digits");
-  }
-  return {(image.parent_path() / (stem.substr(0, first) + "#" + stem.substr(last + 1))).string(),
-          frame};
-}
 
 BoardObservations read_corners(const std::filesystem::path& file,
                                const BoardTarget& target,

@@ -69,8 +69,6 @@ std::optional<BoardView> view_of(const Rig& rig,
 
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
-                              std::uint64_t seed,
-                              std::uint32_t trial,
                               const SimulatedBoardOptions& options) {
   SimulatedBoard result;
   BoardObservations& observations = result.observations;
@@ -80,7 +78,7 @@ SimulatedBoard simulate_board(const Rig& rig,
   const Eigen::Vector3d centre =
       0.5 * (observations.target_m.front() + observations.target_m.back());
   for (int frame = 0; frame < options.frames; ++frame) {
-    RandomStream poses({.seed = seed,
+    RandomStream poses({.seed = options.seed,
                         .feature = static_cast<std::uint32_t>(frame),
                         .source = board_source,
                         .eye = 3});
@@ -105,7 +103,8 @@ SimulatedBoard simulate_board(const Rig& rig,
       view.frame = frame;
       // feature: (frame, camera); the eye field would hold only four cameras
       RandomStream noise(
-          of_view({.seed = seed, .trial = trial, .source = board_source}, frame, view.camera));
+          of_view({.seed = options.seed, .trial = options.trial, .source = board_source}, frame,
+                  view.camera));
       for (auto& pixel : view.pixels_px) {
         pixel.x() += options.pixel_sigma_px * noise.normal();
         pixel.y() += options.pixel_sigma_px * noise.normal();

@@ -3,7 +3,7 @@
 #include "calib/calibration/calibration_problem.h"
 
 #include "calib/calibrate.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/solver/reprojection_problem.h"

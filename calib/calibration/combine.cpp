@@ -9,18 +9,18 @@
 #include <cmath>
 #include <cstddef>
 #include <set>
-#include <utility>
 
+#include "calib/calibration/combine_evidence.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/joint_calibration.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_difference.h"
 #include "calib/rig_estimate.h"
@@ -32,13 +32,6 @@ using namespace internal;
 
 namespace {
 
-bool has_boards(const RigEstimate& estimate) {
-  return estimate.evidence && !estimate.evidence->observations.views.empty();
-}
-bool has_pairs(const RigEstimate& estimate) {
-  return estimate.evidence && estimate.evidence->pairs.size() > 0;
-}
-
 std::string kind_of(const CombineInput& input) {
   if (!input.estimate || (has_pairs(*input.estimate) && !has_boards(*input.estimate))) {
     return "pairs";
@@ -47,27 +40,6 @@ std::string kind_of(const CombineInput& input) {
     return has_pairs(*input.estimate) ? "board and pairs" : "board";
   }
   return "prior";
-}
-
-/// Whether the priors are equal up to the rounding of a file.
-bool same(const GaussianRigPrior& a, const GaussianRigPrior& b) {
-  constexpr double rounding = 1e-9;
-  if (a.covariance.names != b.covariance.names) return false;
-  if (parameter_names(a.rig) != parameter_names(b.rig)) return false;
-  const Eigen::MatrixXd &A = a.covariance.matrix, &B = b.covariance.matrix;
-  const Eigen::VectorXd sd = A.diagonal().cwiseSqrt();
-  for (Eigen::Index i = 0; i < A.rows(); ++i) {
-    for (Eigen::Index k = 0; k < A.cols(); ++k) {
-      if (std::abs(A(i, k) - B(i, k)) > rounding * sd[i] * sd[k]) return false;
-    }
-  }
-  const std::vector<std::string> all = parameter_names(a.rig);
-  const Eigen::VectorXd x = parameters(a.rig), y = parameters(b.rig);
-  for (const std::string& name : a.covariance.names) {  // the others are not covered
-    const auto i = std::find(all.begin(), all.end(), name) - all.begin();
-    if (!(std::abs(x[i] - y[i]) <= rounding * (1e-3 + std::abs(x[i])))) return false;
-  }
-  return true;
 }
 
 /// The first match of every image pair.
@@ -97,17 +69,6 @@ void refuse_repeated(const JointEvidence& so_far,
       throw Error(name, "it repeats board views of a previous input", "give every view once");
     }
   }
-}
-
-/// The priors of `more` that are not among `so_far`.
-std::vector<GaussianRigPrior> new_priors(const std::vector<GaussianRigPrior>& so_far,
-                                         const std::vector<GaussianRigPrior>& more) {
-  std::vector<GaussianRigPrior> added;
-  for (const GaussianRigPrior& prior : more) {
-    const auto is_same = [&](const GaussianRigPrior& p) { return same(p, prior); };
-    if (std::none_of(so_far.begin(), so_far.end(), is_same)) added.push_back(prior);
-  }
-  return added;
 }
 
 void add(JointEvidence& to, const JointEvidence& more) {
@@ -143,17 +104,18 @@ GaussianRigPrior gaussian_prior_of(const JointCalibration& joint) {
 PriorConsistency agreement_of_pairs(const GaussianRigPrior& before,
                                     const PairObservations& pairs,
                                     const CombineInput& input,
-                                    const JointOptions& options) {
+                                    JointOptions options) {
+  options.place = input.name;
   // Compare with a solution under a ten times wider prior, so that a wrong prior does not bias the
   // rig; with the prior itself if the pairs do not determine the rig under the wide one.
   constexpr double wider = 10;
   GaussianRigPrior loose = before;
   loose.covariance.matrix *= wider * wider;
   try {
-    const JointCalibration with = calibrate_from_pairs(pairs, loose, options, input.name);
+    const JointCalibration with = calibrate_from_pairs(pairs, loose, options);
     return consistency_with(before, with.estimate, wider);
   } catch (const Error&) {
-    const JointCalibration with = calibrate_from_pairs(pairs, before, options, input.name);
+    const JointCalibration with = calibrate_from_pairs(pairs, before, options);
     return consistency_with(before, with.estimate);
   }
 }
@@ -248,58 +210,7 @@ void add_warnings(const std::vector<CombineInput>& inputs, Combination& combinat
   }
 }
 
-/// Parameters that no input may change: those without variance in the first.
-JointOptions with_held(JointOptions options, const CombineInput& first) {
-  if (!first.estimate) return options;
-  for (const HeldParameter& held : held_by(gaussian_prior_of(*first.estimate, first.name))) {
-    options.held.push_back(held);
-  }
-  return options;
-}
-
-/// Evidence of the inputs, without priors that are the calibration of another input.
-std::vector<JointEvidence> evidence_of_all(const std::vector<CombineInput>& inputs) {
-  std::vector<GaussianRigPrior> calibrations;
-  std::vector<JointEvidence> all;
-  for (const CombineInput& input : inputs) {
-    all.push_back(evidence_of(input));
-    const bool prior_only = all.back().boards.empty() && all.back().pairs.size() == 0;
-    if (input.estimate && input.estimate->covariance && !prior_only) {
-      calibrations.push_back(gaussian_prior_of(*input.estimate, input.name));
-    }
-  }
-  for (JointEvidence& evidence : all) {
-    std::erase_if(evidence.priors, [&](const GaussianRigPrior& prior) {
-      return std::any_of(calibrations.begin(), calibrations.end(),
-                         [&](const GaussianRigPrior& c) { return same(c, prior); });
-    });
-  }
-  return all;
-}
-
 }  // namespace
-
-JointEvidence evidence_of(const CombineInput& input) {
-  JointEvidence evidence;
-  if (!input.estimate) {
-    evidence.pairs = input.pairs;
-    return evidence;
-  }
-  const RigEstimate& estimate = *input.estimate;
-  if (has_boards(estimate)) {
-    CalibrationEvidence boards = *estimate.evidence;
-    boards.pairs = {};
-    boards.priors.clear();
-    const double sigma = estimate.calibration ? estimate.calibration->pixel_sigma_px : 1;
-    evidence.boards.push_back({std::move(boards), sigma});
-  }
-  if (has_pairs(estimate)) evidence.pairs = estimate.evidence->pairs;
-  if (estimate.evidence) evidence.priors = estimate.evidence->priors;
-  if (!has_boards(estimate) && !has_pairs(estimate)) {
-    evidence.priors = {gaussian_prior_of(estimate, input.name)};
-  }
-  return evidence;
-}
 
 Combination combine(const std::vector<CombineInput>& inputs, const CombineOptions& options) {
   if (inputs.empty()) throw Error("combination", "there is no input", "give rig files or pairs");
@@ -341,48 +252,6 @@ Combination combine(const std::vector<CombineInput>& inputs, const CombineOption
   const auto folds = inversion_warnings(result.joint.estimate.rig);
   warnings.insert(warnings.end(), folds.begin(), folds.end());
   return result;
-}
-
-InformationFilterResult information_filter(const std::vector<CombineInput>& inputs,
-                                           const Combination& batch,
-                                           const CombineOptions& options) {
-  JointOptions joint = with_held(options.joint, inputs.front());
-  joint.white_noise = true;
-  GaussianRigPrior known = gaussian_prior_of(*inputs.front().estimate, inputs.front().name);
-  const RigEstimate& first = *inputs.front().estimate;
-  if (first.covariance_mvb && has_boards(first)) {
-    known.covariance.matrix =
-        covariance_of_free(*first.covariance_mvb, first.rig, held_parameters(first));
-  }
-  const std::vector<JointEvidence> all = evidence_of_all(inputs);
-  std::vector<GaussianRigPrior> used = all.front().priors;
-  for (std::size_t i = 1; i < inputs.size(); ++i) {
-    if (!batch.inputs[i].used) continue;
-    JointEvidence evidence = all[i];
-    evidence.priors = new_priors(used, evidence.priors);
-    used.insert(used.end(), evidence.priors.begin(), evidence.priors.end());
-    evidence.priors.push_back(known);
-    known = gaussian_prior_of(calibrate_jointly(evidence, known.rig, joint));
-  }
-  InformationFilterResult filtered{known.rig, known.covariance, 0, "", 1, ""};
-  const Eigen::MatrixXd& honest = batch.joint.estimate.covariance->matrix;
-  const Eigen::MatrixXd own = full_covariance(known).matrix;
-  const Eigen::VectorXd d = difference(known.rig, batch.joint.estimate.rig);
-  const Eigen::MatrixXd& C = *batch.joint.estimate.covariance_mvb;
-  const std::vector<std::string> names = parameter_names(known.rig);
-  for (Eigen::Index i = 0; i < d.size(); ++i) {
-    if (!(C(i, i) > 0)) continue;
-    const double ratio = std::sqrt(own(i, i) / honest(i, i));
-    if (ratio < filtered.min_sigma_ratio) {
-      filtered.min_sigma_ratio = ratio;
-      filtered.min_parameter = names[static_cast<std::size_t>(i)];
-    }
-    const double in_sigma = std::abs(d[i]) / std::sqrt(C(i, i));
-    if (in_sigma <= filtered.worst_in_sigma) continue;
-    filtered.worst_in_sigma = in_sigma;
-    filtered.worst_parameter = names[static_cast<std::size_t>(i)];
-  }
-  return filtered;
 }
 
 }  // namespace vernier

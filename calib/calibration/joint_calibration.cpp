@@ -20,11 +20,11 @@
 #include "calib/calibration/pair_checks.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
-#include "calib/observability.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/estimate/observability.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -41,8 +41,6 @@ namespace vernier {
 using namespace internal;
 
 namespace {
-
-constexpr int cells_a_side = 4;  // of an image pair as clusters
 
 /// The equations of boards and pairs, in all parameters.
 ReducedNormalEquations data_equations(const JointMinimum& joint,
@@ -75,7 +73,7 @@ PairObservations inliers_of(const JointMinimum& joint) {
 PairObservations clustered_pairs(const JointMinimum& joint) {
   const PairObservations& pairs = joint.cost.pairs;
   if (pairs.image_pairs.size() >= 3 || !joint.boards.observations.views.empty()) return pairs;
-  return split_into_cells(pairs, joint.state.rig.cameras[0].size_px, cells_a_side);
+  return split_into_cells(pairs, joint.state.rig.cameras[0].size_px);
 }
 
 std::vector<PairOutlier> outliers_of(const JointMinimum& joint) {
@@ -240,59 +238,7 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
   }
 }
 
-/// Number of clusters of the pairs' scatter (clustered_pairs); 0 if their noise was known.
-int clusters_of(const RigEstimate& estimate) {
-  if (estimate.covariance->kind == CovarianceKind::mvb) return 0;
-  const PairObservations& pairs = estimate.evidence->pairs;
-  if (pairs.image_pairs.size() >= 3) return static_cast<int>(pairs.image_pairs.size());
-  const Eigen::Vector2i& size_px = estimate.rig.cameras[0].size_px;
-  return static_cast<int>(split_into_cells(pairs, size_px, cells_a_side).image_pairs.size());
-}
-
 }  // namespace
-
-PriorConsistency consistency_with(const GaussianRigPrior& prior,
-                                  const RigEstimate& estimate,
-                                  double looseness) {
-  const Rig& rig = estimate.rig;
-  const std::vector<std::string> all = parameter_names(rig);
-  if (parameter_names(prior.rig) != all) return {};
-  const std::vector<bool> held = held_parameters(estimate);
-  const std::vector<std::string>& known = prior.covariance.names;
-  std::vector<Eigen::Index> free, given;
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    const bool is_known = std::find(known.begin(), known.end(), all[i]) != known.end();
-    if (!held[i] && !is_known) return {};  // determined by the data alone
-    if (is_known) (held[i] ? given : free).push_back(static_cast<Eigen::Index>(i));
-  }
-  const Eigen::MatrixXd V = values_by_tangent(prior.rig, held);
-  const Eigen::MatrixXd C = V * full_covariance(prior).matrix * V.transpose();
-  const Eigen::VectorXd moved = values_by_tangent(rig, held) * difference(rig, prior.rig);
-  Eigen::MatrixXd covariance = C(free, free);
-  Eigen::VectorXd offset = moved(free);
-  if (!given.empty()) {  // condition the prior on the values of its held parameters
-    const Eigen::MatrixXd white = ScaledRoot(C(given, given)).white;
-    const Eigen::MatrixXd by_given = C(free, given) * white.transpose();
-    offset -= by_given * (white * moved(given));
-    covariance -= by_given * by_given.transpose();
-  }
-  return prior_consistency(offset, free_names(rig, held), covariance,
-                           covariance_of_free(*estimate.covariance_mvb, rig, held),
-                           covariance_of_free(estimate.covariance->matrix, rig, held),
-                           clusters_of(estimate), looseness);
-}
-
-std::vector<HeldParameter> held_by(const GaussianRigPrior& prior) {
-  std::vector<HeldParameter> held;
-  const std::vector<std::string> names = parameter_names(prior.rig);
-  const Eigen::VectorXd a = parameters(prior.rig);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& known = prior.covariance.names;
-    if (std::find(known.begin(), known.end(), names[i]) != known.end()) continue;
-    held.push_back({names[i], a[static_cast<Eigen::Index>(i)]});
-  }
-  return held;
-}
 
 JointCalibration calibrate_jointly(const JointEvidence& evidence,
                                    const Rig& start,
@@ -346,8 +292,8 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
 
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const GaussianRigPrior& prior,
-                                      const JointOptions& options,
-                                      const std::string& place) {
+                                      const JointOptions& options) {
+  const std::string& place = options.place;
   check_pairs(pairs, prior.rig, place);
   JointOptions with_held = options;
   std::vector<std::string> unlisted;

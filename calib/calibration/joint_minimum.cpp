@@ -12,7 +12,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/merged_boards.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/joint_calibration.h"
 #include "calib/rig.h"
 #include "calib/solver/epipolar_system.h"

@@ -23,7 +23,8 @@ void check_sides(const PairObservations& pairs,
 /// Checks the scene with the solved rig; the noise of the pairs is `sigma_scale` times their stated
 /// noise. Trust warnings: the corners of every image pair lie on one plane, or too far away for
 /// parallax (a homography explains 95 % of them within their noise), which leaves more directions
-/// unobservable (unobservable_directions, calib/observability.h). Warnings: most image pairs do.
+/// unobservable (unobservable_directions, calib/estimate/observability.h). Warnings: most image
+/// pairs do.
 ObservationDiagnosis check_scene(const PairObservations& pairs,
                                  const Rig& rig,
                                  double sigma_scale = 1);

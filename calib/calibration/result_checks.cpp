@@ -14,9 +14,10 @@
 
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/opencv_models.h"
-#include "calib/prior_consistency.h"
+#include "calib/estimate/prior_consistency.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 
@@ -112,8 +113,10 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   const Eigen::MatrixXd before = prior.information(known, known).inverse();
   PriorConsistency agreement;
   try {
-    agreement = prior_consistency(offset, names, before, bound(known, known), honest(known, known),
-                                  clusters);
+    agreement = prior_consistency(
+        offset, names,
+        {.prior = before, .bound = bound(known, known), .honest = honest(known, known)},
+        {.clusters = clusters});
   } catch (const Error&) {  // a prior that cannot be inverted in double precision is not checked
     return {};
   }

@@ -3,9 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 
 namespace vernier {
 namespace {

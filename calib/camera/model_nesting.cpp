@@ -11,8 +11,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {

@@ -13,9 +13,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 
 namespace vernier::internal {
 namespace {

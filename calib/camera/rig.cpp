@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <set>
+#include <utility>
 
 #include "calib/camera.h"
 #include "calib/error.h"
@@ -82,6 +84,27 @@ Eigen::VectorXd difference(const Rig& to, const Rig& from) {
         vector_from_rotation(to.T_camera_first[i].R * from.T_camera_first[i].R.transpose());
   }
   return delta;
+}
+
+std::string default_camera_name(std::size_t index) {
+  return index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
+}
+
+Rig rig_of(std::vector<PlacedCamera> cameras) {
+  std::set<std::string> names;
+  bool distinct = true;
+  for (const PlacedCamera& c : cameras) {
+    distinct = distinct && !c.camera.name.empty() && names.insert(c.camera.name).second;
+  }
+  Rig rig;
+  for (PlacedCamera& c : cameras) {
+    if (!distinct) c.camera.name = default_camera_name(rig.cameras.size());
+    rig.T_camera_first.push_back(rig.cameras.empty() ? Pose{}
+                                                     : c.T_camera_reference *
+                                                           cameras[0].T_camera_reference.inverse());
+    rig.cameras.push_back(std::move(c.camera));
+  }
+  return rig;
 }
 
 }  // namespace vernier

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/triangulation.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
@@ -89,6 +90,23 @@ MiddleDerivatives derivatives_of_middle(const Rays& r) {
           0.5 * (I + r.v0 * l0_by_t + r.v1 * l1_by_t)};
 }
 
+void check_two_cameras(const Rig& rig) {
+  if (rig.cameras.size() == 2) return;
+  throw Error("triangulation", "the rig has " + std::to_string(rig.cameras.size()) + " cameras",
+              "give a rig of two");
+}
+
+/// Depth of the point on the left ray closest to the right ray.
+double depth_of(const Rig& rig, const Eigen::Vector3d& a, const Eigen::Vector3d& right_ray) {
+  const Pose T_left_right = rig.T_camera_first[1].inverse();
+  const Eigen::Vector3d b = T_left_right.R * right_ray;
+  // least squares for λ a = t + μ b
+  Eigen::Matrix<double, 3, 2> A;
+  A << a, -b;
+  const Eigen::Vector2d scale = (A.transpose() * A).ldlt().solve(A.transpose() * T_left_right.t);
+  return scale[0] * a.z();
+}
+
 }  // namespace
 
 std::optional<Vector3d> triangulate_point(const Rig& rig, const PixelPair& pair, int other) {
@@ -130,6 +148,20 @@ std::optional<PixelPair> pixel_pair(const Rig& rig, const Vector3d& x_m, int oth
   const Vector3d x_other = rig.T_camera_first[other] * x_m;
   if (!(x_m.z() > 0) || !(x_other.z() > 0)) return std::nullopt;
   return PixelPair{project(rig.cameras[0], x_m), project(rig.cameras[other], x_other)};
+}
+
+double triangulated_depth_m(const Rig& rig, const PixelPair& pair) {
+  check_two_cameras(rig);
+  return depth_of(rig, unproject(rig.cameras[0], pair.first_px),
+                  unproject(rig.cameras[1], pair.other_px));
+}
+
+std::optional<double> try_triangulated_depth_m(const Rig& rig, const PixelPair& pair) {
+  check_two_cameras(rig);
+  const auto left = try_unproject(rig.cameras[0], pair.first_px);
+  const auto right = try_unproject(rig.cameras[1], pair.other_px);
+  if (!left || !right) return std::nullopt;
+  return depth_of(rig, *left, *right);
 }
 
 }  // namespace vernier

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/observability.h"
+#include "calib/estimate/observability.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -14,14 +14,13 @@
 #include "calib/base/decompositions.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
-#include "calib/fisheye4.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 
-namespace vernier {
-
-using namespace internal;
+namespace vernier::internal {
 
 namespace {
 
@@ -183,4 +182,4 @@ Observability observability(const Rig& rig,
   return o;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

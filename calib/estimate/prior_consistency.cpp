@@ -1,26 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/prior_consistency.h"
+#include "calib/estimate/prior_consistency.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "calib/base/decompositions.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/error.h"
 #include "calib/statistics/distributions.h"
 
-namespace vernier {
-
-using namespace internal;
+namespace vernier::internal {
 
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
-                                   const Eigen::MatrixXd& prior,
-                                   const Eigen::MatrixXd& bound,
-                                   const Eigen::MatrixXd& honest,
-                                   int clusters,
-                                   double looseness) {
+                                   const PriorAndEstimate& covariance,
+                                   const PriorConsistencyOptions& options) {
+  const auto& [prior, bound, honest] = covariance;
+  const auto [clusters, looseness] = options;
   constexpr double min_share = 0.05;
   const Eigen::VectorXd sd = prior.diagonal().cwiseSqrt();
   const auto scaled = [&](const Eigen::MatrixXd& C) -> Eigen::MatrixXd {
@@ -65,4 +63,4 @@ PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
   return agreement;
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

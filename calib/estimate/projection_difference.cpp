@@ -12,9 +12,9 @@
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
-#include "calib/rig_difference.h"
 
 namespace vernier::internal {
 namespace {

@@ -8,11 +8,13 @@
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 
 namespace vernier {
+
+using namespace internal;
 
 const Covariance& required_covariance(const RigEstimate& estimate, const std::string& place) {
   if (!estimate.covariance) {

@@ -16,7 +16,7 @@
 #include "calib/base/decompositions.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 

@@ -18,10 +18,10 @@
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
 #include "calib/formats/colmap_poses.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/formats/rig_json.h"
-#include "calib/imported_rig.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {

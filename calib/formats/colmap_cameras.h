@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {

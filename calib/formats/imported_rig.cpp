@@ -1,41 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
-#include <cstddef>
-#include <set>
-#include <utility>
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/pose.h"
-#include "calib/rig.h"
 
-namespace vernier {
-
-std::string default_camera_name(std::size_t index) {
-  return index == 0 ? "left" : index == 1 ? "right" : "camera" + std::to_string(index);
-}
-
-Rig rig_of(std::vector<PlacedCamera> cameras) {
-  std::set<std::string> names;
-  bool distinct = true;
-  for (const PlacedCamera& c : cameras) {
-    distinct = distinct && !c.camera.name.empty() && names.insert(c.camera.name).second;
-  }
-  Rig rig;
-  for (PlacedCamera& c : cameras) {
-    if (!distinct) c.camera.name = default_camera_name(rig.cameras.size());
-    rig.T_camera_first.push_back(rig.cameras.empty() ? Pose{}
-                                                     : c.T_camera_reference *
-                                                           cameras[0].T_camera_reference.inverse());
-    rig.cameras.push_back(std::move(c.camera));
-  }
-  return rig;
-}
+namespace vernier::internal {
 
 const std::string& file_stem(const Camera& camera) {
   const std::string& name = camera.name;
@@ -65,4 +39,4 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& pl
   return svd.matrixU() * svd.matrixV().transpose();
 }
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -14,7 +14,7 @@
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {

@@ -13,12 +13,12 @@
 #include <variant>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/yaml_node.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
-#include "calib/fisheye4.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
+#include "calib/formats/yaml_node.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calib/camera.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 
 namespace vernier::internal {
 

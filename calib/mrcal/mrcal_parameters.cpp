@@ -9,9 +9,8 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -103,9 +104,12 @@ RigAndBoards joint_of(const BoardObservations& observations,
   ConditionalBoardPoses given = conditional_board_poses(observations, ours.state);
   given.warp_by_rig.setZero();
   given.warp_factor.setZero();
-  return {ours.state.rig,           ours.state.frames,
-          ours.state.T_first_board, pixel_sigma_px * pixel_sigma_px * ours.unit_bound,
-          std::move(given),         pixel_sigma_px};
+  return {ours.state.rig,
+          ours.state.frames,
+          ours.state.T_first_board,
+          pixel_sigma_px * pixel_sigma_px * ours.unit_bound,
+          std::make_shared<const ConditionalBoardPoses>(std::move(given)),
+          pixel_sigma_px};
 }
 
 void compare_projection(const MrcalProjectionQuery& query,
@@ -114,8 +118,9 @@ void compare_projection(const MrcalProjectionQuery& query,
                         UncertaintyComparison& result) {
   for (std::size_t i = 0; i < query.points.size(); ++i) {
     const Eigen::Vector3d& x = query.points[i];
-    const double difference =
-        normalised_difference(ours.covariance_of_point(x, query.at_infinity), mrcals[i]).largest;
+    const Eigen::Matrix2d C =
+        query.at_infinity ? ours.covariance_of_direction(x) : ours.covariance_of_point(x);
+    const double difference = normalised_difference(C, mrcals[i]).largest;
     ++result.projections;
     if (!is_worse(difference, result.max_projection_covariance_diff)) continue;
     result.max_projection_covariance_diff = difference;

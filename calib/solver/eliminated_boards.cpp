@@ -10,7 +10,7 @@
 #include "calib/base/ordered_parallel.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"

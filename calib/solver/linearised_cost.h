@@ -20,7 +20,7 @@ namespace vernier::internal {
 ///
 /// board poses and a free warp eliminated, priors included.
 struct LinearisedCost {
-  Eigen::MatrixXd free;              ///< E (calib/held_parameters.h)
+  Eigen::MatrixXd free;              ///< E (calib/estimate/held_parameters.h)
   std::vector<std::string> names;    ///< of the free directions, one per column of E
   ReducedNormalEquations equations;  ///< of z, at the problem's noise
 };

@@ -44,7 +44,7 @@ ReducedNormalEquations equations_with_warp(const BoardObservations& observations
 /// Throws Error if the views do not constrain the warp.
 ReducedNormalEquations without_warp(const ReducedNormalEquations& equations);
 
-/// The equations in z if the parameters move by E z (calib/held_parameters.h).
+/// The equations in z if the parameters move by E z (calib/estimate/held_parameters.h).
 ReducedNormalEquations restricted(const ReducedNormalEquations& equations,
                                   const Eigen::MatrixXd& E);
 

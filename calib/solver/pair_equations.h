@@ -25,6 +25,6 @@ void add_equations(ReducedNormalEquations& equations, const ReducedNormalEquatio
 /// separate image pair.
 PairObservations split_into_cells(const PairObservations& pairs,
                                   const Eigen::Vector2i& size_px,
-                                  int cells);
+                                  int cells = 4);
 
 }  // namespace vernier::internal

@@ -8,7 +8,7 @@
 #include "calib/board/view_linearisation.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/rig.h"
 #include "calib/solver/square_root_system.h"
 

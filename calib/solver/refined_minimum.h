@@ -14,10 +14,11 @@ namespace vernier::internal {
 struct RefinedMinimum {
   BoardState state;
   Eigen::MatrixXd unit_bound;  ///< minimum variance bound at a noise of 1 px, of all parameters
-  Eigen::MatrixXd free_bound;  ///< the same for the free directions (calib/held_parameters.h)
-  double cost_px2 = 0;         ///< Σ r²
-  double last_step_px = 0;     ///< length of the last step in standard deviations, times σ in px
-  bool converged = false;      ///< if not, the state is the start, with the bound there
+  /// The same for the free directions (calib/estimate/held_parameters.h).
+  Eigen::MatrixXd free_bound;
+  double cost_px2 = 0;      ///< Σ r²
+  double last_step_px = 0;  ///< length of the last step in standard deviations, times σ in px
+  bool converged = false;   ///< if not, the state is the start, with the bound there
 };
 
 /// Refines a state near the minimum by Gauss–Newton steps without comparing costs: at a distance of

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calib/base/decompositions.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/solver/epipolar_system.h"

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/depth_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,10 +9,10 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "calib/uncertainty/sampled_propagation.h"
 
 namespace vernier {
@@ -28,17 +27,6 @@ void check_pair(const Rig& rig) {
               "give a rig of two");
 }
 
-/// Depth of the point on the left ray closest to the right ray.
-double depth_of(const Rig& rig, const Eigen::Vector3d& a, const Eigen::Vector3d& right_ray) {
-  const Pose T_left_right = rig.T_camera_first[1].inverse();
-  const Eigen::Vector3d b = T_left_right.R * right_ray;
-  // least squares for λ a = t + μ b
-  Eigen::Matrix<double, 3, 2> A;
-  A << a, -b;
-  const Eigen::Vector2d scale = (A.transpose() * A).ldlt().solve(A.transpose() * T_left_right.t);
-  return scale[0] * a.z();
-}
-
 void check_ranges(const std::vector<double>& ranges_m, int samples) {
   for (const double range : ranges_m) {
     if (range > 0 && std::isfinite(range)) continue;
@@ -49,23 +37,6 @@ void check_ranges(const std::vector<double>& ranges_m, int samples) {
 }
 
 }  // namespace
-
-double triangulated_depth_m(const Rig& rig,
-                            const Eigen::Vector2d& left_px,
-                            const Eigen::Vector2d& right_px) {
-  check_pair(rig);
-  return depth_of(rig, unproject(rig.cameras[0], left_px), unproject(rig.cameras[1], right_px));
-}
-
-std::optional<double> try_triangulated_depth_m(const Rig& rig,
-                                               const Eigen::Vector2d& left_px,
-                                               const Eigen::Vector2d& right_px) {
-  check_pair(rig);
-  const auto left = try_unproject(rig.cameras[0], left_px);
-  const auto right = try_unproject(rig.cameras[1], right_px);
-  if (!left || !right) return std::nullopt;
-  return depth_of(rig, *left, *right);
-}
 
 std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
                                                 const std::vector<double>& ranges_m,
@@ -79,14 +50,14 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
   std::vector<DepthUncertainty> result;
   for (const double range : ranges_m) {
     const Eigen::Vector3d x(0, 0, range);
-    const Eigen::Vector2d left = project(rig.cameras[0], x);
-    const Eigen::Vector2d right = project(rig.cameras[1], rig.T_camera_first[1] * x);
+    const PixelPair pair{project(rig.cameras[0], x),
+                         project(rig.cameras[1], rig.T_camera_first[1] * x)};
     DepthUncertainty u{range, 0, 0, 0, {}};
     // J D U √s column by column: central differences along the principal directions
     constexpr double step = 1e-3;
     for (Eigen::Index k = 0; k < factor.cols(); ++k) {
       const auto depth = [&](double s) {
-        return triangulated_depth_m(retract(rig, s * factor.col(k)), left, right);
+        return triangulated_depth_m(retract(rig, s * factor.col(k)), pair);
       };
       u.sigma_linear_m += std::pow(psi_c * (depth(step) - depth(-step)) / (2 * step), 2);
     }
@@ -96,7 +67,7 @@ std::vector<DepthUncertainty> depth_uncertainty(const RigEstimate& estimate,
     std::vector<double> depths;
     for (int i = 0; i < samples; ++i) {
       const auto depth = try_triangulated_depth_m(
-          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), left, right);
+          sampler.sample(psi_c, seed, static_cast<std::uint32_t>(i)), pair);
       const bool meets = depth && *depth > 0;
       depths.push_back(meets ? *depth : std::numeric_limits<double>::infinity());
       if (!meets) continue;

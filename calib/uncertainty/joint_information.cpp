@@ -12,7 +12,6 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/rig.h"
-#include "calib/rig_and_boards.h"
 #include "calib/solver/pose_factor.h"
 
 namespace vernier::internal {

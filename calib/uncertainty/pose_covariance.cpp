@@ -10,6 +10,7 @@
 #include "calib/rig_and_boards.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
+#include "calib/uncertainty/joint_information.h"
 
 namespace vernier::internal {
 namespace {
@@ -46,7 +47,7 @@ Eigen::MatrixXd chained(const Eigen::MatrixXd& C,
 }  // namespace
 
 Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint) {
-  const ConditionalBoardPoses& given = joint.given_rig;
+  const ConditionalBoardPoses& given = *joint.given_rig;
   const auto n = joint.rig_covariance.rows();
   const auto frames = static_cast<double>(given.frames.size());
   Eigen::MatrixXd by_rig = Eigen::MatrixXd::Zero(6, n);
@@ -66,7 +67,7 @@ Eigen::MatrixXd rig_and_motion_covariance(const RigAndBoards& joint) {
 }
 
 Eigen::MatrixXd rig_and_poses_covariance(const RigAndBoards& joint) {
-  const ConditionalBoardPoses& given = joint.given_rig;
+  const ConditionalBoardPoses& given = *joint.given_rig;
   const auto frames = static_cast<Eigen::Index>(given.frames.size());
   Eigen::MatrixXd K(6 * frames, joint.rig_covariance.rows()), W(6 * frames, 2);
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(6 * frames, 6 * frames);
@@ -85,7 +86,7 @@ MeanBoardMap sample_board_map(const RigAndBoards& joint,
                               double psi_c,
                               std::uint64_t seed,
                               std::uint32_t trial) {
-  const ConditionalBoardPoses& given = joint.given_rig;
+  const ConditionalBoardPoses& given = *joint.given_rig;
   const auto place = [&](int feature) {
     return RandomCounter{.seed = seed,
                          .trial = trial,

@@ -86,8 +86,18 @@ ProjectionUncertainty::ProjectionUncertainty(const Rig& rig,
   keep(rig_covariance, rig, camera, false);
 }
 
-Eigen::Matrix2d ProjectionUncertainty::covariance_of_point(const Eigen::Vector3d& x_camera,
-                                                           bool at_infinity) const {
+Eigen::Matrix2d ProjectionUncertainty::covariance_of_point(const Eigen::Vector3d& x_camera) const {
+  return covariance_at(x_camera, Range::finite);
+}
+
+Eigen::Matrix2d ProjectionUncertainty::covariance_of_direction(
+    const Eigen::Vector3d& x_camera) const {
+  return covariance_at(x_camera, Range::infinite);
+}
+
+Eigen::Matrix2d ProjectionUncertainty::covariance_at(const Eigen::Vector3d& x_camera,
+                                                     Range range) const {
+  const bool at_infinity = range == Range::infinite;
   ProjectionJacobian J;
   project(camera_, x_camera, J);
   const auto intrinsics = J.camera.cols();
@@ -117,9 +127,9 @@ std::optional<Eigen::Matrix2d> ProjectionUncertainty::covariance(const Eigen::Ve
   check_distance(distance_m);
   const auto ray = try_unproject(camera_, pixel);
   if (!ray) return std::nullopt;
-  const bool at_infinity = std::isinf(distance_m);
   const Eigen::Vector3d direction = ray->normalized();
-  return covariance_of_point(at_infinity ? direction : distance_m * direction, at_infinity);
+  if (std::isinf(distance_m)) return covariance_of_direction(direction);
+  return covariance_of_point(distance_m * direction);
 }
 
 double worst_sd(const Eigen::Matrix2d& C) {
@@ -128,9 +138,8 @@ double worst_sd(const Eigen::Matrix2d& C) {
 }
 
 ProjectionGrid projection_grid(const ProjectionUncertainty& uncertainty,
-                               int columns,
-                               int rows,
-                               double distance_m) {
+                               const ProjectionGridOptions& options) {
+  const auto [columns, rows, distance_m] = options;
   check_distance(distance_m);
   if (columns < 2 || rows < 2) {
     throw Error("projection uncertainty", fmt::format("a grid of {}x{}", columns, rows),

@@ -61,9 +61,9 @@ RigAndBoards rig_and_boards(const RigEstimate& estimate,
   joint.frames = evidence.frames;
   joint.T_first_board = evidence.T_first_board;
   joint.rig_covariance = required_covariance(estimate, choice, place).matrix;
-  joint.given_rig = conditional_board_poses(
+  joint.given_rig = std::make_shared<const ConditionalBoardPoses>(conditional_board_poses(
       evidence.observations,
-      {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m});
+      {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m}));
   double inflation = 1;
   if (choice == CovarianceChoice::honest && estimate.covariance_mvb &&
       estimate.covariance->kind != CovarianceKind::mvb) {

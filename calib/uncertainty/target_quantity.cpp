@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/triangulation.h"
 
 namespace vernier::internal {
 namespace {
@@ -73,9 +73,9 @@ Eigen::MatrixXd depth_gradient(const Rig& rig, double at_m) {
     throw Error("depth", fmt::format("a point {} m ahead is behind the right camera", at_m),
                 "choose another distance");
   }
-  const Eigen::Vector2d left = project(rig.cameras[0], x), right = project(rig.cameras[1], x_right);
+  const PixelPair pair{project(rig.cameras[0], x), project(rig.cameras[1], x_right)};
   return derivative(rig, [&](const Rig& moved) {
-    return Eigen::VectorXd::Constant(1, triangulated_depth_m(moved, left, right));
+    return Eigen::VectorXd::Constant(1, triangulated_depth_m(moved, pair));
   });
 }
 

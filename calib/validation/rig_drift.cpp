@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/calibration/combine_evidence.h"
 #include "calib/combine.h"
 #include "calib/joint_calibration.h"
 #include "calib/rig.h"

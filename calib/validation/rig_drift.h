@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/combine.h"
-#include "calib/prior_consistency.h"
+#include "calib/data_and_prior.h"
 
 namespace vernier::internal {
 

@@ -38,8 +38,9 @@ void calibrate_pairs(const std::string& pairs_file,
   JointOptions options;
   options.held = how.held;
   options.reject_outliers = how.reject_outliers;
-  const JointCalibration joint = calibrate_from_pairs(
-      read_pairs(pairs_file), usable_prior(prior, solver.prior), options, pairs_file);
+  options.place = pairs_file;
+  const JointCalibration joint =
+      calibrate_from_pairs(read_pairs(pairs_file), usable_prior(prior, solver.prior), options);
   const ObservabilityReport seen = report_observability(joint, prior.estimate.covariance->matrix);
   Json json = rig_json(joint.estimate);
   json["observability"] = seen.json;

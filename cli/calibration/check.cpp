@@ -16,7 +16,7 @@
 #include "calib/camera.h"
 #include "calib/camera/model_nesting.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/solver/initial_rig.h"

@@ -13,7 +13,6 @@
 #include "calib/calibrate.h"
 #include "calib/camera/model_nesting.h"
 #include "calib/covariance.h"
-#include "calib/imported_rig.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"

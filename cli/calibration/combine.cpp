@@ -11,10 +11,11 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/calibration/information_filter.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/formats/pairs_file.h"
 #include "calib/joint_calibration.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"

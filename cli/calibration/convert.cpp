@@ -12,7 +12,7 @@
 #include "calib/base/atomic_file.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "cli/calibration/convert_formats.h"

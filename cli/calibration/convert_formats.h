@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/rig_estimate.h"
 
 #include "cli/program/namespaces.h"

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
+#include "calib/data_and_prior.h"
 #include "calib/joint_calibration.h"
-#include "calib/observability.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/triangulation_uncertainty.h"
 #include "cli/program/session.h"
 #include "stereo/rectification/vertical_disparity.h"
 

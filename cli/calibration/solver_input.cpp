@@ -12,7 +12,6 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/held_parameters.h"
 #include "calib/rig_file.h"
 #include "calib/rig_prior.h"
 #include "cli/program/option_checks.h"

@@ -7,7 +7,6 @@
 #include "calib/rig.h"
 #include "cli/program/session.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

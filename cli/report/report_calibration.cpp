@@ -12,9 +12,9 @@
 #include "calib/board_observations.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/triangulation_uncertainty.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
 

@@ -16,11 +16,10 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "stereo/segment.h"
@@ -132,7 +131,7 @@ Json report_view(const Study& study) {
   options.with_corners = true;
   const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);
-  const StereoObservation sighting = sensor.sense(seen, settings.seed, 0, 0);
+  const StereoObservation sighting = sensor.sense(seen, {.seed = settings.seed});
   const Json both = sighting_json(study.rig.rig, seen, sighting);
   // A line counts as mismatched if true and sensed disparity differ by more than shifts explain.
   Json sensed = Json::array();

@@ -143,14 +143,16 @@ Json camera_projection(const RigAndBoards& honest,
   json["maps"] = Json::array();
   json["figures"] = Json::array();
   for (const double distance_m : {board_range_m, 1.0, 5.0, infinity}) {
-    const ProjectionGrid grid = projection_grid(uncertainty, columns, rows, distance_m);
+    const ProjectionGridOptions grid_options{
+        .columns = columns, .rows = rows, .distance_m = distance_m};
+    const ProjectionGrid grid = projection_grid(uncertainty, grid_options);
     const MapFigures own = figures_of(grid);
     Json row{{"distance_m", rounded(distance_m, 3)},  {"boards", distance_m == board_range_m},
              {"centre_px", short_number(own.centre)}, {"median_px", short_number(own.median)},
              {"worst_px", short_number(own.worst)},   {"absent", grid.absent}};
     if (bound) {
       const MapFigures sure = figures_of(projection_grid(
-          ProjectionUncertainty(*bound, camera, PointFixedTo::boards), columns, rows, distance_m));
+          ProjectionUncertainty(*bound, camera, PointFixedTo::boards), grid_options));
       row["centre_bound_px"] = short_number(sure.centre);
       row["median_bound_px"] = short_number(sure.median);
     }

@@ -13,7 +13,7 @@
 #include "cli/program/session.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
+#include "sim/uncertainty_source.h"
 #include "stereo/segment.h"
 
 namespace vernier::cli {

@@ -21,9 +21,10 @@
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/study/standing_place.h"
+#include "sim/study/told_rig.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
@@ -113,7 +114,8 @@ void run(const SimulateArguments& options, Session& session) {
   looking.with_corners = true;
   const NoiseFreeView seen = look(visibility, rig.estimate.rig, pose, looking);
   const Sensor sensor(rig.estimate.rig, sources);
-  const StereoObservation sighting = sensor.sense(seen, options.seed, options.trial, 0);
+  const StereoObservation sighting =
+      sensor.sense(seen, {.seed = options.seed, .trial = options.trial});
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
   json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(estimator_rig)}};

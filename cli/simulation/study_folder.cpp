@@ -23,6 +23,8 @@
 #include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "sim/study/cell_comparison.h"
+#include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/world.h"

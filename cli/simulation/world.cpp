@@ -9,7 +9,6 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "sim/route.h"
 #include "sim/world/office.h"
 #include "sim/world_file.h"
 

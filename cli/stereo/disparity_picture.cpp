@@ -8,10 +8,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "cli/program/picture.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 namespace {

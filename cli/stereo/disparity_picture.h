@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 #include "cli/program/namespaces.h"
 

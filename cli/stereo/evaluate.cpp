@@ -24,6 +24,7 @@
 #include "cli/stereo/evaluate_scene.h"
 #include "cli/stereo/matcher_names.h"
 #include "cli/stereo/scene_options.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"

@@ -26,15 +26,14 @@
 #include "cli/program/share_folder.h"
 #include "cli/stereo/evaluate_scene.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/evaluation/warped_evaluation.h"
 #include "stereo/evaluation/warped_pair.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/rectification_covariance.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::cli {

@@ -22,8 +22,8 @@ constexpr int curve_points = 20;
 std::vector<CurvePoint> by_confidence(const Scene& scene,
                                       const Run& run,
                                       const EvaluationOptions& how) {
-  return density_curve(scene.edges, run.found, scene.truth, scene.pair.left.width_px, curve_points,
-                       how);
+  return density_curve(scene.edges, run.found, scene.truth, scene.pair.left.width_px,
+                       {.points = curve_points, .scored = how});
 }
 
 /// One point per matcher of a sweep, highest density first.

@@ -19,7 +19,6 @@
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/matcher_input.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::cli {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "cli/program/session.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/evaluation/stereo_scenes.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::cli {

@@ -26,9 +26,10 @@
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/raw_pixels.h"
 #include "stereo/rectification/rectification_covariance.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
 #include "stereo/rectified_images.h"
 
 namespace vernier::cli {

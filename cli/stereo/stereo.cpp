@@ -26,7 +26,6 @@
 #include "cli/stereo/swapped_pair.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"

@@ -9,12 +9,12 @@
 #include "calib/rig.h"
 #include "cli/program/session.h"
 #include "cli/stereo/stereo_input.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/matcher.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/rectification_covariance.h"
-#include "stereo/rectified_geometry.h"
 
 namespace vernier::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/stereo/stereo_input.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
 #include "stereo/reconstruction/segment_disparity.h"

@@ -13,11 +13,11 @@
 #include "cli/program/camera_images.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/matcher_input.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
 #include "stereo/rectified_images.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 namespace {

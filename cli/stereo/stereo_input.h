@@ -8,10 +8,10 @@
 
 #include "calib/rig_estimate.h"
 #include "cli/program/session.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
 #include "stereo/rectified_images.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

@@ -8,9 +8,8 @@
 
 #include "calib/error.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::cli {
 

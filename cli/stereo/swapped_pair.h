@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 #include "cli/program/namespaces.h"
 

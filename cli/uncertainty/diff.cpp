@@ -13,6 +13,7 @@
 
 #include "calib/covariance.h"
 #include "calib/estimate/projection_difference.h"
+#include "calib/estimate/same_rig.h"
 #include "calib/pose.h"
 #include "calib/rig_difference.h"
 #include "calib/rig_estimate.h"

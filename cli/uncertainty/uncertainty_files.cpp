@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 #include "cli/program/heat_map.h"
 #include "cli/program/session.h"
 #include "cli/uncertainty/uncertainty_report.h"

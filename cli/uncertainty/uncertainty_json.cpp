@@ -8,9 +8,9 @@
 
 #include "calib/base/text_lines.h"
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/sampler.h"
+#include "calib/triangulation_uncertainty.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "cli/program/session.h"
 #include "cli/uncertainty/uncertainty_report.h"

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/estimate/rig_pair.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
@@ -83,7 +82,8 @@ void add_projection(const Input& in, int camera, PointFixedTo fixed_to, Uncertai
     report.camera = lens.name;
     report.fixed_to = fixed_to;
     report.distance_m = distance_m;
-    report.grid = projection_grid(linear, request.columns, request.rows, distance_m);
+    report.grid = projection_grid(
+        linear, {.columns = request.columns, .rows = request.rows, .distance_m = distance_m});
     summarise(report);
     if (report.grid.absent > 0 && distance_m == distances.front()) {
       const std::string note = fmt::format(

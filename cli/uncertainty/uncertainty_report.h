@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/triangulation_uncertainty.h"
 #include "cli/uncertainty/uncertainty_report.h"

@@ -1,8 +1,8 @@
 #include <cstdio>
 
-#include "calib/depth_uncertainty.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
+#include "calib/triangulation_uncertainty.h"
 
 int main(int argc, char** argv) {
   using namespace vernier;

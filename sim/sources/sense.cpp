@@ -7,7 +7,6 @@
 #include "calib/camera.h"
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
 #include "stereo/rectification.h"
@@ -21,10 +20,7 @@ Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_l
       rectification_(rectification(true_rig)),
       sources_((check(settings, "sources"), standard_sources(settings, min_length_px))) {}
 
-StereoObservation Sensor::sense(const NoiseFreeView& look,
-                                std::uint64_t seed,
-                                std::uint32_t trial,
-                                std::uint32_t frame) const {
+StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& draw) const {
   SensedView view;
   view.edges.reserve(look.edges.size());
   for (const VisibleEdge& edge : look.edges) view.edges.emplace_back().truth = edge;
@@ -34,7 +30,7 @@ StereoObservation Sensor::sense(const NoiseFreeView& look,
     };
     view.corners.push_back({corner, {pixel(0), pixel(1)}, false});
   }
-  const SensingContext context{rig_, rectification_, seed, trial, frame};
+  const SensingContext context{rig_, rectification_, draw.seed, draw.trial, draw.frame};
   for (const auto& source : sources_) source->apply(context, view);
 
   StereoObservation sighting;

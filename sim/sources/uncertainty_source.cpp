@@ -15,7 +15,6 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "stereo/rectification.h"
 #include "stereo/segment.h"

@@ -15,21 +15,17 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
-#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
-#include "sim/route.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
+#include "sim/study/told_rig.h"
+#include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
-#include "stereo/reconstruction/triangulate.h"
-#include "stereo/segment.h"
+#include "sim/world.h"
 
 namespace vernier::sim {
 
 using namespace localise;
-using namespace stereo;
-using namespace stereo::internal;
+using namespace internal;
 
 namespace {
 
@@ -55,18 +51,6 @@ PlaceView interpret(const Rig& told,
 }
 
 }  // namespace
-
-double told_endpoint_sigma_px(const ExperimentSettings& settings) {
-  return settings.knows_endpoint_sigma ? std::max(0.1, settings.sources.endpoint_sigma_px)
-                                       : TriangulationOptions().endpoint_sigma_px;
-}
-
-std::vector<SpaceSegment> reconstruct(const Rig& told,
-                                      const StereoObservation& sighting,
-                                      const ExperimentSettings& settings) {
-  const TriangulationOptions options{.endpoint_sigma_px = told_endpoint_sigma_px(settings)};
-  return triangulate(told, sighting.segments, options);
-}
 
 MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
@@ -110,7 +94,9 @@ TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig
   for (std::size_t i = 0; i < map_views_->size(); ++i) {
     const NoiseFreeView& place = (*map_views_)[i];
     const StereoObservation sighting =
-        sensor_.sense(place, settings_.seed, map_trial + block, static_cast<std::uint32_t>(i));
+        sensor_.sense(place, {.seed = settings_.seed,
+                              .trial = map_trial + block,
+                              .frame = static_cast<std::uint32_t>(i)});
     nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
   }
   return make_map(std::move(nodes));
@@ -126,7 +112,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   NoiseFreeViewOptions looking = look_options(settings_);
   looking.with_corners = true;
   const NoiseFreeView seen = look(visibility_, rig_.rig, result.truth, looking);
-  const StereoObservation sighting = sensor_.sense(seen, settings_.seed, trial, 0);
+  const StereoObservation sighting = sensor_.sense(seen, {.seed = settings_.seed, .trial = trial});
 
   const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
   const PlaceView view = interpret(told, sighting, settings_);
@@ -154,9 +140,8 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   return result;
 }
 
-std::vector<TrialResult> LocalisationExperiment::run_block(std::uint32_t block,
-                                                           std::uint32_t first,
-                                                           std::uint32_t count) const {
+std::vector<TrialResult> LocalisationExperiment::run_block(const TrialBlock& trials) const {
+  const auto [block, first, count] = trials;
   std::vector<TrialResult> results;
   results.reserve(count);
   TopologicalMap map;

@@ -1,24 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/query_protocol.h"
+#include "sim/experiment.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <set>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "calib/error.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
-#include "sim/route.h"
+#include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
@@ -26,144 +16,7 @@ namespace vernier::sim {
 
 using namespace localise;
 using namespace vernier::internal;
-
-namespace {
-
-constexpr double robot_radius_m = 0.12;
-constexpr double robot_top_m = 0.2;  ///< above its camera
-constexpr double floor_m = 0.02;     ///< what lies lower is the floor itself
-
-/// Distance on the floor from a point to a segment.
-double plan_distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = b - a;
-  const double dd = d.squaredNorm();
-  const double t = dd > 0 ? std::clamp((p - a).dot(d) / dd, 0.0, 1.0) : 0.0;
-  return (a + t * d - p).norm();
-}
-
-/// Whether the point is inside the polygon's outline on the floor.
-bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const auto &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
-/// Bounding box of the poses that are accepted: of segments and surfaces, from the floor at 0 or
-/// lower, and of the route with the largest offset of a query.
-WorldExtent standing_box(const World& world) {
-  WorldExtent box{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
-                  Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  const auto take_in = [&](const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m) {
-    box.low_m = box.low_m.cwiseMin(low_m);
-    box.high_m = box.high_m.cwiseMax(high_m);
-  };
-  for (const WorldSegment& segment : world.segments) {
-    take_in(segment.a_m, segment.a_m);
-    take_in(segment.b_m, segment.b_m);
-  }
-  for (const WorldSurface& surface : world.surfaces) {
-    for (const Eigen::Vector3d& point : surface.polygon_m) take_in(point, point);
-  }
-  const double across_m = span(QueryProtocol::anywhere).across_m;
-  const Eigen::Vector3d about(across_m, across_m, 0);
-  for (const RouteLeg& leg : world.route) {
-    for (const Eigen::Vector2d& p : leg.points_m) {
-      const Eigen::Vector3d at(p.x(), p.y(), 0);
-      take_in(at - about, at + about);
-    }
-  }
-  if (box.low_m.x() > box.high_m.x()) return extent(world);  // an empty world
-  box.low_m.z() = std::min(0.0, box.low_m.z());
-  return box;
-}
-
-/// Height of the highest level surface over a point, such as a ceiling; infinite if there is none.
-double ceiling_height_m(const World& world, const Eigen::Vector2d& at_m) {
-  double highest = -std::numeric_limits<double>::infinity();
-  for (const WorldSurface& surface : world.surfaces) {
-    double low = surface.polygon_m[0].z(), high = low;
-    for (const auto& point : surface.polygon_m) {
-      low = std::min(low, point.z());
-      high = std::max(high, point.z());
-    }
-    if (high < floor_m || high - low >= 1e-6 || !inside_plan(at_m, surface.polygon_m)) continue;
-    highest = std::max(highest, high);
-  }
-  return std::isinf(highest) ? -highest : highest;
-}
-
-/// Whether a path of short straight steps, free of surfaces at eye height, connects a point to the
-/// route: first a direct line of sight to the route, then a search over a grid through the point.
-class WayToRoute {
- public:
-  WayToRoute(const Visibility& visibility, double height_m)
-      : visibility_(visibility), box_(standing_box(visibility.world())), height_m_(height_m) {
-    const std::vector<RouteLeg>& route = visibility.world().route;
-    const double length = route_length_m(route);
-    for (double s = 0; s < length; s += step_m) {
-      const Pose2D at = route_point(route, s).pose;
-      on_route_.emplace_back(at.x_m, at.y_m, height_m);
-    }
-  }
-
-  bool leads_from(const Eigen::Vector2d& start_m) const {
-    if (on_route_.empty() || meets_route(start_m, std::numeric_limits<double>::infinity())) {
-      return true;
-    }
-    std::set<std::pair<int, int>> reached{{0, 0}};
-    std::vector<std::pair<int, int>> open{{0, 0}};
-    const auto at = [&](const std::pair<int, int>& cell) {
-      return Eigen::Vector2d(start_m.x() + step_m * cell.first, start_m.y() + step_m * cell.second);
-    };
-    while (!open.empty()) {
-      const std::pair<int, int> cell = open.back();
-      open.pop_back();
-      const Eigen::Vector2d here = at(cell);
-      if (meets_route(here, 1.5 * step_m)) return true;
-      for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-        const std::pair<int, int> next{cell.first + dx, cell.second + dy};
-        if (!in_box(at(next)) || reached.count(next) > 0 || !steps(here, at(next))) continue;
-        reached.insert(next);
-        open.push_back(next);
-      }
-    }
-    return false;
-  }
-
- private:
-  static constexpr double step_m = 0.25;
-
-  bool in_box(const Eigen::Vector2d& p) const {
-    return (p.array() >= box_.low_m.head<2>().array()).all() &&
-           (p.array() <= box_.high_m.head<2>().array()).all();
-  }
-  bool sees(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
-    return visibility_.sees({from.x(), from.y(), height_m_}, {to.x(), to.y(), height_m_});
-  }
-  /// Extends the line of sight a little, because a point on a surface is visible from both sides.
-  bool steps(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
-    constexpr double beyond = 0.04;
-    return sees(from, to + beyond * (to - from));
-  }
-  bool meets_route(const Eigen::Vector2d& p, double within_m) const {
-    return std::any_of(on_route_.begin(), on_route_.end(), [&](const Eigen::Vector3d& q) {
-      return (q.head<2>() - p).norm() <= within_m && sees(q.head<2>(), p);
-    });
-  }
-
-  const Visibility& visibility_;
-  WorldExtent box_;
-  double height_m_;
-  std::vector<Eigen::Vector3d> on_route_;
-};
-
-}  // namespace
+using namespace internal;
 
 std::string_view name(QueryProtocol protocol) {
   switch (protocol) {
@@ -184,63 +37,6 @@ QueryProtocol query_protocol(std::string_view name_of) {
   }
   throw Error("protocol \"" + std::string(name_of) + "\"", "unknown protocol",
               "use near_path, path or anywhere");
-}
-
-ProtocolSpan span(QueryProtocol protocol) {
-  constexpr double degree = std::numbers::pi / 180;
-  switch (protocol) {
-    case QueryProtocol::near_path:
-      return {0.1, 5 * degree};
-    case QueryProtocol::path:
-      return {0.3, 15 * degree};
-    case QueryProtocol::anywhere:
-      break;
-  }
-  return {0.6, 180 * degree};
-}
-
-bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
-  for (const WorldSurface& surface : world.surfaces) {
-    double low = surface.polygon_m[0].z(), high = low;
-    for (const auto& point : surface.polygon_m) {
-      low = std::min(low, point.z());
-      high = std::max(high, point.z());
-    }
-    if (low > height_m || high < floor_m) continue;
-    const auto& polygon = surface.polygon_m;
-    if (high - low < 1e-6 && inside_plan(at_m, polygon)) return false;
-    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-      if (plan_distance(at_m, polygon[i].head<2>(), polygon[j].head<2>()) < radius_m) return false;
-    }
-  }
-  return true;
-}
-
-std::string standing_fault(const Visibility& visibility, const Pose2D& pose, double eye_height_m) {
-  const World& world = visibility.world();
-  const WorldExtent box = standing_box(world);
-  if (!(pose.x_m >= box.low_m.x() && pose.x_m <= box.high_m.x() && pose.y_m >= box.low_m.y() &&
-        pose.y_m <= box.high_m.y())) {
-    return fmt::format("is outside the world, which extends from ({:g}, {:g}) to ({:g}, {:g}) m",
-                       box.low_m.x(), box.low_m.y(), box.high_m.x(), box.high_m.y());
-  }
-  const Eigen::Vector2d at(pose.x_m, pose.y_m);
-  if (!(eye_height_m >= box.low_m.z())) {
-    return fmt::format("is at a height of {:g} m, below the floor at {:g} m", eye_height_m,
-                       box.low_m.z());
-  }
-  if (const double ceiling_m = ceiling_height_m(world, at); !(eye_height_m <= ceiling_m)) {
-    return fmt::format("is at a height of {:g} m, above the ceiling at {:g} m", eye_height_m,
-                       ceiling_m);
-  }
-  if (!is_free(world, at, robot_radius_m, eye_height_m + robot_top_m)) {
-    return fmt::format("has a surface nearer than {:g} m, or less than {:g} m above the camera",
-                       robot_radius_m, robot_top_m);
-  }
-  if (!WayToRoute(visibility, eye_height_m).leads_from(at)) {
-    return "is not reachable from the route, as inside a wall or a cupboard";
-  }
-  return "";
 }
 
 Pose2D draw_query(const Visibility& visibility,

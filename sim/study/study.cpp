@@ -18,29 +18,23 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/interval.h"
-#include "calib/statistics/distributions.h"
-#include "calib/statistics/quantile.h"
-#include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
-#include "sim/query_protocol.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
-#include "sim/study/success_interval.h"
+#include "sim/study/told_rig.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
 using namespace vernier::internal;
-using namespace localise;
 
 namespace {
 
@@ -276,25 +270,6 @@ std::string store_name(const Shard& shard) {
                           : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count);
 }
 
-/// NaN if there are none.
-double quantile_or_nan(std::vector<double> values, double p) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return quantile(std::move(values), p, QuantileKind::linear);
-}
-
-std::map<std::uint32_t, const TrialResult*> by_number(const CellResult& cell) {
-  std::map<std::uint32_t, const TrialResult*> trials;
-  for (const TrialResult& trial : cell.trials) trials[trial.trial] = &trial;
-  return trials;
-}
-
-/// McNemar's exact p-value: the smaller count under Binomial(both counts, 1/2), both tails.
-double exact_mcnemar(int only_a, int only_b) {
-  const int discordant = only_a + only_b;
-  if (discordant == 0) return 1;
-  return std::min(1.0, 2 * binomial_cdf(std::min(only_a, only_b), discordant, 0.5));
-}
-
 }  // namespace
 
 std::string command_key(const std::string& command) { return "command " + command; }
@@ -332,9 +307,9 @@ void run_study(const Study& study, const StudyRun& run) {
     const LocalisationExperiment experiment(
         visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment);
     StoredBlock block{job.key, job.block,
-                      experiment.run_block(static_cast<std::uint32_t>(job.block),
-                                           static_cast<std::uint32_t>(job.first),
-                                           static_cast<std::uint32_t>(job.count))};
+                      experiment.run_block({.block = static_cast<std::uint32_t>(job.block),
+                                            .first = static_cast<std::uint32_t>(job.first),
+                                            .count = static_cast<std::uint32_t>(job.count)})};
     const std::lock_guard lock(mutex);
     store.put(block);
     if (run.progress) run.progress(++done, total);
@@ -383,103 +358,6 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     cell.maps.push_back(map);
   }
   return results;
-}
-
-CellSummary summarise(const CellResult& cell) {
-  constexpr double degree = 0.017453292519943295;
-  CellSummary s;
-  s.trials = static_cast<int>(cell.trials.size());
-  s.maps = static_cast<int>(cell.maps.size());
-  int successes = 0, answered = 0, node = 0, close = 0, closer = 0;
-  std::vector<double> errors, headings, cpu;
-  double wall = 0;
-  for (const TrialResult& t : cell.trials) {
-    cpu.push_back(t.cpu_ms);
-    wall += t.wall_ms;
-    if (!t.answered()) continue;
-    ++answered;
-    const double turn = std::abs(t.heading_error_rad);
-    successes += t.success();
-    node += t.node_error_m <= 1;
-    close += t.error_m <= 0.5 && turn <= 5 * degree;
-    closer += t.error_m <= 0.25 && turn <= 2 * degree;
-    errors.push_back(t.error_m);
-    headings.push_back(turn);
-  }
-  const double n = std::max(1, s.trials);
-  s.success = successes / n;
-  s.success_interval_binomial_95 = wilson_interval(successes, s.trials);
-  s.success_interval_95 = clustered_interval_95(cell.maps);
-  if (!s.success_interval_95) {
-    s.why_no_interval = fmt::format("needs {} maps, has {}", fewest_maps, s.maps);
-  }
-  s.coverage = answered / n;
-  s.success_when_answered = answered > 0 ? static_cast<double>(successes) / answered : 0;
-  s.node_success = node / n;
-  s.recall_05 = close / n;
-  s.recall_025 = closer / n;
-  s.median_error_m = quantile_or_nan(errors, 0.5);
-  s.median_heading_error_rad = quantile_or_nan(headings, 0.5);
-  for (const double ms : cpu) s.cpu_ms_mean += ms / n;
-  s.cpu_ms_median = quantile_or_nan(cpu, 0.5);
-  s.cpu_ms_p95 = quantile_or_nan(cpu, 0.95);
-  s.wall_ms_mean = wall / n;
-  return s;
-}
-
-bool share_queries(const CellResult& a, const CellResult& b) {
-  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
-  bool shared = false;
-  for (const TrialResult& trial : b.trials) {
-    const auto found = trials_of_a.find(trial.trial);
-    if (found == trials_of_a.end()) continue;
-    const Pose2D &p = found->second->truth, &q = trial.truth;
-    if (p.x_m != q.x_m || p.y_m != q.y_m || p.heading_rad != q.heading_rad) return false;
-    shared = true;
-  }
-  return shared;
-}
-
-PairedComparison compare(const CellResult& a, const CellResult& b) {
-  if (!share_queries(a, b)) {
-    throw Error("comparison of \"" + a.cell.label + "\" with \"" + b.cell.label + "\"",
-                "the cells have no common queries",
-                "compare cells with the same protocol and seed");
-  }
-  const std::map<std::uint32_t, const TrialResult*> trials_of_a = by_number(a);
-  PairedComparison c;
-  std::map<std::uint32_t, MapDifference> by_map;
-  for (const TrialResult& trial : b.trials) {
-    const auto found = trials_of_a.find(trial.trial);
-    if (found == trials_of_a.end()) continue;
-    const bool in_a = found->second->success(), in_b = trial.success();
-    (in_a ? (in_b ? c.both : c.only_a) : (in_b ? c.only_b : c.neither))++;
-    MapDifference& map = by_map[trial.trial / static_cast<std::uint32_t>(a.trials_per_block)];
-    map.difference += in_a - in_b;
-    map.discordant += in_a != in_b;
-    ++map.trials;
-  }
-  std::vector<MapDifference> maps;
-  for (const auto& [block, map] : by_map) maps.push_back(map);
-  c.maps = static_cast<int>(maps.size());
-  if (const std::optional<double> p = paired_p_value(maps)) {
-    c.p_value = *p;
-    c.mcnemar_p = exact_mcnemar(c.only_a, c.only_b);
-  }
-  return c;
-}
-
-std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
-    const std::vector<CellResult>& cells) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t b = 1; b < cells.size(); ++b) {
-    for (std::size_t a = b; a-- > 0;) {
-      if (!share_queries(cells[a], cells[b])) continue;
-      pairs.emplace_back(a, b);
-      break;
-    }
-  }
-  return pairs;
 }
 
 }  // namespace vernier::sim::internal

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calib/interval.h"
@@ -45,9 +41,9 @@ struct StudyRun {
 
 /// Runs the missing blocks of this shard. Blocks run in parallel, each on one thread, as do the
 /// queries of a ceiling, so results do not depend on the number of threads; an interrupted run can
-/// be resumed. Shards share the queries of a ceiling. The caller's own parallel work is not limited:
-/// TBB's limit for the process is raised during the run if more threads are asked for, never
-/// lowered, and a limit that the caller holds stays.
+/// be resumed. Shards share the queries of a ceiling. The caller's own parallel work is not
+/// limited: TBB's limit for the process is raised during the run if more threads are asked for,
+/// never lowered, and a limit that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
 /// Results of a cell.
@@ -71,44 +67,5 @@ std::string command_key(const std::string& command);
 
 /// Reads all stores of the folder. Throws Error if two shards disagree on a block.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
-
-/// Statistics of a cell.
-struct CellSummary {
-  int trials = 0;
-  int maps = 0;  ///< number of recorded maps
-  double success = 0;
-  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
-  std::string why_no_interval;            ///< "needs 6 maps, has 1"; empty if there is an interval
-  Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
-  double coverage = 0;                    ///< fraction answered
-  double success_when_answered = 0;
-  double node_success = 0;               ///< for the map node instead of the refined pose
-  double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
-  double median_error_m = 0;             ///< over answered trials
-  double median_heading_error_rad = 0;
-  double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
-};
-CellSummary summarise(const CellResult& cell);
-
-/// Whether two cells have the same queries: all trials that both contain start at the same pose,
-/// and there is at least one. False if the seed or the query protocol is swept.
-bool share_queries(const CellResult& a, const CellResult& b);
-
-/// Two cells on the same trials: number in which both succeeded, only one, neither. The p-values
-/// are for the null hypothesis that neither is better, NaN for fewer than six maps.
-struct PairedComparison {
-  int both = 0, only_a = 0, only_b = 0, neither = 0;
-  int maps = 0;
-  double p_value = std::numeric_limits<double>::quiet_NaN();  ///< paired t-test over maps
-  /// Exact, as if trials were independent.
-  double mcnemar_p = std::numeric_limits<double>::quiet_NaN();
-};
-
-/// Throws Error if the cells do not share their queries.
-PairedComparison compare(const CellResult& a, const CellResult& b);
-
-/// Pairs of cells to compare: each with the nearest earlier one that shares its queries.
-std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
-    const std::vector<CellResult>& cells);
 
 }  // namespace vernier::sim::internal

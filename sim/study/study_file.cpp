@@ -17,7 +17,6 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
-#include "sim/query_protocol.h"
 #include "sim/sources.h"
 #include "sim/study/success_interval.h"
 

@@ -14,11 +14,13 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/visibility.h"
+#include "sim/visibility/stretch_feature.h"
 #include "sim/world.h"
 
 namespace vernier::sim {
 
 using namespace localise;
+using namespace internal;
 
 namespace {
 
@@ -46,18 +48,6 @@ void for_common_stretches(const std::vector<VisibleInterval>& left,
 }
 
 }  // namespace
-
-std::uint32_t stretch_feature(int segment, int run, std::size_t segments) {
-  const std::uint64_t page = static_cast<std::uint64_t>(run) / 32;
-  const std::uint64_t feature =
-      32 * (page * segments + static_cast<std::uint64_t>(segment)) + run % 32;
-  if (feature >> 31 != 0) {  // another bit identifies the piece of the run
-    throw Error("segment " + std::to_string(segment),
-                "the identity of visible run " + std::to_string(run) + " exceeds 31 bits",
-                "use a smaller world, or fewer occluders in front of this edge");
-  }
-  return static_cast<std::uint32_t>(feature);
-}
 
 Pose T_left_world(const Pose2D& pose, const CameraMount& mount) {
   const Pose T_world_robot{rotation_from_vector({0, 0, pose.heading_rad}), {pose.x_m, pose.y_m, 0}};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/route.h"
+#include "sim/world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "calib/error.h"
 #include "localise/place.h"
-#include "sim/world.h"
 
 namespace vernier::sim {
 

@@ -5,11 +5,11 @@
 #include <map>
 
 #include "calib/base/grey_image.h"
+#include "calib/board/frame_numbering.h"
 #include "calib/board_detection.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
-#include "calib/observations_file.h"
 #include "calib/pair_observations.h"
 #include "calib/rig_estimate.h"
 #include "stereo/corners/corner_match.h"

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/connected_sets.h"
 #include "stereo/edges/edge_places.h"
 #include "stereo/grey_levels.h"

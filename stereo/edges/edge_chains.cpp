@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 
 namespace vernier::stereo::internal {
 namespace {

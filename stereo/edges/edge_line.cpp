@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 
 namespace vernier::stereo::internal {
 

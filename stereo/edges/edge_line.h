@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 
 namespace vernier::stereo::internal {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 
 namespace vernier::stereo::internal {
 

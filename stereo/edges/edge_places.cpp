@@ -8,7 +8,7 @@
 #include <opencv2/core/hal/hal.hpp>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/image/image_gradient.h"
 
 namespace vernier::stereo::internal {

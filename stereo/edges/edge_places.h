@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/image/image_gradient.h"
 
 namespace vernier::stereo::internal {

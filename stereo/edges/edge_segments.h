@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/segment.h"
 
 namespace vernier::stereo::internal {

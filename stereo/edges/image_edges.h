@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/grey_levels.h"
 

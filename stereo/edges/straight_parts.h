@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_segments.h"
 
 namespace vernier::stereo::internal {

@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "stereo/canny_edges.h"
 #include "stereo/corners/corner_match.h"
-#include "stereo/edge_point.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/stereo_truth.h"

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_neighbours.h"
 #include "stereo/edges/image_edges.h"
 #include "stereo/evaluation/warped_segments.h"

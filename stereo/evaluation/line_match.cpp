@@ -10,6 +10,7 @@
 #include "calib/statistics/quantile.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/edges/image_edges.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
 #include "stereo/stereo_truth.h"

@@ -7,11 +7,15 @@
 #include <cstddef>
 
 #include "calib/error.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/matcher.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo {
+
+using namespace internal;
+
 namespace {
 
 constexpr double mismatch_px = 3, inlier_px = 1;
@@ -67,34 +71,6 @@ int angle_bin(const EdgePoint& edge) {
 
 }  // namespace
 
-bool is_scored(const EdgePoint& edge,
-               const TruthAtEdge& truth,
-               int width_px,
-               const EvaluationOptions& options) {
-  return truth.known && std::abs(edge.normal.x()) >= std::sin(options.min_angle_rad) &&
-         edge.x >= options.border_px && edge.x < width_px - options.border_px;
-}
-
-bool is_occluded(const TruthAtEdge& truth, DiscontinuityRule rule) {
-  return rule == DiscontinuityRule::foreground ? truth.occluded : truth.own_occluded;
-}
-
-double error_px(const EdgeDisparity& found, const TruthAtEdge& truth, DiscontinuityRule rule) {
-  const double before = std::min(0.0F, truth.crossing_px),
-               after = std::max(0.0F, truth.crossing_px);
-  const auto error_of = [&](double surface_px) {
-    const double error = found.disparity_px - surface_px;
-    return error - std::clamp(error, before, after);
-  };
-  const double error = error_of(truth.disparity_px);
-  if (rule == DiscontinuityRule::foreground || !truth.discontinuity) return error;
-  double least = std::abs(error);
-  for (const float surface : {truth.own_px, truth.min_px, truth.max_px}) {
-    if (!std::isnan(surface)) least = std::min(least, std::abs(error_of(surface)));
-  }
-  return least;
-}
-
 MatcherScore evaluate(const std::vector<EdgePoint>& edges,
                       const std::vector<EdgeDisparity>& found,
                       const std::vector<TruthAtEdge>& truth,
@@ -141,8 +117,8 @@ std::vector<CurvePoint> density_curve(const std::vector<EdgePoint>& edges,
                                       const std::vector<EdgeDisparity>& found,
                                       const std::vector<TruthAtEdge>& truth,
                                       int width_px,
-                                      int points,
-                                      const EvaluationOptions& options) {
+                                      const DensityCurveOptions& how) {
+  const auto& [points, options] = how;
   check_sizes(edges, found, truth);
   struct Match {
     float confidence;

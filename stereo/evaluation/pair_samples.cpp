@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "stereo/corners/corner_matching.h"
 #include "stereo/corners/epipolar_band.h"
@@ -28,7 +28,6 @@
 #include "stereo/matcher.h"
 #include "stereo/matching/map_window.h"
 #include "stereo/matching/matcher_input.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo::internal {

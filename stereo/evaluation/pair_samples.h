@@ -12,8 +12,8 @@
 #include "stereo/evaluation/line_match.h"
 #include "stereo/evaluation/segment_shift.h"
 #include "stereo/evaluation/warped_segments.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo::internal {

@@ -13,8 +13,8 @@
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/map_window.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo::internal {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stereo/rectified_pair.h"
+#include "stereo/grey_levels.h"
 
 #include "stereo/stereo_truth.h"
 

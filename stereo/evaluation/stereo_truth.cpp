@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "calib/error.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/matching/map_window.h"
 
 namespace vernier::stereo {

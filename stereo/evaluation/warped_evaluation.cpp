@@ -6,7 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
+#include "stereo/evaluation/edge_error.h"
 #include "stereo/evaluation/warped_pair.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/evaluation/warped_pair.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"

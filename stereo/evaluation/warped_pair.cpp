@@ -13,15 +13,14 @@
 #include "calib/base/ordered_parallel.h"
 #include "calib/error.h"
 #include "calib/rig.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/resampled_image.h"
 #include "stereo/matching/map_window.h"
 #include "stereo/rectification.h"
+#include "stereo/rectification/raw_pixels.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo::internal {

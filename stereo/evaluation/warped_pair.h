@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "calib/rig.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/vertical_field.h"
-#include "stereo/rectified_geometry.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::stereo::internal {

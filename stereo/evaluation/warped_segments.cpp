@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_line.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/edges/image_edges.h"

@@ -17,7 +17,6 @@
 #include "stereo/matcher.h"
 #include "stereo/matching/edge_sampling.h"
 #include "stereo/matching/matcher_input.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 namespace {

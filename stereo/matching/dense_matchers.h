@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/edge_sampling.h"
-#include "stereo/rectified_pair.h"
 
 /// OpenCV's dense matchers as plug-ins, for comparison.
 ///

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "calib/error.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_points_by_row.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/stretched_image.h"
@@ -21,7 +21,6 @@
 #include "stereo/matching/edge_refinement.h"
 #include "stereo/matching/edge_support.h"
 #include "stereo/matching/matcher_input.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "stereo/edges/edge_points_by_row.h"
+#include "stereo/grey_levels.h"
 #include "stereo/image/image_noise.h"
 #include "stereo/image/matrix_of.h"
 #include "stereo/matching/disparity_refinement.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

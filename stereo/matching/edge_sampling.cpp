@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/map_window.h"
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/matcher.h"
 
 namespace vernier::stereo::internal {

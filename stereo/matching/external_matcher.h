@@ -5,9 +5,9 @@
 #include <string>
 
 #include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/edge_sampling.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "calib/error.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 
 namespace vernier::stereo::internal {
 namespace {

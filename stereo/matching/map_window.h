@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 
 namespace vernier::stereo::internal {
 

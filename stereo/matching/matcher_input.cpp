@@ -8,7 +8,6 @@
 
 #include "calib/error.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "stereo/rectified_pair.h"
+#include "stereo/grey_levels.h"
 
 namespace vernier::stereo::internal {
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matching/stretch_correlation.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matching/stretch_correlation.h"
 

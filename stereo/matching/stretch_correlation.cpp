@@ -10,13 +10,12 @@
 #include "calib/error.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/matcher_input.h"
 #include "stereo/matching/right_edges.h"
 #include "stereo/matching/stretch_search.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -9,11 +9,11 @@
 #include <cstdlib>
 
 #include "calib/base/ordered_parallel.h"
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/stretch_correlation.h"
 #include "stereo/matching/stretch_filter.h"
 #include "stereo/matching/stretch_kernel.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/stretch_correlation.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/matcher.h"
 #include "stereo/segment.h"

@@ -13,7 +13,8 @@
 #include "calib/rig_estimate.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/triangulate.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/raw_pixels.h"
 #include "stereo/segment.h"
 
 namespace vernier::stereo::internal {

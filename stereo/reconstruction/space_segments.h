@@ -8,7 +8,7 @@
 
 #include "calib/rig_estimate.h"
 #include "stereo/reconstruction/segment_disparity.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
 #include "stereo/segment.h"
 
 namespace vernier::stereo::internal {

@@ -13,7 +13,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/triangulation.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
 
 namespace vernier::stereo::internal {
 

@@ -7,7 +7,8 @@
 
 #include "calib/rig.h"
 #include "calib/triangulation.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/raw_pixels.h"
 
 namespace vernier::stereo::internal {
 

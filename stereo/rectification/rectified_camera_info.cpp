@@ -6,7 +6,7 @@
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/formats/ros_camera_info.h"
 #include "calib/rig.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
 
 namespace vernier::stereo::internal {
 

@@ -11,7 +11,8 @@
 #include "calib/rig.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/resampled_image.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
+#include "stereo/rectification/raw_pixels.h"
 
 namespace vernier::stereo {
 

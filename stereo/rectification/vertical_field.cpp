@@ -20,7 +20,6 @@
 #include "stereo/image/patch_search.h"
 #include "stereo/rectification/vertical_field_fit.h"
 #include "stereo/rectified_images.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "stereo/grey_levels.h"
 #include "stereo/rectified_images.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::stereo::internal {
 

@@ -8,7 +8,6 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "sim/route.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
 

@@ -9,7 +9,6 @@
 #include "localise/pgh.h"
 #include "localise/place.h"
 #include "localise/rank.h"
-#include "localise/topological_map.h"
 #include "tests/support/rooms.h"
 
 namespace vernier {

@@ -55,7 +55,7 @@ inline BoardObservations board_at_tilts(const Rig& rig,
                                         const Chessboard& board,
                                         std::uint64_t seed,
                                         const std::vector<Eigen::Vector3d>& tilts) {
-  SimulatedBoard drawn = simulate_board(rig, board, seed, 0, {.frames = 40, .tilt_rad = 0});
+  SimulatedBoard drawn = simulate_board(rig, board, {.seed = seed, .frames = 40, .tilt_rad = 0});
   BoardObservations& observations = drawn.observations;
   std::vector<BoardView> kept;
   int frames = 0;

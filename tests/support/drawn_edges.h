@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_segments.h"
 #include "stereo/edges/image_edges.h"
 #include "stereo/segment.h"

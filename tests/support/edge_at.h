@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 
 namespace vernier::test {
 

@@ -2,52 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
-#include "calib/camera.h"
-#include "calib/pose.h"
 #include "calib/rig.h"
-#include "tests/support/numeric_jacobian.h"
 
 namespace vernier::test {
 
 /// The same residual in its textbook form, one pair at a time: rays by unproject(), the pixels'
 /// share of the variance by numeric derivatives.
-inline double textbook_sampson(const Rig& rig, const Eigen::Vector4d& y, double sigma) {
-  const Pose& T = rig.T_camera_first[1];
-  const Eigen::Matrix3d E = hat(T.t) * T.R;
-  const auto constraint = [&](const Eigen::VectorXd& at) {
-    const Eigen::Vector3d l = unproject(rig.cameras[0], at.head<2>());
-    const Eigen::Vector3d r = unproject(rig.cameras[1], at.tail<2>());
-    return Eigen::VectorXd::Constant(1, r.dot(E * l));
-  };
-  const Eigen::MatrixXd by_pixels = numeric_jacobian(constraint, y, 1e-3);
-  return constraint(y)[0] / (sigma * by_pixels.norm());
-}
+double textbook_sampson(const Rig& rig, const Eigen::Vector4d& y, double sigma);
 
 /// The smallest distance, in standard deviations, that moves a pair of pixels onto the projections
 /// of one point: bundle adjustment of one point by Gauss and Newton's steps.
-inline double bundle_distance(const Rig& rig, const Eigen::Vector4d& y, double sigma) {
-  const Pose& T = rig.T_camera_first[1];
-  const Eigen::Vector3d l = unproject(rig.cameras[0], y.head<2>());
-  const Eigen::Vector3d r = T.R.transpose() * unproject(rig.cameras[1], y.tail<2>());
-  const Eigen::Vector3d o = -(T.R.transpose() * T.t);
-  Eigen::Matrix<double, 3, 2> A;
-  A << l, -r;
-  const Eigen::Vector2d depth = (A.transpose() * A).ldlt().solve(A.transpose() * o);
-  Eigen::Vector3d X = l * depth[0];
-  double distance = 0;
-  for (int round = 0; round < 30; ++round) {
-    ProjectionJacobian jl, jr;
-    Eigen::Vector4d e;
-    e << project(rig.cameras[0], X, jl) - y.head<2>(),
-        project(rig.cameras[1], T * X, jr) - y.tail<2>();
-    Eigen::Matrix<double, 4, 3> J;
-    J << jl.point, jr.point * T.R;
-    distance = e.norm() / sigma;
-    X -= (J.transpose() * J).ldlt().solve(J.transpose() * e);
-  }
-  return distance;
-}
+double bundle_distance(const Rig& rig, const Eigen::Vector4d& y, double sigma);
 
 }  // namespace vernier::test

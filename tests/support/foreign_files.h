@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "calib/camera.h"
-#include "calib/imported_rig.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "tests/support/scenes.h"
@@ -39,9 +39,10 @@ class Folder {
     return path_ / name;
   }
 
-  std::vector<std::filesystem::path> write(const std::vector<ExportedFile>& files) const {
+  std::vector<std::filesystem::path> write(const std::vector<internal::ExportedFile>& files) const {
     std::vector<std::filesystem::path> written;
-    for (const ExportedFile& file : files) written.push_back(write(file.name.string(), file.text));
+    for (const internal::ExportedFile& file : files)
+      written.push_back(write(file.name.string(), file.text));
     return written;
   }
 

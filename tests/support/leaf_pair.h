@@ -9,7 +9,6 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_pair.h"
 
 namespace vernier::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stereo/edge_point.h"
+#include "stereo/canny_edges.h"
 #include "stereo/matcher.h"
 #include "tests/support/leaf_pair.h"
 

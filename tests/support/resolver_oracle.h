@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
-#include <limits>
+#include <Eigen/Core>
 
 #include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
@@ -13,7 +12,7 @@
 #include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
@@ -30,22 +29,10 @@ using namespace vernier::internal;
 inline constexpr double sigma_px = 0.2;
 
 /// Two cameras of one model with enough views for every model.
-inline SimulatedBoard scene(const Rig& rig, int frames = 24, double pixel_sigma_px = sigma_px) {
-  return simulate_board(rig, {9, 7, 0.03}, 7, 0,
-                        {.frames = frames, .pixel_sigma_px = pixel_sigma_px, .distance_m = 0.9});
-}
+SimulatedBoard scene(const Rig& rig, int frames = 24, double pixel_sigma_px = sigma_px);
 
 /// Corners left out so that no two views have the same ones.
-inline void make_partial(BoardObservations& observations) {
-  for (std::size_t v = 0; v < observations.views.size(); ++v) {
-    BoardView& view = observations.views[v];
-    for (std::size_t i = view.ids.size(); i-- > 12;) {
-      if ((i * 7 + v * 13) % (3 + v % 5) != 0) continue;
-      view.ids.erase(view.ids.begin() + static_cast<std::ptrdiff_t>(i));
-      view.pixels_px.erase(view.pixels_px.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  }
-}
+void make_partial(BoardObservations& observations);
 
 /// χ² at a state, by the plain code, and the covariance of the rig there.
 struct Reference {
@@ -56,114 +43,29 @@ struct Reference {
 
   Reference(const BoardObservations& observations,
             const BoardState& state,
-            const ReprojectionProblem& problem = {}) {
-    const double variance = problem.pixel_sigma_px * problem.pixel_sigma_px;
-    const CornerResiduals all = corner_residuals(observations, state);
-    for (std::size_t v = 0; v < all.size(); ++v) {
-      for (std::size_t i = 0; i < all[v].size(); ++i) {
-        const double w = problem.corner_weights.empty() ? 1 : problem.corner_weights[v][i];
-        chi2 += w * all[v][i].squaredNorm() / variance;
-        residuals += 2;
-      }
-    }
-    for (const RigPrior& prior : problem.priors) chi2 += prior_chi2(prior, state.rig);
-    const auto n = parameter_count(state.rig);
-    const auto held = problem.held.empty() ? std::vector<bool>(n, false) : problem.held;
-    const Eigen::MatrixXd E = free_directions(state.rig, held);
-    auto equations = restricted(
-        reduced_normal_equations(observations, state, problem.pixel_sigma_px, problem.warp), E);
-    for (const RigPrior& prior : problem.priors) {
-      const Eigen::MatrixXd by_free = prior_offset(prior, state.rig).by_rig * E;
-      add_prior(equations, by_free.transpose() * prior.information * by_free);
-    }
-    covariance = E * minimum_variance_bound(equations, free_names(state.rig, held)) * E.transpose();
-    sd = covariance.diagonal().cwiseSqrt();
-    for (double& s : sd) s = s > 0 ? s : std::numeric_limits<double>::infinity();  // held
-  }
+            const ReprojectionProblem& problem = {});
 };
 
 /// The last Newton step from a state to the minimum, in the rig's tangent, by the plain code's
 /// normal equations. These know no weights: then none.
-inline Eigen::VectorXd newton_step(const BoardObservations& observations,
-                                   const BoardState& state,
-                                   const ReprojectionProblem& problem) {
-  auto equations =
-      reduced_normal_equations(observations, state, problem.pixel_sigma_px, problem.warp);
-  Eigen::VectorXd g = equations.scores.rowwise().sum();
-  if (!problem.corner_weights.empty()) return Eigen::VectorXd::Zero(g.size());
-  for (const RigPrior& prior : problem.priors) {
-    const PriorOffset offset = prior_offset(prior, state.rig);
-    equations.information += offset.by_rig.transpose() * prior.information * offset.by_rig;
-    g += offset.by_rig.transpose() * prior.information * offset.delta;
-  }
-  Eigen::MatrixXd E = Eigen::MatrixXd::Identity(g.size(), g.size());
-  if (!problem.held.empty()) E = free_directions(state.rig, problem.held);
-  const Eigen::MatrixXd S = E.transpose() * equations.information * E;
-  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(
-      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
-  const Eigen::VectorXd z =
-      scale.asDiagonal() * factor.solve(scale.cwiseProduct(-E.transpose() * g));
-  return E * z;
-}
+Eigen::VectorXd newton_step(const BoardObservations& observations,
+                            const BoardState& state,
+                            const ReprojectionProblem& problem);
 
 /// The re-solver's answer from `start` is the minimum by the plain code, and Ceres' from the same
 /// start. Ceres accepts no step that the rounding of the cost (1e-12 px²) hides, so it may stop
 /// some 1e-6 standard deviations short, and 1e-2 along opencv8's valley: it is taken the last
 /// Newton step before it is compared.
-inline void expect_as_ceres(const BoardObservations& observations,
-                            const BoardState& start,
-                            const ReprojectionProblem& problem = {}) {
-  const double short_stop = model_name(start.rig.cameras[0].model) == "opencv8" ? 1e3 : 1;
-  const BoardState ceres = minimise_reprojection(observations, start, problem);
-  const Reference at(observations, ceres, problem);
-  const ResolveResult ours = Resolver(observations, start, problem).resolve();
-  ASSERT_EQ(ours.status, ResolveStatus::converged);
-  EXPECT_NEAR(ours.chi2 / at.chi2, 1, 1e-9 * short_stop);
-  EXPECT_NEAR(Reference(observations, ours.state, problem).chi2 / ours.chi2, 1, 1e-9);
-  const double unit = std::min(1.0, std::sqrt(at.chi2 / at.residuals));
-  const auto sigmas = [&](const Eigen::VectorXd& delta) {
-    return delta.cwiseQuotient(at.sd).cwiseAbs().maxCoeff() / unit;
-  };
-  EXPECT_LT(sigmas(newton_step(observations, ours.state, problem)), 1e-6);
-  const Rig minimum = retract(ceres.rig, newton_step(observations, ceres, problem));
-  EXPECT_LT(sigmas(difference(ours.state.rig, minimum)),
-            (problem.corner_weights.empty() ? 1e-6 : 1e-5) * short_stop);
-  EXPECT_LT(sigmas(difference(ours.state.rig, ceres.rig)), 1e-5 * short_stop);
-}
+void expect_as_ceres(const BoardObservations& observations,
+                     const BoardState& start,
+                     const ReprojectionProblem& problem = {});
 
 /// A start `sigmas` standard deviations away in every parameter, boards moved as well.
-inline BoardState perturbed(const SimulatedBoard& board,
-                            double sigmas,
-                            const ReprojectionProblem& problem = {}) {
-  BoardState start = board.truth;
-  const Reference at(board.observations, start, problem);
-  Eigen::VectorXd sign = Eigen::VectorXd::Ones(at.sd.size());
-  for (Eigen::Index i = 1; i < sign.size(); i += 2) sign[i] = -1;
-  sign = at.sd.array().isFinite().select(sign, 0);
-  const Eigen::VectorXd sd = at.sd.array().isFinite().select(at.sd, 0);
-  start.rig = retract(start.rig, sigmas * sigma_px * sign.cwiseProduct(sd));
-  for (Pose& T : start.T_first_board) {
-    Eigen::Matrix<double, 6, 1> step;
-    step << 1e-3, -1e-3, 2e-3, 1e-3, 1e-3, -2e-3;
-    T = retract(T, 0.2 * sigmas * step);
-  }
-  return start;
-}
+BoardState perturbed(const SimulatedBoard& board,
+                     double sigmas,
+                     const ReprojectionProblem& problem = {});
 
 /// Corners of a board bent by `warp_m`.
-inline SimulatedBoard bent(SimulatedBoard board, const Eigen::Vector2d& warp_m) {
-  const auto target = warped_target(board.observations.target_m, warp_m);
-  for (BoardView& view : board.observations.views) {
-    const Camera& camera = board.truth.rig.cameras[view.camera];
-    const Pose T =
-        board.truth.rig.T_camera_first[view.camera] * board.truth.T_first_board[view.frame];
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      view.pixels_px[i] += project(camera, T * target[view.ids[i]]) -
-                           project(camera, T * board.observations.target_m[view.ids[i]]);
-    }
-  }
-  return board;
-}
+SimulatedBoard bent(SimulatedBoard board, const Eigen::Vector2d& warp_m);
 
 }  // namespace vernier::test

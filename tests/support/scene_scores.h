@@ -8,12 +8,10 @@
 #include <string>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matcher_evaluation.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 
 namespace vernier::test {

@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::test {

@@ -5,7 +5,6 @@
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
 #include "sim/noise_free_view.h"
-#include "sim/route.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world/office.h"

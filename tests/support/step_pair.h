@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "stereo/rectified_pair.h"
+#include "stereo/grey_levels.h"
 #include "tests/support/edge_images.h"
 
 namespace vernier::test {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 
 namespace vernier::test {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/statistics/random.h"
 #include "sim/world.h"
 

@@ -12,9 +12,8 @@ int main(int, char** argv) {
   const Rig truth = read_rig(std::string(argv[1]) + "/rigs/nominal.rig.json").estimate.rig;
 
   // Thirteen views with 0.2 px of noise. From images: detect_images in calib/board_detection.h.
-  const SimulatedBoard board =
-      simulate_board(truth, {.columns = 9, .rows = 6, .square_m = 0.04}, /*seed=*/1, /*trial=*/0,
-                     {.frames = 13, .pixel_sigma_px = 0.2});
+  const SimulatedBoard board = simulate_board(truth, {.columns = 9, .rows = 6, .square_m = 0.04},
+                                              {.seed = 1, .frames = 13, .pixel_sigma_px = 0.2});
   const RigEstimate found = calibrate(board.observations, {.model = Radial1{}});
 
   const Eigen::VectorXd values = parameters(found.rig), offset = difference(found.rig, truth);

@@ -1,5 +1,6 @@
 // Asks whether two calibrations of one rig agree, and makes one of them.
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -16,9 +17,10 @@ int main(int, char** argv) {
   // Monday's and Friday's views are of the same rig; after a knock the right camera is turned.
   Rig knocked = truth;
   knocked.T_camera_first[1].R = rotation_from_vector({0, 0.003, 0}) * knocked.T_camera_first[1].R;
-  const auto calibrated = [](const Rig& rig, int seed) {
+  const auto calibrated = [](const Rig& rig, std::uint64_t seed) {
     return calibrate(
-        simulate_board(rig, {.columns = 9, .rows = 6, .square_m = 0.04}, seed).observations);
+        simulate_board(rig, {.columns = 9, .rows = 6, .square_m = 0.04}, {.seed = seed})
+            .observations);
   };
   const RigEstimate monday = calibrated(truth, 1), friday = calibrated(truth, 2),
                     after = calibrated(knocked, 3);

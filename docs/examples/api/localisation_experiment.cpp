@@ -24,7 +24,7 @@ int main(int, char** argv) {
     int successes = 0;
     double cpu_ms = 0;
     constexpr int trials = 20;
-    for (const TrialResult& trial : experiment.run_block(/*block=*/0, /*first=*/0, trials)) {
+    for (const TrialResult& trial : experiment.run_block({.count = trials})) {
       successes += trial.success();
       cpu_ms += trial.cpu_ms;
     }

@@ -8,7 +8,6 @@
 
 #include "calib/rig_file.h"
 #include "sim/noise_free_view.h"
-#include "sim/sensed_view.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world_file.h"

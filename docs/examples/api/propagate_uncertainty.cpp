@@ -4,11 +4,11 @@
 #include <limits>
 #include <string>
 
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_file.h"
 #include "calib/sampler.h"
+#include "calib/triangulation.h"
 #include "calib/triangulation_uncertainty.h"
 
 int main(int, char** argv) {
@@ -42,7 +42,7 @@ int main(int, char** argv) {
   double squares = 0;
   for (std::uint32_t draw = 0; draw < 1000; ++draw) {
     const Rig rig = sampler.sample(/*psi_c=*/1, /*seed=*/1, draw);
-    squares += std::pow(triangulated_depth_m(rig, pair.first_px, pair.other_px) - 4, 2);
+    squares += std::pow(triangulated_depth_m(rig, pair) - 4, 2);
   }
   std::printf("1000 sampled rigs: %.1f mm\n", 1e3 * std::sqrt(squares / 1000));
 }

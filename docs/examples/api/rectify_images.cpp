@@ -7,7 +7,7 @@
 #include "calib/rig_file.h"
 #include "calib/triangulation.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_geometry.h"
+#include "stereo/rectification.h"
 #include "stereo/rectified_images.h"
 
 int main(int, char** argv) {

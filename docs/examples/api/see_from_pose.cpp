@@ -29,7 +29,7 @@ int main(int, char** argv) {
        {std::pair{"without sources", no_sources()}, std::pair{"edge loss alone", only_loss},
         std::pair{"all at their defaults", defaults}}) {
     const Sensor sensor(rig, settings);
-    const StereoObservation seen = sensor.sense(view, /*seed=*/1, /*trial=*/0, /*frame=*/0);
+    const StereoObservation seen = sensor.sense(view, {.seed = 1});
     double length_px = 0;
     for (const stereo::StereoSegment& segment : seen.segments) {
       length_px += segment.left.length_px();

@@ -22,7 +22,7 @@ std::string complaint_of(BoardObservations observations) {
 
 class BadBoard : public testing::Test {
  protected:
-  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, 1).observations;
+  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
 };
 
 TEST_F(BadBoard, GoodOnesPass) { EXPECT_EQ(complaint_of(good_), ""); }
@@ -47,7 +47,8 @@ TEST_F(BadBoard, CameraTwiceInAFrameIsNamed) {
 
 TEST(SimulatedBoard, NoiseDiffersByTrialAndPosesDoNot) {
   const Rig rig = test::stereo_rig();
-  const SimulatedBoard a = simulate_board(rig, {}, 5, 0), b = simulate_board(rig, {}, 5, 1);
+  const SimulatedBoard a = simulate_board(rig, {}, {.seed = 5}),
+                       b = simulate_board(rig, {}, {.seed = 5, .trial = 1});
   EXPECT_EQ(a.truth.T_first_board[3].t, b.truth.T_first_board[3].t);
   EXPECT_NE(a.observations.views[3].pixels_px[0], b.observations.views[3].pixels_px[0]);
 }

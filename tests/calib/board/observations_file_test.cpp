@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "calib/base/atomic_file.h"
-#include "calib/base/frame_numbering.h"
+#include "calib/board/frame_numbering.h"
 #include "calib/board_target.h"
 #include "calib/error.h"
 #include "calib/simulated_board.h"
@@ -40,7 +40,7 @@ class ObservationsFile : public testing::Test {
 };
 
 TEST_F(ObservationsFile, RoundTripIsExact) {
-  const auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  const auto before = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
   write_observations(before, folder_ / "o.csv");
   const auto after = read_observations(folder_ / "o.csv", before.size_px);
   ASSERT_EQ(after.views.size(), before.views.size());
@@ -51,7 +51,7 @@ TEST_F(ObservationsFile, RoundTripIsExact) {
 }
 
 TEST_F(ObservationsFile, CornersRoundTrip) {
-  auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  auto before = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
   for (auto& view : before.views) {
     view.image = (view.camera == 0 ? "left" : "right") + std::to_string(view.frame) + ".png";
   }
@@ -136,7 +136,7 @@ TEST_F(ObservationsFile, CornersOutsideTheImageAreNamedByLineRowAndColumn) {
 }
 
 TEST_F(ObservationsFile, CamerasOfCornersKeepTheirPlaceWhereTheFirstBoardIsMissing) {
-  auto before = simulate_board(test::stereo_rig(), {}, 1).observations;
+  auto before = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
   for (auto& view : before.views) {
     view.image = (view.camera == 0 ? "L/" : "R/") + std::to_string(view.frame) + ".png";
   }
@@ -154,7 +154,7 @@ TEST_F(ObservationsFile, CamerasOfCornersKeepTheirPlaceWhereTheFirstBoardIsMissi
 
 TEST_F(ObservationsFile, ImagesThatWouldNotReadBackAreRefused) {
   const auto error_output = [&](const std::string& left, const std::string& right) -> std::string {
-    auto observations = simulate_board(test::stereo_rig(), {}, 1).observations;
+    auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
     for (auto& view : observations.views) {
       view.image = (view.camera == 0 ? left : right) + std::to_string(view.frame) + ".png";
     }

@@ -28,8 +28,11 @@ TEST(Calibrate, NormalisedErrorIsChiSquared) {
   const int trials = 150;
   double nees = 0;
   for (int trial = 0; trial < trials; ++trial) {
-    const auto board =
-        simulate_board(truth, {7, 6, 0.035}, 21, trial, {.frames = 15, .pixel_sigma_px = 0.2});
+    const auto board = simulate_board(truth, {7, 6, 0.035},
+                                      {.seed = 21,
+                                       .trial = static_cast<std::uint32_t>(trial),
+                                       .frames = 15,
+                                       .pixel_sigma_px = 0.2});
     const RigEstimate estimate = calibrate(board.observations, {.pixel_sigma_px = 0.2});
     const Eigen::VectorXd e = difference(estimate.rig, truth);
     nees += e.dot(Eigen::LLT<Eigen::MatrixXd>(*estimate.covariance_mvb).solve(e));
@@ -47,8 +50,9 @@ Nees nees_of_sets(int frames, double smooth_px, double white_px, int sets, std::
   const Rig truth = test::stereo_rig();
   Nees sum;
   for (int set = 0; set < sets; ++set) {
-    auto board = simulate_board(truth, {9, 6, 0.04}, seed + set, 0,
-                                {.frames = frames, .pixel_sigma_px = white_px, .distance_m = 0.7});
+    auto board = simulate_board(
+        truth, {9, 6, 0.04},
+        {.seed = seed + set, .frames = frames, .pixel_sigma_px = white_px, .distance_m = 0.7});
     test::add_smooth_error(board.observations, smooth_px, seed, set);
     const RigEstimate estimate = calibrate(board.observations);
     const Eigen::VectorXd e = difference(estimate.rig, truth);
@@ -76,8 +80,11 @@ TEST(ClusteredCovariance, IsTrueForManyViewsWithCorrelatedNoise) {
   double honest = 0, bound = 0;
   const int sets = 60;
   for (int set = 0; set < sets; ++set) {
-    auto board = simulate_board(truth, {9, 6, 0.04}, 7000 + set, 0,
-                                {.frames = 120, .pixel_sigma_px = 0.1, .distance_m = 0.7});
+    auto board = simulate_board(truth, {9, 6, 0.04},
+                                {.seed = 7000 + static_cast<std::uint64_t>(set),
+                                 .frames = 120,
+                                 .pixel_sigma_px = 0.1,
+                                 .distance_m = 0.7});
     test::add_smooth_error(board.observations, 0.1, 7000, set);
     const RigEstimate estimate = calibrate(board.observations);
     ASSERT_EQ(estimate.covariance->kind, CovarianceKind::clustered);

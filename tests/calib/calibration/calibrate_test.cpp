@@ -22,7 +22,8 @@ class ExactViews : public testing::TestWithParam<const char*> {};
 
 TEST_P(ExactViews, GiveTheTrueRigBack) {
   const Rig truth = test::stereo_rig(camera_model(GetParam()));
-  const SimulatedBoard board = simulate_board(truth, {}, 4, 0, {.frames = 20, .pixel_sigma_px = 0});
+  const SimulatedBoard board =
+      simulate_board(truth, {}, {.seed = 4, .frames = 20, .pixel_sigma_px = 0});
   const RigEstimate estimate =
       calibrate(board.observations, {.model = camera_model(GetParam()), .pixel_sigma_px = 1e-3});
   const Eigen::VectorXd sd = estimate.covariance_mvb->diagonal().cwiseSqrt();
@@ -36,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Models,
                          testing::Values("pinhole", "radial1", "opencv4", "opencv5"));
 
 TEST(Calibrate, IsTheSameToTheBitTwice) {
-  const auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  const auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   EXPECT_EQ(parameters(calibrate(observations).rig), parameters(calibrate(observations).rig));
 }
 
@@ -45,7 +46,7 @@ TEST(Calibrate, OneCameraAndThreeCameras) {
   rig.cameras.push_back(rig.cameras[0]);
   rig.cameras[2].name = "camera2";
   rig.T_camera_first.push_back({rotation_from_vector({0, 0.05, 0}), {0.15, 0, 0}});
-  const SimulatedBoard three = simulate_board(rig, {}, 6, 0, {.pixel_sigma_px = 0});
+  const SimulatedBoard three = simulate_board(rig, {}, {.seed = 6, .pixel_sigma_px = 0});
   EXPECT_LT(difference(calibrate(three.observations).rig, rig).norm(), 1e-5);
 
   BoardObservations one = three.observations;
@@ -57,7 +58,7 @@ TEST(Calibrate, OneCameraAndThreeCameras) {
 }
 
 TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
-  const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, 6, 0, {.frames = 60});
+  const auto board = simulate_board(test::stereo_rig(), {6, 5, 0.04}, {.seed = 6, .frames = 60});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::clustered);
   // White noise: both say the same within the sandwich's own scatter.
@@ -68,7 +69,7 @@ TEST(Calibrate, ManyFramesGetTheClusteredCovariance) {
 }
 
 TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 6, 0, {.frames = 13});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 6, .frames = 13});
   const RigEstimate estimate = calibrate(board.observations);
   EXPECT_EQ(estimate.covariance->kind, CovarianceKind::jackknife);
   const Eigen::ArrayXd ratio =
@@ -80,7 +81,7 @@ TEST(Calibrate, FewFramesGetTheSmallSampleForm) {
 }
 
 TEST(Calibrate, TwoViewsAreTooFew) {
-  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   std::erase_if(observations.views, [](const BoardView& view) { return view.frame > 1; });
   try {
     calibrate(observations);
@@ -91,7 +92,7 @@ TEST(Calibrate, TwoViewsAreTooFew) {
 }
 
 TEST(Calibrate, CamerasWithoutACommonFrameAreNamed) {
-  auto observations = simulate_board(test::stereo_rig(), {}, 4).observations;
+  auto observations = simulate_board(test::stereo_rig(), {}, {.seed = 4}).observations;
   std::erase_if(observations.views,
                 [](const BoardView& view) { return (view.frame < 10) != (view.camera == 0); });
   try {
@@ -103,9 +104,10 @@ TEST(Calibrate, CamerasWithoutACommonFrameAreNamed) {
 }
 
 TEST(Calibrate, WhatWasSeenBeforeItFailedIsPartOfTheFault) {
-  BoardObservations observations = simulate_board(test::stereo_rig(), {}, 3, 0,
-                                                  {.frames = 6, .pixel_sigma_px = 0, .tilt_rad = 0})
-                                       .observations;
+  BoardObservations observations =
+      simulate_board(test::stereo_rig(), {},
+                     {.seed = 3, .frames = 6, .pixel_sigma_px = 0, .tilt_rad = 0})
+          .observations;
   for (Eigen::Vector3d& point : observations.target_m) point *= 1000;
   const auto [place, fault, remedy] = test::error_parts([&] {
     // What is held keeps the tilts from being looked at.

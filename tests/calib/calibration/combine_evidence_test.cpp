@@ -14,11 +14,11 @@
 #include "calib/camera.h"
 #include "calib/combine.h"
 #include "calib/covariance.h"
+#include "calib/data_and_prior.h"
 #include "calib/estimate/simulated_pairs.h"
 #include "calib/joint_calibration.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pair_observations.h"
-#include "calib/prior_consistency.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -41,7 +41,7 @@ double sd_difference(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
 }
 
 TEST(CombineEvidence, ABentBoardStaysAnUnknown) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 31, 0, {.frames = 12});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 31, .frames = 12});
   const BoardObservations views = test::bent(board, {1.5e-3, -0.8e-3});
   const RigEstimate bent =
       calibrate(views, {.pixel_sigma_px = 0.2, .warp = BoardWarp::free, .check_input = false});
@@ -66,8 +66,8 @@ TEST(CombineEvidence, ABentBoardStaysAnUnknown) {
 }
 
 TEST(CombineEvidence, BendsOfDifferentBoardsAreSaidToBeTakenAsKnown) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 32, 0, {.frames = 8});
-  const auto other = simulate_board(test::stereo_rig(), {7, 5, 0.04}, 33, 0, {.frames = 8});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 32, .frames = 8});
+  const auto other = simulate_board(test::stereo_rig(), {7, 5, 0.04}, {.seed = 33, .frames = 8});
   const CalibrationOptions how{.pixel_sigma_px = 0.2, .check_input = false};
   CalibrationOptions warped = how;
   warped.warp = BoardWarp::free;
@@ -104,7 +104,7 @@ TEST(CombineEvidence, ADistortionThatCannotBeInvertedIsSaid) {
 
 TEST(CombineEvidence, ABoardKeepsThePriorItWasCalibratedWith) {
   const Rig truth = test::stereo_rig();
-  const auto board = simulate_board(truth, {}, 34, 0, {.frames = 6});
+  const auto board = simulate_board(truth, {}, {.seed = 34, .frames = 6});
   CalibrationOptions how{.pixel_sigma_px = 0.2, .check_input = false};
   how.prior = test::datasheet(truth, 34, 0, 0.05);
   how.known = {{"left.f_px", truth.cameras[0].f_px(), 0.5}};
@@ -210,9 +210,9 @@ TEST(CombineEvidence, KnowledgeGivenTwiceCountsOnce) {
   CalibrationOptions how{.pixel_sigma_px = 0.2, .check_input = false};
   how.known = {{"left.f_px", truth.cameras[0].f_px(), 0.05}};
   const RigEstimate a =
-      calibrate(simulate_board(truth, {}, 46, 0, {.frames = 6}).observations, how);
+      calibrate(simulate_board(truth, {}, {.seed = 46, .frames = 6}).observations, how);
   const RigEstimate b =
-      calibrate(simulate_board(truth, {}, 47, 0, {.frames = 6}).observations, how);
+      calibrate(simulate_board(truth, {}, {.seed = 47, .frames = 6}).observations, how);
   const Combination both = combine({{"a", a, {}}, {"b", b, {}}}, {.keep_disagreeing = true});
   EXPECT_EQ(both.evidence.priors.size(), 1u);
   EXPECT_GT(std::sqrt((*both.joint.estimate.covariance_mvb)(0, 0)), 0.045);
@@ -220,8 +220,9 @@ TEST(CombineEvidence, KnowledgeGivenTwiceCountsOnce) {
 
 TEST(CombineEvidence, ACalibrationAndWhatItWasThePriorOfCountItOnce) {
   const Rig truth = test::stereo_rig();
-  const RigEstimate board = calibrate(simulate_board(truth, {}, 48, 0, {.frames = 8}).observations,
-                                      {.pixel_sigma_px = 0.2, .check_input = false});
+  const RigEstimate board =
+      calibrate(simulate_board(truth, {}, {.seed = 48, .frames = 8}).observations,
+                {.pixel_sigma_px = 0.2, .check_input = false});
   const PairObservations pairs = simulate_pairs(truth, 49);
   const JointOptions noise{.pair_sigma_scale = 1};
   const RigEstimate after =
@@ -241,8 +242,9 @@ TEST(CombineEvidence, ACalibrationAndWhatItWasThePriorOfCountItOnce) {
 
 TEST(CombineEvidence, BoardsAndPairsWithoutAPriorInAnyOrder) {
   const Rig truth = test::stereo_rig();
-  const RigEstimate board = calibrate(simulate_board(truth, {}, 50, 0, {.frames = 10}).observations,
-                                      {.pixel_sigma_px = 0.2, .check_input = false});
+  const RigEstimate board =
+      calibrate(simulate_board(truth, {}, {.seed = 50, .frames = 10}).observations,
+                {.pixel_sigma_px = 0.2, .check_input = false});
   const SimulatedPairsOptions few{.image_pairs = 4, .pairs_per_image = 40, .wrong_share = 0.02};
   const CombineInput a{"a", {}, simulate_pairs(truth, 50, 0, few)},
       b{"b", {}, simulate_pairs(truth, 51, 0, few)};

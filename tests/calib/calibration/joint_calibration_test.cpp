@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/joint_calibration.h"
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 #include "calib/base/atomic_file.h"
 #include "calib/calibrate.h"
+#include "calib/calibration/information_filter.h"
 #include "calib/camera.h"
 #include "calib/combine.h"
 #include "calib/estimate/simulated_pairs.h"
@@ -25,8 +24,9 @@
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/resolve_pairs.h"
 #include "calib/validation/rig_drift.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/error_message.h"
-#include "tests/support/jet_sampson.h"
+#include "tests/support/jet_oracles.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/rig_distance.h"
 #include "tests/support/scenes.h"
@@ -67,79 +67,16 @@ TEST(JointCalibration, CeresAndTheResolverAgreeWithJetsOnPairs) {
   EXPECT_TRUE((C * system.information).isApprox(Eigen::MatrixXd::Identity(16, 16), 1e-5));
 }
 
-/// Reprojection residuals of one match with its point as an unknown.
-struct BundleResidual {
-  Eigen::Vector4d y;
-  double sigma;
-  Eigen::Matrix3d R;
-  template <class T>
-  bool operator()(const T* a, const T* X, T* residual) const {
-    T delta[9];
-    ceres::AngleAxisToRotationMatrix(a + 10, ceres::RowMajorAdapter3x3(delta));
-    const Eigen::Matrix<T, 3, 3> Rt =
-        Eigen::Map<const Eigen::Matrix<T, 3, 3, Eigen::RowMajor>>(delta) * R.cast<T>();
-    // (x / z, y / z, 1 / z) in the left frame.
-    const Eigen::Matrix<T, 3, 1> left(X[0], X[1], T(1.0));
-    const Eigen::Matrix<T, 3, 1> t(a[13], a[14], a[15]);
-    const Eigen::Matrix<T, 3, 1> right = Rt * left + t * X[2];
-    for (int c = 0; c < 2; ++c) {
-      const T* p = a + 5 * c;
-      const T u = c == 0 ? X[0] : right[0] / right[2], v = c == 0 ? X[1] : right[1] / right[2];
-      const T g = T(1.0) + p[4] * (u * u + v * v);
-      residual[2 * c] = (p[0] * p[1] * u * g + p[2] - y[2 * c]) / sigma;
-      residual[2 * c + 1] = (p[0] * v * g + p[3] - y[2 * c + 1]) / sigma;
-    }
-    return true;
-  }
-};
-
-/// Bundle adjustment of rig and points with the prior.
-Rig bundle_adjusted(const PairObservations& pairs, const RigPrior& prior, const Rig& start) {
-  Eigen::VectorXd a = parameters(start);
-  a.segment<3>(10).setZero();
-  std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector4d& y : pairs.pixels_px) {
-    const Eigen::Vector3d ray = unproject(start.cameras[0], y.head<2>());
-    points.emplace_back(ray.x(), ray.y(), 0.2);
-  }
-  ceres::Problem problem;
-  auto* ordering = new ceres::ParameterBlockOrdering;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<BundleResidual, 4, 16, 3>(
-            new BundleResidual{pairs.pixels_px[i], pairs.sigma_of(i), start.T_camera_first[1].R}),
-        nullptr, a.data(), points[i].data());
-    ordering->AddElementToGroup(points[i].data(), 0);
-  }
-  ordering->AddElementToGroup(a.data(), 1);
-  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<test::JetPrior, 16, 16>(
-                               new test::JetPrior{a, prior.information.diagonal().cwiseSqrt()}),
-                           nullptr, a.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.linear_solver_ordering.reset(ordering);
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-16;
-  options.parameter_tolerance = 1e-13;
-  options.gradient_tolerance = 1e-13;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  Eigen::VectorXd delta = a - parameters(start);
-  delta.segment<3>(10) = a.segment<3>(10);
-  return retract(start, delta);
-}
-
 TEST(JointCalibration, SampsonIsFullBundleAdjustmentToATenThousandthOfASigma) {
   Rig truth = test::stereo_rig();
   const PairObservations pairs = simulate_pairs(truth, 52);
   const RigPrior prior = rig_prior(truth, datasheet(truth, 52, 0));
   // The rotation of the prior is the tangent's origin in both.
   const EpipolarMinimum sampson = PairResolver(pairs).minimise(prior.mean, {.priors = {prior}});
-  const Rig bundle = bundle_adjusted(pairs, prior, prior.mean);
-  const Eigen::MatrixXd C = epipolar_system(PackedPairs(pairs), sampson.rig, {.priors = {prior}},
-                                            Eigen::MatrixXd::Identity(16, 16))
-                                .information.inverse();
+  const Rig bundle = test::bundle_adjusted(pairs, prior, prior.mean);
+  const EpipolarSystem system = epipolar_system(
+      PackedPairs(pairs), sampson.rig, {.priors = {prior}}, Eigen::MatrixXd::Identity(16, 16));
+  const Eigen::MatrixXd C = test::inverse(system.information);
   const double distance = test::worst_sigmas(sampson.rig, bundle, C);
   RecordProperty("sampson_against_bundle_sigma", std::to_string(distance));
   EXPECT_LT(distance, 2e-4);
@@ -192,8 +129,8 @@ TEST(Combine, TheInformationFilterSaysHowFarItIsFromTheBatch) {
 
 TEST(Combine, BoardsPairsAndDatasheetsGoThroughOneCost) {
   const Rig truth = test::stereo_rig();
-  const SimulatedBoard first = simulate_board(truth, {8, 6, 0.03}, 71);
-  const SimulatedBoard second = simulate_board(truth, {7, 5, 0.04}, 72);
+  const SimulatedBoard first = simulate_board(truth, {8, 6, 0.03}, {.seed = 71});
+  const SimulatedBoard second = simulate_board(truth, {7, 5, 0.04}, {.seed = 72});
   const RigEstimate a = calibrate(first.observations), b = calibrate(second.observations);
   const GaussianRigPrior known = datasheet(truth, 71, 0);
   const PairObservations pairs = simulate_pairs(truth, 73);
@@ -296,7 +233,7 @@ TEST(PairsFile, RoundTripIsExactAndBadLinesAreNamed) {
 class BadPairs : public testing::Test {
  protected:
   std::string said(const PairObservations& pairs) const {
-    return error_message([&] { calibrate_from_pairs(pairs, known_, {}, "p.csv"); });
+    return error_message([&] { calibrate_from_pairs(pairs, known_, {.place = "p.csv"}); });
   }
   Rig truth_ = test::stereo_rig();
   GaussianRigPrior known_ = datasheet(truth_, 96, 0);
@@ -350,13 +287,13 @@ TEST_F(BadPairs, SoAreBadPriors) {
   GaussianRigPrior bad = known_;
   bad.covariance.matrix(0, 5) = bad.covariance.matrix(5, 0) = 150;  // of variances of 100
   const std::string indefinite =
-      error_message([&] { calibrate_from_pairs(pairs_, bad, {}, "p.csv"); });
+      error_message([&] { calibrate_from_pairs(pairs_, bad, {.place = "p.csv"}); });
   EXPECT_NE(indefinite.find("not positive semi-definite"), std::string::npos) << indefinite;
   EXPECT_NE(indefinite.find("left focal length"), std::string::npos) << indefinite;
   bad = known_;
   bad.covariance.matrix(0, 5) = bad.covariance.matrix(5, 0) = 100;
   const std::string singular =
-      error_message([&] { calibrate_from_pairs(pairs_, bad, {}, "p.csv"); });
+      error_message([&] { calibrate_from_pairs(pairs_, bad, {.place = "p.csv"}); });
   EXPECT_NE(singular.find("singular"), std::string::npos) << singular;
 }
 

@@ -10,7 +10,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_target.h"
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
@@ -45,7 +45,7 @@ bool holds(const std::vector<std::string>& list, const std::string& text) {
 
 class ObservationChecks : public testing::Test {
  protected:
-  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, 1).observations;
+  BoardObservations good_ = simulate_board(test::stereo_rig(), {}, {.seed = 1}).observations;
 };
 
 TEST_F(ObservationChecks, GoodOnesPassInSilence) {
@@ -86,7 +86,7 @@ TEST_F(ObservationChecks, AGridOfTagsWithItsYUpwardsIsNoMirroredBoard) {
     const int row = static_cast<int>(std::lround(X.y() / 0.025));
     X = {0.03 * (column / 2) + 0.02 * (column % 2), -0.03 * (row / 2) - 0.02 * (row % 2), 0};
   }
-  const SimulatedBoard drawn = simulate_board(test::stereo_rig(), {}, 1);
+  const SimulatedBoard drawn = simulate_board(test::stereo_rig(), {}, {.seed = 1});
   for (BoardView& view : good_.views) {
     const Pose T = drawn.truth.rig.T_camera_first[view.camera] *
                    drawn.truth.T_first_board[view.frame] *

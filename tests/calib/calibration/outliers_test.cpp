@@ -13,9 +13,8 @@
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
@@ -48,7 +47,7 @@ std::set<CornerName> corners_of(const BoardView& view) {
 }
 
 TEST(Outliers, AreListedAndTheRestDecides) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 18, 0, {.frames = 20});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 18, .frames = 20});
   BoardObservations spoilt = board.observations, clean = board.observations;
   std::map<CornerName, double> expected;                      // how far it was moved, px
   for (std::size_t v = 0; v < spoilt.views.size(); v += 3) {  // one corner in 160, 3 to 40 px
@@ -92,7 +91,7 @@ BoardObservations without_views_of(const std::vector<CornerOutlier>& outliers,
 TEST(Outliers, AWholeFrameOfAPairMayBeOne) {
   int found = 0;
   for (std::uint64_t seed = 19; seed < 25; ++seed) {
-    const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 12});
+    const auto board = simulate_board(test::stereo_rig(), {}, {.seed = seed, .frames = 12});
     BoardObservations spoilt = board.observations;
     for (auto& q : test::view_of(spoilt, 4, 1).pixels_px) q += Eigen::Vector2d(6, -9);
     const RigEstimate e = calibrate(spoilt);
@@ -123,7 +122,7 @@ TEST(Outliers, AWholeViewMayBeOne) {
   rig.T_camera_first.push_back({rotation_from_vector({0.01, 0.02, 0}), {-0.1, -0.1, 0}});
   for (std::uint64_t seed = 19; seed < 25; ++seed) {
     BoardObservations spoilt =
-        simulate_board(rig, {}, seed, 0, {.frames = 12, .distance_m = 1.2}).observations;
+        simulate_board(rig, {}, {.seed = seed, .frames = 12, .distance_m = 1.2}).observations;
     BoardView& view = test::view_of(spoilt, 4, 1);
     for (auto& q : view.pixels_px) q += Eigen::Vector2d(6, -9);
     const RigEstimate e = calibrate(spoilt);
@@ -136,7 +135,7 @@ TEST(Outliers, AWholeViewMayBeOne) {
 // Plain least squares with views numbered the wrong way round, or swapped, ends so far away that
 // least squares without them, begun there, finds another valley.
 TEST(Outliers, LeastSquaresBeginsAgainAtTheRobustMinimum) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 25, 0, {.frames = 12});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 25, .frames = 12});
   BoardObservations turned = board.observations, swapped = board.observations;
   test::half_turn(test::view_of(turned, 1, 1));
   test::exchange(swapped, 1);
@@ -151,13 +150,13 @@ TEST(Outliers, LeastSquaresBeginsAgainAtTheRobustMinimum) {
 
 TEST(Outliers, ALensThatTheModelDoesNotFitLosesNoCorner) {
   const Rig truth = test::stereo_rig(OpenCv5{});
-  const auto board = simulate_board(truth, {}, 20, 0, {.pixel_sigma_px = 0.05});
+  const auto board = simulate_board(truth, {}, {.seed = 20, .pixel_sigma_px = 0.05});
   EXPECT_TRUE(calibrate(board.observations, {.model = Pinhole{}}).calibration->outliers.empty());
 }
 
 TEST(Outliers, AreAsFarAwayAsTheFinalCalibrationPredicts) {
   const Rig truth = test::stereo_rig(OpenCv5{});  // which the radial1 to be fitted is not
-  BoardObservations spoilt = simulate_board(truth, {}, 18, 0, {.frames = 15}).observations;
+  BoardObservations spoilt = simulate_board(truth, {}, {.seed = 18, .frames = 15}).observations;
   for (std::size_t v = 0; v < spoilt.views.size(); v += 4) {
     spoilt.views[v].pixels_px[3 * v % 54] += Eigen::Vector2d(14, -9);
   }
@@ -176,7 +175,8 @@ TEST(Outliers, AreAsFarAwayAsTheFinalCalibrationPredicts) {
 // A lens out of focus, or half the resolution: what is much for the one camera is noise of the
 // other.
 TEST(Outliers, ACameraOfWorseCornersLosesNone) {
-  auto board = simulate_board(test::stereo_rig(), {}, 31, 0, {.frames = 14, .pixel_sigma_px = 0.1});
+  auto board =
+      simulate_board(test::stereo_rig(), {}, {.seed = 31, .frames = 14, .pixel_sigma_px = 0.1});
   for (BoardView& view : board.observations.views) {
     if (view.camera == 0) continue;
     RandomStream draws(
@@ -195,7 +195,7 @@ TEST(Outliers, ACameraOfWorseCornersLosesNone) {
 /// Eight of the right camera's 13 views hold few corners, which lie elsewhere.
 BoardObservations mostly_displaced(double by_px) {
   BoardObservations spoilt =
-      simulate_board(test::stereo_rig(), {}, 32, 0, {.frames = 13}).observations;
+      simulate_board(test::stereo_rig(), {}, {.seed = 32, .frames = 13}).observations;
   for (int frame = 5; frame < 13; ++frame) {
     BoardView& view = test::view_of(spoilt, frame, 1);
     view.ids.resize(12);
@@ -221,7 +221,7 @@ TEST(Outliers, MoreThanHalfOfACamerasViewsAreNotLeftOut) {
 }
 
 TEST(Outliers, FramesAndCamerasThatTheStateDoesNotHaveAreAnError) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 33, 0, {.frames = 4});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 33, .frames = 4});
   BoardObservations strange = board.observations;
   strange.views.back().frame = 9;
   EXPECT_EQ(test::error_message([&] { corner_residuals(strange, board.truth); }),

@@ -10,9 +10,8 @@
 #include "calib/calibrate.h"
 #include "calib/calibration/outliers.h"
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
@@ -46,7 +45,7 @@ Found found_in(const BoardObservations& observations, const CameraModel& model =
 class ResidualDiagnosis : public testing::Test {
  protected:
   const Rig rig_ = test::stereo_rig();
-  BoardObservations good_ = simulate_board(rig_, {}, 7, 0, {.frames = 15}).observations;
+  BoardObservations good_ = simulate_board(rig_, {}, {.seed = 7, .frames = 15}).observations;
 };
 
 TEST_F(ResidualDiagnosis, WhiteNoiseHasNoCause) { EXPECT_EQ(found_in(good_).first(), ""); }
@@ -58,7 +57,7 @@ TEST_F(ResidualDiagnosis, AnotherLensIsNamedAndItsModelHelps) {
   }
   wide.T_camera_first[1].t.x() = -0.06;
   const auto seen =
-      simulate_board(wide, {}, 7, 0, {.frames = 15, .distance_m = 0.25, .tilt_rad = 0.35})
+      simulate_board(wide, {}, {.seed = 7, .frames = 15, .distance_m = 0.25, .tilt_rad = 0.35})
           .observations;
   const Found found = found_in(seen);
   EXPECT_EQ(found.first().find("the lens needs another model: "), 0u) << found.first();
@@ -82,7 +81,7 @@ TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
         {Eigen::Matrix3d::Identity(), {-0.05 * (c % 2), 0.05 * (c / 2), 0}});
   }
   const auto seen =
-      simulate_board(wide, {}, 7, 0, {.frames = 12, .distance_m = 0.2, .tilt_rad = 0.35})
+      simulate_board(wide, {}, {.seed = 7, .frames = 12, .distance_m = 0.2, .tilt_rad = 0.35})
           .observations;
   const RigEstimate estimate = calibrate(seen, {.model = Radial1{}});
   ASSERT_EQ(estimate.calibration->trust_warnings.size(), 1u);
@@ -93,7 +92,8 @@ TEST_F(ResidualDiagnosis, ALensIsNamedForFourCameras) {
 
 TEST_F(ResidualDiagnosis, ABentBoardIsNamedWithItsShape) {
   const Eigen::Vector2d warp_m(0.004, -0.002);
-  const SimulatedBoard drawn = simulate_board(rig_, {}, 7, 0, {.frames = 15, .distance_m = 0.6});
+  const SimulatedBoard drawn =
+      simulate_board(rig_, {}, {.seed = 7, .frames = 15, .distance_m = 0.6});
   BoardObservations seen = drawn.observations;
   const auto bent = warped_target(seen.target_m, warp_m);
   for (BoardView& view : seen.views) {

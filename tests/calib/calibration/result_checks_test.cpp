@@ -7,8 +7,7 @@
 #include <Eigen/Core>
 
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "tests/support/scenes.h"
 

@@ -11,7 +11,7 @@
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"
@@ -39,7 +39,7 @@ class BoardTilts : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(BoardTilts, BoardsAllParallelToTheImageAreNamed) {
   const auto flat =
-      simulate_board(test::stereo_rig(), {}, GetParam(), 0, {.frames = 12, .tilt_rad = 0.0});
+      simulate_board(test::stereo_rig(), {}, {.seed = GetParam(), .frames = 12, .tilt_rad = 0.0});
   // simulate_board turns the board about the axis too, which is no tilt
   const std::string error_output = complaint_of(flat.observations);
   EXPECT_NE(error_output.find(

@@ -7,7 +7,7 @@
 #include "calib/board_observations.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/camera.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
 #include "tests/support/board_defects.h"
@@ -34,11 +34,10 @@ std::string complaint_of(const BoardObservations& observations) {
 class ViewChecks : public testing::TestWithParam<std::uint64_t> {
  protected:
   BoardObservations good_ =
-      simulate_board(test::stereo_rig(),
-                     {},
-                     GetParam(),
-                     0,
-                     {.frames = 13, .pixel_sigma_px = GetParam() % 2 ? 0.2 : 0.5})
+      simulate_board(
+          test::stereo_rig(),
+          {},
+          {.seed = GetParam(), .frames = 13, .pixel_sigma_px = GetParam() % 2 ? 0.2 : 0.5})
           .observations;
 };
 

@@ -8,11 +8,10 @@
 #include <string>
 
 #include "calib/error.h"
+#include "calib/estimate/observability.h"
 #include "calib/estimate/resized_rig.h"
-#include "calib/observability.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "tests/support/error_message.h"
@@ -110,7 +109,7 @@ TEST(CameraWithoutParameters, IsAnErrorThatNamesIt) {
   EXPECT_EQ(message([&] { parameters(Rig{{camera}, {Pose{}}}); }), words);
   const Rig rig{{camera, camera}, {Pose{}, Pose{}}};
   EXPECT_EQ(message([&] { retract(rig, Eigen::VectorXd::Zero(16)); }), words);
-  EXPECT_EQ(message([&] { unobservable_directions(rig, {}); }), words);
+  EXPECT_EQ(message([&] { internal::unobservable_directions(rig, {}); }), words);
   EXPECT_EQ(message([&] { internal::resized({.rig = rig}, {320, 240}); }), words);
 }
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"
 

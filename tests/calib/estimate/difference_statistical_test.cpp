@@ -41,10 +41,11 @@ TEST(RigDifference, PValuesOfIndependentCalibrationsAreUniform) {
   std::vector<double> p;
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     const auto of = [&](std::uint64_t seed, int frames) {
-      return calibrate(simulate_board(truth, {7, 6, 0.035}, seed, trial,
-                                      {.frames = frames, .pixel_sigma_px = 0.2})
-                           .observations,
-                       {.pixel_sigma_px = 0.2, .white_noise = true});
+      return calibrate(
+          simulate_board(truth, {7, 6, 0.035},
+                         {.seed = seed, .trial = trial, .frames = frames, .pixel_sigma_px = 0.2})
+              .observations,
+          {.pixel_sigma_px = 0.2, .white_noise = true});
     };
     const RigEstimate a = of(700, 12), b = of(900, 20);
     p.push_back(rig_difference(a.rig, *a.covariance, b.rig, *b.covariance).p_value);
@@ -62,8 +63,9 @@ TEST(RigDifference, HonestCovarianceRarelyCallsCorrelatedNoiseADifference) {
   const int pairs = 100;
   for (int pair = 0; pair < pairs; ++pair) {
     const auto of = [&](std::uint64_t seed) {
-      auto board = simulate_board(truth, {9, 6, 0.04}, seed + pair, 0,
-                                  {.frames = 13, .pixel_sigma_px = 0.1, .distance_m = 0.7});
+      auto board = simulate_board(
+          truth, {9, 6, 0.04},
+          {.seed = seed + pair, .frames = 13, .pixel_sigma_px = 0.1, .distance_m = 0.7});
       test::add_smooth_error(board.observations, 0.1, seed, pair);
       return calibrate(board.observations);
     };
@@ -88,8 +90,9 @@ TEST(RigDifference, HonestCovarianceRarelyCallsCorrelatedNoiseADifference) {
 TEST(ProjectionDifference, ExpectedSizeIsThatOfDrawnRigs) {
   const Rig truth = test::stereo_rig();
   const auto estimate = [&](std::uint64_t seed, int frames) {
-    RigEstimate e = calibrate(simulate_board(truth, {}, seed, 0, {.frames = frames}).observations,
-                              {.white_noise = true});
+    RigEstimate e =
+        calibrate(simulate_board(truth, {}, {.seed = seed, .frames = frames}).observations,
+                  {.white_noise = true});
     e.rig = truth;
     return e;
   };

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/observability.h"
+#include "calib/estimate/observability.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "calib/base/decompositions.h"
 #include "calib/camera.h"
+#include "calib/data_and_prior.h"
 #include "calib/estimate/simulated_pairs.h"
 #include "calib/pair_observations.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/solver/packed_pairs.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"
 
@@ -32,10 +35,10 @@ Eigen::Vector3d plane_of(const PairObservations& pairs, const Rig& rig) {
     Eigen::Matrix<double, 3, 2> A;
     A << l, -r;
     const Eigen::Vector3d b = -(T.R.transpose() * T.t);
-    const Eigen::Vector2d depth = A.colPivHouseholderQr().solve(b);
+    const Eigen::Vector2d depth = test::least_squares(A, b);
     X.row(i) = l * depth[0];
   }
-  return X.colPivHouseholderQr().solve(Eigen::Vector3d::Ones());
+  return test::least_squares(X, Eigen::Vector3d::Ones());
 }
 
 /// Directions without information, by the analytic vectors, and whether the rest has some.
@@ -48,13 +51,12 @@ void expect_rank(const Rig& rig,
   const Eigen::MatrixXd S =
       sd.asDiagonal() * epipolar_sums(PackedPairs(pairs), rig, {}).information * sd.asDiagonal();
   const Eigen::MatrixXd N = sd.cwiseInverse().asDiagonal() * unseen;
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(N).householderQ();
+  const Eigen::MatrixXd Q = test::full_q(N);
   const Eigen::MatrixXd null = Q.leftCols(unseen.cols()), rest = Q.rightCols(rank);
   const double largest = S.norm();
   EXPECT_LT((null.transpose() * S * null).norm(), 1e-13 * largest);
   EXPECT_LT((S * null).norm(), 1e-9 * largest);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest.transpose() * S * rest);
-  EXPECT_GT(eigen.eigenvalues()[0], 1e-11 * largest);
+  EXPECT_GT(symmetric_eigenvalues(rest.transpose() * S * rest)[0], 1e-11 * largest);
 }
 
 TEST(Observability, PairsSeeFifteenOfSixteen) {
@@ -112,8 +114,8 @@ TEST(Observability, WhatPairsCannotSeeStaysThePriors) {
   const Eigen::VectorXd sd = test::datasheet_sd();
   const Eigen::MatrixXd before = sd.cwiseAbs2().asDiagonal();
   const Eigen::MatrixXd S = epipolar_sums(PackedPairs(pairs), rig, {}).information;
-  const Eigen::MatrixXd P = before.inverse();
-  const Eigen::MatrixXd after = (P + S).inverse();
+  const Eigen::MatrixXd P = test::inverse(before);
+  const Eigen::MatrixXd after = test::inverse(P + S);
   const Observability o = observability(rig, parameter_names(rig), before, after);
   EXPECT_NEAR(o.scale_information_ratio, 1, 1e-6);
   EXPECT_NEAR(o.baseline_sd_after_m / o.baseline_sd_before_m, 1, 1e-3);

@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/scenes.h"

@@ -12,9 +12,8 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/estimate/same_rig.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
@@ -29,7 +28,7 @@ using namespace vernier::internal;
 namespace {
 
 RigEstimate calibrated(std::uint64_t seed, const CameraModel& model = Radial1{}) {
-  const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 12});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = seed, .frames = 12});
   return calibrate(board.observations,
                    {.model = model, .pixel_sigma_px = 0.2, .white_noise = true});
 }
@@ -128,7 +127,7 @@ TEST(RigDifference, HoldsApartWhatIsHeldAtDifferentValues) {
 
 TEST(RigDifference, ComparesTheRestOfARotationThatBothHoldInPart) {
   const auto calibrated_with = [](std::uint64_t seed, double wy_rad) {
-    const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 12});
+    const auto board = simulate_board(test::stereo_rig(), {}, {.seed = seed, .frames = 12});
     return calibrate(
         board.observations,
         {.pixel_sigma_px = 0.2, .held = {{"right.wy_rad", wy_rad}}, .white_noise = true});

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
 #include "calib/formats/colmap_cameras.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/formats/kalibr_camchain.h"
 #include "calib/formats/mrcal_cameramodel.h"
 #include "calib/formats/opencv_calibration_file.h"
 #include "calib/formats/ros_camera_info.h"
-#include "calib/imported_rig.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "tests/support/error_message.h"

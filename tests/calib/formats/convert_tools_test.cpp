@@ -16,7 +16,7 @@
 #include "calib/formats/mrcal_cameramodel.h"
 #include "calib/formats/opencv_calibration_file.h"
 #include "calib/formats/ros_camera_info.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "stereo/rectification/rectified_camera_info.h"
 #include "tests/support/foreign_files.h"

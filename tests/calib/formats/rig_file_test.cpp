@@ -20,7 +20,7 @@ namespace {
 
 const RigEstimate& estimate() {
   static const RigEstimate estimate =
-      calibrate(simulate_board(test::stereo_rig(), {}, 3).observations);
+      calibrate(simulate_board(test::stereo_rig(), {}, {.seed = 3}).observations);
   return estimate;
 }
 

@@ -12,16 +12,14 @@
 #include "calib/board_target.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/fisheye4.h"
+#include "calib/lens_models.h"
 #include "calib/mrcal/board_grid.h"
 #include "calib/mrcal/mrcal_comparison.h"
 #include "calib/mrcal/mrcal_parameters.h"
 #include "calib/mrcal/mrcal_problem.h"
 #include "calib/mrcal/mrcal_solver.h"
 #include "calib/mrcal/uncertainty_comparison.h"
-#include "calib/opencv_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
@@ -63,8 +61,9 @@ Rig rig_of(const CameraModel& model, int cameras, int scale) {
 
 SimulatedBoard board_of(const CameraModel& model, int cameras, int scale) {
   const bool wide = std::holds_alternative<OpenCv8>(model);
-  return simulate_board(rig_of(model, cameras, scale), {10, 8, 0.06}, 3, 0,
-                        {.frames = 24, .pixel_sigma_px = sigma_px, .distance_m = wide ? 0.6 : 0.9});
+  return simulate_board(
+      rig_of(model, cameras, scale), {10, 8, 0.06},
+      {.seed = 3, .frames = 24, .pixel_sigma_px = sigma_px, .distance_m = wide ? 0.6 : 0.9});
 }
 
 void expect_agreement(const MrcalComparison& difference) {
@@ -223,7 +222,8 @@ TEST(Mrcal, GridTakesGapsAndShiftsAndNothingElse) {
 }
 
 TEST(Mrcal, ComplainsOfWhatItCannotDo) {
-  const SimulatedBoard board = simulate_board(test::stereo_rig(Fisheye4{}), {9, 6, 0.04}, 1);
+  const SimulatedBoard board =
+      simulate_board(test::stereo_rig(Fisheye4{}), {9, 6, 0.04}, {.seed = 1});
   try {
     mrcal_solve(board.observations, board.truth);
     FAIL() << "no complaint";

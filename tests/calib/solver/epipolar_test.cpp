@@ -6,8 +6,8 @@
 
 #include "calib/camera.h"
 #include "calib/covariance.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/estimate/simulated_pairs.h"
-#include "calib/held_parameters.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
@@ -16,7 +16,7 @@
 #include "calib/solver/packed_pairs.h"
 #include "calib/solver/resolve_pairs.h"
 #include "tests/support/epipolar.h"
-#include "tests/support/jet_sampson.h"
+#include "tests/support/jet_oracles.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/pair_priors.h"
 #include "tests/support/scenes.h"

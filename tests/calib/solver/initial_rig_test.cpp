@@ -10,10 +10,8 @@
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/view_checks.h"
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/minimise_reprojection.h"
@@ -52,12 +50,18 @@ Rig rig_of(const Lens& lens) {
   return rig;
 }
 
+BoardObservations views_of(const Lens& lens, std::uint64_t seed) {
+  SimulatedBoardOptions options = lens.board;
+  options.seed = seed;
+  return simulate_board(rig_of(lens), {}, options).observations;
+}
+
 class Starts : public testing::TestWithParam<Lens> {};
 
 TEST_P(Starts, ByThemselvesAndWithoutAComplaint) {
   const Lens& lens = GetParam();
   for (std::uint64_t seed = 600; seed < 606; ++seed) {
-    BoardObservations seen = simulate_board(rig_of(lens), {}, seed, 0, lens.board).observations;
+    BoardObservations seen = views_of(lens, seed);
     check_and_sort(seen);
     EXPECT_TRUE(check_observations(seen).trust_warnings.empty());
     const BoardState start = initial_state(seen, {lens.model, lens.model});
@@ -112,7 +116,7 @@ TEST(InitialRig, StartsARationalLens) {
                   {0.6, 0.1, 1e-4, -2e-4, 0.01, 0.95, 0.3, 0.03},
                   {.frames = 15, .distance_m = 0.3, .tilt_rad = 0.35}};
   for (std::uint64_t seed = 600; seed < 606; ++seed) {
-    const auto seen = simulate_board(rig_of(lens), {}, seed, 0, lens.board).observations;
+    const BoardObservations seen = views_of(lens, seed);
     const BoardState start = initial_state(seen, {lens.model, lens.model});
     for (const Camera& camera : start.rig.cameras) {
       EXPECT_NEAR(camera.f_px() / lens.f_px, 1, 0.1) << "seed " << seed;
@@ -124,7 +128,7 @@ class BadViews : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(BadViews, DoNotRuinTheStart) {
   BoardObservations seen =
-      simulate_board(test::stereo_rig(), {}, GetParam(), 0, {.frames = 13}).observations;
+      simulate_board(test::stereo_rig(), {}, {.seed = GetParam(), .frames = 13}).observations;
   test::half_turn(test::view_of(seen, 2, 1));
   test::mirror(test::view_of(seen, 5, 0), 9);
   test::exchange(seen, 8);

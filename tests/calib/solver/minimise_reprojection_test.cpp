@@ -6,8 +6,8 @@
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
-#include "calib/held_parameters.h"
-#include "calib/radial1.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
@@ -38,7 +38,7 @@ class CameraWithoutViews : public testing::Test {
         [&] { minimise_reprojection(board_.observations, board_.truth, problem); });
   }
 
-  SimulatedBoard board_ = simulate_board(test::stereo_rig(), {}, 5);
+  SimulatedBoard board_ = simulate_board(test::stereo_rig(), {}, {.seed = 5});
   Rig rig_ = board_.truth.rig;
   std::vector<HeldParameter> all_;  // of the right camera
 };
@@ -76,7 +76,7 @@ TEST_F(CameraWithoutViews, MayBeKnownFromElsewhere) {
 }
 
 TEST(MinimiseReprojection, RefusesAProblemOfAnotherRig) {
-  const SimulatedBoard board = simulate_board(test::stereo_rig(), {}, 5);
+  const SimulatedBoard board = simulate_board(test::stereo_rig(), {}, {.seed = 5});
   const auto error_output = [&](const ReprojectionProblem& problem) {
     return error_message([&] { minimise_reprojection(board.observations, board.truth, problem); });
   };

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/covariance_estimators.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/initial_rig.h"
@@ -17,6 +17,7 @@
 #include "calib/solver/normal_equations.h"
 #include "calib/solver/square_root_system.h"
 #include "calib/statistics/random.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/scenes.h"
 
 namespace vernier {
@@ -46,17 +47,17 @@ TEST(SquareRootSystem, SolvesLikeTheDenseLeastSquaresProblem) {
   system.add_rows(prior);
   J.bottomLeftCorner(2, p) = prior.leftCols(p);
   r.tail(2) = prior.col(p);
-  const Eigen::VectorXd dense = J.colPivHouseholderQr().solve(-r);
+  const Eigen::VectorXd dense = test::least_squares(J, -r);
   const Eigen::VectorXd step = system.step();
   EXPECT_LT((step - dense.head(p)).norm(), 1e-13);
   EXPECT_LT((system.frame_steps(step) - dense.tail(6 * frames)).norm(), 1e-12);
-  const Eigen::MatrixXd covariance = (J.transpose() * J).inverse().topLeftCorner(p, p);
+  const Eigen::MatrixXd covariance = test::inverse(J.transpose() * J).topLeftCorner(p, p);
   EXPECT_LT((system.covariance() - covariance).norm(), 1e-12 * covariance.norm());
-  EXPECT_NEAR(system.step_sigma(), std::sqrt(step.dot(covariance.inverse() * step)), 1e-12);
+  EXPECT_NEAR(system.step_sigma(), std::sqrt(step.dot(test::inverse(covariance) * step)), 1e-12);
 }
 
 SimulatedBoard stereo_board() {
-  return simulate_board(test::stereo_rig(OpenCv4{}), {9, 6, 0.04}, 7, 0, {.frames = 15});
+  return simulate_board(test::stereo_rig(OpenCv4{}), {9, 6, 0.04}, {.seed = 7, .frames = 15});
 }
 
 TEST(RefinedMinimum, TheScoreVanishesThere) {

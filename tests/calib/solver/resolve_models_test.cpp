@@ -3,7 +3,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/camera.h"
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
 #include "calib/simulated_board.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/depth_uncertainty.h"
+#include "calib/triangulation_uncertainty.h"
 #include "calib/uncertainty/sampled_propagation.h"
 #include "calib/validation/monte_carlo_check.h"
 #include "tests/support/error_message.h"

@@ -9,13 +9,13 @@
 #include "calib/calibrate.h"
 #include "calib/camera.h"
 #include "calib/covariance.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/pair_observations.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "calib/statistics/random.h"
+#include "calib/triangulation.h"
 #include "calib/uncertainty/next_view.h"
 #include "calib/uncertainty/target_quantity.h"
 #include "tests/support/scenes.h"
@@ -33,7 +33,8 @@ constexpr int first_frames = 6;
 class DepthTrials {
  public:
   DepthTrials()
-      : first_(simulate_board(truth_, {}, 31, 0, {.frames = first_frames, .pixel_sigma_px = 0})) {}
+      : first_(simulate_board(
+            truth_, {}, {.seed = 31, .frames = first_frames, .pixel_sigma_px = 0})) {}
 
   const Rig& truth() const { return truth_; }
   const SimulatedBoard& first() const { return first_; }
@@ -58,7 +59,7 @@ class DepthTrials {
           calibrate(noisy,
                     {.pixel_sigma_px = sigma_px, .reject_outliers = false, .white_noise = true})
               .rig;
-      squares += std::pow(triangulated_depth_m(rig, left, right) - 5, 2);
+      squares += std::pow(triangulated_depth_m(rig, {left, right}) - 5, 2);
     }
     return std::sqrt(squares / trials);
   }
@@ -101,7 +102,7 @@ void expect_better_than_most(int views) {
   const double by_advice = trials.rms(advised(trials, views), count);
   std::vector<double> by_chance;
   for (std::uint64_t seed = 500; seed < 507; ++seed) {
-    const auto random = simulate_board(trials.truth(), {}, seed, 0, {.frames = views});
+    const auto random = simulate_board(trials.truth(), {}, {.seed = seed, .frames = views});
     by_chance.push_back(trials.rms(random.truth.T_first_board, count));
   }
   std::sort(by_chance.begin(), by_chance.end());

@@ -6,7 +6,6 @@
 
 #include "calib/calibrate.h"
 #include "calib/camera.h"
-#include "calib/depth_uncertainty.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/rig_and_boards.h"
 #include "calib/rig_estimate.h"
@@ -31,7 +30,7 @@ constexpr double alarm = 1e-3;  // of each test, over all its comparisons togeth
 
 const RigEstimate& estimate() {
   static const RigEstimate estimate = calibrate(
-      simulate_board(test::stereo_rig(), {9, 6, 0.04}, 7, 0, {.frames = 12}).observations);
+      simulate_board(test::stereo_rig(), {9, 6, 0.04}, {.seed = 7, .frames = 12}).observations);
   return estimate;
 }
 
@@ -64,8 +63,10 @@ TEST(SampledPropagation, ProjectionIsTheLinearOneAtSmallPsi) {
       const auto drawn = sampled_projection(sampler, joint, c, fixed_to, points,
                                             {.psi_c = psi_c, .samples = samples, .seed = 21});
       for (std::size_t k = 0; k < points.size(); ++k) {
+        const Eigen::Vector3d& x = points[k].x_camera;
         expect_same_variances(drawn[k].covariance,
-                              linear.covariance_of_point(points[k].x_camera, points[k].at_infinity),
+                              points[k].at_infinity ? linear.covariance_of_direction(x)
+                                                    : linear.covariance_of_point(x),
                               alarm / (2 * 3 * 9 * 2));
         EXPECT_EQ(drawn[k].non_physical_share, 0);
       }

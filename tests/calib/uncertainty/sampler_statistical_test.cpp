@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "calib/base/decompositions.h"
 #include "calib/calibrate.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -21,7 +22,7 @@ namespace {
 
 RigEstimate estimate() {
   static const RigEstimate estimate =
-      calibrate(simulate_board(test::stereo_rig(), {}, 3).observations);
+      calibrate(simulate_board(test::stereo_rig(), {}, {.seed = 3}).observations);
   return estimate;
 }
 
@@ -32,10 +33,10 @@ RigEstimate estimate() {
 TEST(Sampler, TenThousandDrawsReproduceTheCovariance) {
   const RigSampler sampler(estimate());
   const int n = 10000, p = 16;
-  const Eigen::LLT<Eigen::MatrixXd> L(estimate().covariance->matrix);
+  const Cholesky L(estimate().covariance->matrix);
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(p, p);
   for (int i = 0; i < n; ++i) {
-    const Eigen::VectorXd z = L.matrixL().solve(sampler.deviation(1, 11, i));
+    const Eigen::VectorXd z = L.solve_lower(sampler.deviation(1, 11, i));
     W += z * z.transpose();
   }
   EXPECT_GT(W.trace(), test::chi_squared_quantile(n * p, 5e-4));
@@ -56,8 +57,7 @@ TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
   const RigSampler sampler(estimate());
   const int n = 2000, p = 16;
   const auto extremes = [&](const Eigen::MatrixXd& scatter) {
-    const Eigen::VectorXd e =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scatter / n).eigenvalues();
+    const Eigen::VectorXd e = symmetric_eigenvalues(scatter / n);
     return std::pair(e[0], e[p - 1]);
   };
   double lowest = 1, lowest_high = 9, highest = 1, highest_low = 0;
@@ -71,10 +71,10 @@ TEST(Sampler, ExtremeEigenvaluesAreThoseOfAWishart) {
     highest = std::max(highest, high);
     lowest_high = std::min(lowest_high, high);
   }
-  const Eigen::LLT<Eigen::MatrixXd> L(estimate().covariance->matrix);
+  const Cholesky L(estimate().covariance->matrix);
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(p, p);
   for (int i = 0; i < n; ++i) {
-    const Eigen::VectorXd z = L.matrixL().solve(sampler.deviation(1, 12, i));
+    const Eigen::VectorXd z = L.solve_lower(sampler.deviation(1, 12, i));
     W += z * z.transpose();
   }
   const auto [low, high] = extremes(W);

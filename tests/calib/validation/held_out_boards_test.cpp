@@ -7,8 +7,7 @@
 #include "calib/board_observations.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/simulated_board.h"
 #include "tests/support/board_defects.h"
@@ -24,7 +23,7 @@ namespace {
 // one split share its rig, so the share inside scatters more than a binomial's; 0.90 to 0.99 and a
 // rms z of 0.85 to 1.15 hold for each of the seeds 301 to 310.
 TEST(LeftOutBoards, IntervalsAreTrueWhereTheNoiseIsWhite) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 301, 0, {.frames = 40});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 301, .frames = 40});
   const HeldOutBoardsResult result = evaluate_held_out_boards(
       board.observations, {.splits = 12, .calibration = {.model = Radial1{}}});
   EXPECT_EQ(result.splits, 12);
@@ -40,7 +39,7 @@ TEST(LeftOutBoards, IntervalsAreTrueWhereTheNoiseIsWhite) {
 TEST(LeftOutBoards, WrongModelIsSeen) {
   Rig truth = test::stereo_rig(OpenCv4{});
   for (Camera& camera : truth.cameras) camera.parameters[6] = 4e-3;  // p1
-  const auto board = simulate_board(truth, {}, 302, 0, {.frames = 30, .pixel_sigma_px = 0.05});
+  const auto board = simulate_board(truth, {}, {.seed = 302, .frames = 30, .pixel_sigma_px = 0.05});
   const auto with = [&](const CameraModel& model) {
     return evaluate_held_out_boards(board.observations,
                                     {.splits = 6, .calibration = {.model = model}})
@@ -51,7 +50,7 @@ TEST(LeftOutBoards, WrongModelIsSeen) {
 
 // A corner whose rays part: it alone is left out and counted, and a board of too few corners is.
 TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
-  const auto board = simulate_board(test::stereo_rig(), {}, 305, 0, {.frames = 14});
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 305, .frames = 14});
   const auto measured = [&](const BoardObservations& observations) {
     return evaluate_held_out_boards(
         observations,
@@ -83,9 +82,10 @@ TEST(LeftOutBoards, CornersWithoutAPointAreCounted) {
 }
 
 TEST(LeftOutBoards, NeedAPairAndViews) {
-  auto observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 5}).observations;
+  auto observations =
+      simulate_board(test::stereo_rig(), {}, {.seed = 303, .frames = 5}).observations;
   EXPECT_THROW(evaluate_held_out_boards(observations), Error);
-  observations = simulate_board(test::stereo_rig(), {}, 303, 0, {.frames = 8}).observations;
+  observations = simulate_board(test::stereo_rig(), {}, {.seed = 303, .frames = 8}).observations;
   EXPECT_THROW(evaluate_held_out_boards(observations, {.training_frames = 8}), Error);
 }
 

@@ -11,11 +11,10 @@
 #include "calib/calibrate.h"
 #include "calib/calibration/calibration_problem.h"
 #include "calib/covariance.h"
-#include "calib/held_parameters.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/minimise_reprojection.h"
 #include "tests/support/scenes.h"
@@ -32,7 +31,7 @@ ModelComparison compared(const BoardObservations& observations, const Calibratio
 
 TEST(ModelComparison, NamesTheModelThatPredictsBetter) {
   const Rig truth = test::stereo_rig(OpenCv4{});
-  const auto board = simulate_board(truth, {}, 304, 0, {.frames = 16, .pixel_sigma_px = 0.1});
+  const auto board = simulate_board(truth, {}, {.seed = 304, .frames = 16, .pixel_sigma_px = 0.1});
   const ModelComparison c = compared(board.observations, {.model = Radial1{}});
   ASSERT_EQ(c.richer.size(), 2u);
   ASSERT_EQ(c.warnings.size(), 1u);
@@ -44,7 +43,7 @@ TEST(ModelComparison, NamesTheModelThatPredictsBetter) {
 // 20 sets whose model is right: a warning would come once in 700 models (two a set).
 TEST(ModelComparison, IsSilentWhereTheModelIsRight) {
   for (std::uint64_t seed = 320; seed < 340; ++seed) {
-    const auto board = simulate_board(test::stereo_rig(), {}, seed, 0, {.frames = 13});
+    const auto board = simulate_board(test::stereo_rig(), {}, {.seed = seed, .frames = 13});
     const ModelComparison c = compared(board.observations, {.model = Radial1{}});
     EXPECT_TRUE(c.warnings.empty()) << c.warnings[0];
   }
@@ -53,7 +52,7 @@ TEST(ModelComparison, IsSilentWhereTheModelIsRight) {
 /// The right camera sees the board in the frames given alone.
 BoardObservations seldom_seen(const std::set<int>& frames) {
   BoardObservations seen =
-      simulate_board(test::stereo_rig(), {}, 306, 0, {.frames = 24}).observations;
+      simulate_board(test::stereo_rig(), {}, {.seed = 306, .frames = 24}).observations;
   std::erase_if(seen.views, [&](const BoardView& view) {
     return view.camera == 1 && !frames.contains(view.frame);
   });
@@ -76,7 +75,7 @@ TEST(ModelComparison, ACameraThatSeldomSawTheBoardIsComparedAsTheOthersAre) {
 // Of 60 frames out of 140 none is one in which the right camera saw anything.
 TEST(ModelComparison, SaysWhyItComparesNothing) {
   BoardObservations seen =
-      simulate_board(test::stereo_rig(), {4, 3, 0.05}, 307, 0, {.frames = 140}).observations;
+      simulate_board(test::stereo_rig(), {4, 3, 0.05}, {.seed = 307, .frames = 140}).observations;
   std::erase_if(seen.views, [&](const BoardView& view) {
     return view.camera == 1 && view.frame != 1 && view.frame != 6 && view.frame != 8;
   });
@@ -96,7 +95,7 @@ ModelComparison compared_by_left_images(bool held) {
   Rig truth = test::stereo_rig();
   truth.cameras[1].model = OpenCv8{};  // no model is richer
   truth.cameras[1].parameters = test::stereo_rig(OpenCv8{}).cameras[1].parameters;
-  auto board = simulate_board(truth, {}, 308, 0, {.frames = 16});
+  auto board = simulate_board(truth, {}, {.seed = 308, .frames = 16});
   std::erase_if(board.observations.views, [](const BoardView& view) { return view.camera == 1; });
   CalibrationOptions options{.pixel_sigma_px = 0.2};
   const std::vector<std::string> names = parameter_names(truth);

@@ -8,8 +8,7 @@
 
 #include "calib/calibrate.h"
 #include "calib/camera.h"
-#include "calib/opencv_models.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
@@ -51,7 +50,7 @@ TEST(ResidualStructure, CommonResidualGrowsWithTheRootOfTheCount) {
 
 /// Cells beyond the 95 % limit of a calibration with `fitted` of what `truth` sees.
 double share_beyond(const Rig& truth, const CameraModel& fitted) {
-  const auto board = simulate_board(truth, {}, 61, 0, {.frames = 30, .pixel_sigma_px = 0.05});
+  const auto board = simulate_board(truth, {}, {.seed = 61, .frames = 30, .pixel_sigma_px = 0.05});
   const RigEstimate e = calibrate(board.observations, {.model = fitted, .reject_outliers = false});
   const auto residuals = residuals_of_camera(e, 0);
   EXPECT_EQ(residuals.size(), 30u * 54);

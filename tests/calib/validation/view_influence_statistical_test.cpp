@@ -20,7 +20,8 @@ namespace {
 TEST(ViewInfluenceStatistical, NoiseAloneGivesWhatIsExpectedOfIt) {
   double seen = 0, expected = 0;
   for (std::uint32_t trial = 0; trial < 12; ++trial) {
-    const auto board = simulate_board(test::stereo_rig(), {}, 51, trial, {.frames = 12});
+    const auto board =
+        simulate_board(test::stereo_rig(), {}, {.seed = 51, .trial = trial, .frames = 12});
     for (const ViewInfluence& one :
          view_influence(calibrate(board.observations, {.pixel_sigma_px = 0.2}))) {
       seen += one.influence * one.influence;

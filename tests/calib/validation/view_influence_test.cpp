@@ -25,8 +25,8 @@ namespace {
 constexpr int frames = 12;
 
 BoardObservations some_views(std::uint64_t seed, double noise_px = 0.2) {
-  return simulate_board(test::stereo_rig(), {}, seed, 0,
-                        {.frames = frames, .pixel_sigma_px = noise_px})
+  return simulate_board(test::stereo_rig(), {},
+                        {.seed = seed, .frames = frames, .pixel_sigma_px = noise_px})
       .observations;
 }
 

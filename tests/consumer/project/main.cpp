@@ -32,7 +32,7 @@ vernier::Rig pair_of_cameras() {
 /// The whole chain once, so that every library and all that they link is needed.
 int run(const char* world_file) {
   const vernier::Rig rig = pair_of_cameras();
-  const auto board = vernier::simulate_board(rig, {.columns = 9, .rows = 6}, 1);
+  const auto board = vernier::simulate_board(rig, {.columns = 9, .rows = 6}, {.seed = 1});
   const vernier::RigEstimate calibrated = vernier::calibrate(board.observations);
   const auto read_back = vernier::parse_rig(vernier::format_rig(calibrated), "memory");
   std::printf("calibrated from %d views, residual %.3f px\n", calibrated.calibration->views,
@@ -50,7 +50,7 @@ int run(const char* world_file) {
   const auto looks = std::make_shared<const vernier::sim::MapViews>(
       vernier::sim::map_views(visibility, calibrated.rig, settings));
   const vernier::sim::LocalisationExperiment experiment(visibility, calibrated, looks, settings);
-  const auto results = experiment.run_block(0, 0, 2);
+  const auto results = experiment.run_block({.count = 2});
   for (const vernier::sim::TrialResult& trial : results) {
     std::printf("trial %u: %s, %d lines\n", trial.trial,
                 std::string(vernier::localise::name(trial.status)).c_str(), trial.lines);

@@ -10,7 +10,6 @@
 #include "stereo/evaluation/pair_samples.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"

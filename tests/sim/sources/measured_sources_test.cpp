@@ -17,11 +17,11 @@
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
 #include "sim/sources/variance_line.h"
+#include "sim/uncertainty_source.h"
+#include "stereo/canny_edges.h"
 #include "stereo/corners/corner_match.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/image_edges.h"
 #include "stereo/evaluation/corner_repeatability.h"
 #include "stereo/evaluation/edge_loss.h"
@@ -62,9 +62,10 @@ const StereoTruth& truth() {
 struct Frame {
   Frame(const SourceSettings& settings, std::uint32_t trial, std::uint32_t frame, bool clean_left) {
     const NoiseFreeView look = plane.look(frame);
-    sighting = Sensor(plane.rig(), settings, 1).sense(look, 5, trial, frame);
-    const StereoObservation clean =
-        Sensor(plane.rig(), no_sources(), 1).sense(look, 5, trial, frame);
+    sighting =
+        Sensor(plane.rig(), settings, 1).sense(look, {.seed = 5, .trial = trial, .frame = frame});
+    const StereoObservation clean = Sensor(plane.rig(), no_sources(), 1)
+                                        .sense(look, {.seed = 5, .trial = trial, .frame = frame});
     RandomStream draws({.seed = 6, .trial = trial, .frame = frame});
     left = test::drawn_edges(test::lines_of(clean_left ? clean : sighting, true), plane,
                              point_noise_px, draws);

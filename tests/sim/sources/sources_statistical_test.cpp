@@ -5,8 +5,8 @@
 #include "calib/statistics/random.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
+#include "sim/uncertainty_source.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/small_office.h"
 
@@ -30,7 +30,8 @@ TEST(SourceStatistics, EndpointErrorHasItsSigma) {
   double sum = 0;
   int n = 0;
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
-    const auto a = noisy.sense(seen(), 3, trial, 0), b = clean.sense(seen(), 3, trial, 0);
+    const auto a = noisy.sense(seen(), {.seed = 3, .trial = trial}),
+               b = clean.sense(seen(), {.seed = 3, .trial = trial});
     for (std::size_t i = 0; i < a.segments.size(); ++i) {
       sum += (a.segments[i].left.a_px - b.segments[i].left.a_px).squaredNorm() / 0.0225;
       sum += (a.segments[i].right.b_px - b.segments[i].right.b_px).squaredNorm() / 0.0225;
@@ -51,7 +52,7 @@ TEST(SourceStatistics, CornerSharesAreAsSet) {
   const Sensor sensor(test::nominal_rig().rig, settings);
   double total = 0, kept = 0, wrong = 0;
   for (std::uint32_t trial = 0; trial < 60; ++trial) {
-    const auto sighting = sensor.sense(seen(), 3, trial, 0);
+    const auto sighting = sensor.sense(seen(), {.seed = 3, .trial = trial});
     total += static_cast<double>(seen().corners.size());
     kept += static_cast<double>(sighting.corners.size());
     for (const SensedCorner& c : sighting.corners) wrong += c.mismatched;

@@ -14,10 +14,9 @@
 #include "calib/statistics/random.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
-#include "sim/route.h"
 #include "sim/sense.h"
-#include "sim/sensed_view.h"
 #include "sim/sources.h"
+#include "sim/uncertainty_source.h"
 #include "sim/world.h"
 #include "stereo/rectification.h"
 #include "stereo/segment.h"
@@ -38,7 +37,8 @@ class Sources : public testing::Test {
  protected:
   static const NoiseFreeView& seen() { return test::office_look(); }
   static StereoObservation sense(const SourceSettings& settings, std::uint32_t trial = 0) {
-    return Sensor(test::nominal_rig().rig, settings, 1e-6).sense(seen(), 7, trial, 0);
+    return Sensor(test::nominal_rig().rig, settings, 1e-6)
+        .sense(seen(), {.seed = 7, .trial = trial});
   }
   static const StereoObservation& exact() {
     static const StereoObservation sighting = sense(no_sources());
@@ -94,7 +94,8 @@ std::map<int, double> outward_shifts(const Sensor& sensor,
   static const std::vector<Eigen::Vector3d> centre_m = centroids(test::small_office());
   const NoiseFreeView seen = look(test::small_office_visibility(), sensor.rig(), place);
   const Pose T_left = T_left_world(place, NoiseFreeViewOptions{}.mount);
-  const StereoObservation shifted = sensor.sense(seen, 7, 0, frame), e = exact.sense(seen, 7, 0, 0);
+  const StereoObservation shifted = sensor.sense(seen, {.seed = 7, .frame = frame}),
+                          e = exact.sense(seen, {.seed = 7});
   std::map<int, double> outward;
   for (std::size_t i = 0; i < shifted.segments.size(); ++i) {
     const VisibleEdge& edge = e.true_edges[i];

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "localise/place.h"
-#include "sim/route.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/small_office.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/query_protocol.h"
+#include "sim/experiment.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "calib/error.h"
 #include "localise/place.h"
-#include "sim/route.h"
+#include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/small_office.h"
@@ -21,6 +21,7 @@ namespace vernier {
 
 using namespace vernier::localise;
 using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 

@@ -6,10 +6,10 @@
 
 #include "calib/base/atomic_file.h"
 #include "sim/experiment.h"
-#include "sim/query_protocol.h"
 #include "sim/sources.h"
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
+#include "sim/study/told_rig.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 

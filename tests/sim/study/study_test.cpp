@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/study.h"
+#include "sim/study/cell_summary.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,6 +22,8 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
+#include "sim/study/cell_comparison.h"
+#include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
 #include "tests/support/small_office.h"

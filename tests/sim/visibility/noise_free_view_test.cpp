@@ -12,10 +12,10 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/route.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
+#include "sim/visibility/stretch_feature.h"
 #include "sim/world.h"
 #include "stereo/reconstruction/triangulate.h"
 #include "stereo/rectification.h"
@@ -45,7 +45,7 @@ TEST(NoiseFreeView, AllSourcesOffAndTheTrueRigToldPutSegmentsBackOnTheWorld) {
   int checked = 0;
   for (const Pose2D& pose : map_poses(world.route, 1.5)) {
     const NoiseFreeView seen = look(test::small_office_visibility(), rig, pose);
-    const StereoObservation sighting = sensor.sense(seen, 1, 0, 0);
+    const StereoObservation sighting = sensor.sense(seen);
     ASSERT_EQ(sighting.segments.size(), seen.edges.size());
     const Pose T_world_left = T_left_world(pose, {}).inverse();
     for (std::size_t i = 0; i < sighting.segments.size(); ++i) {

@@ -9,8 +9,7 @@
 #include <thread>
 
 #include "calib/camera.h"
-#include "calib/fisheye4.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/statistics/random.h"
 #include "sim/world.h"

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/route.h"
+#include "sim/world.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "calib/error.h"
-#include "sim/world.h"
 
 namespace vernier {
 

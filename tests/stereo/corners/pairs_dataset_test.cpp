@@ -13,7 +13,7 @@
 #include "calib/calibrate.h"
 #include "calib/covariance.h"
 #include "calib/joint_calibration.h"
-#include "calib/opencv_models.h"
+#include "calib/lens_models.h"
 #include "calib/pair_observations.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"

@@ -11,7 +11,6 @@
 #include <opencv2/core.hpp>
 
 #include "calib/statistics/random.h"
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"

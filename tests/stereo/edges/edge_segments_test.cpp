@@ -11,7 +11,6 @@
 
 #include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_chains.h"
 #include "stereo/grey_levels.h"
 #include "tests/support/edge_images.h"

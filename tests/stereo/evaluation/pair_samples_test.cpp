@@ -16,7 +16,6 @@
 #include "stereo/evaluation/line_match.h"
 #include "stereo/evaluation/segment_shift.h"
 #include "stereo/grey_levels.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"

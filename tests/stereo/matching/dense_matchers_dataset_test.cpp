@@ -9,13 +9,11 @@
 #include <numbers>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/evaluation/stereo_scenes.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/dense_matchers.h"
 #include "stereo/matching/edge_sampling.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/foreign_files.h"

@@ -9,12 +9,11 @@
 #include <opencv2/core.hpp>
 
 #include "calib/statistics/random.h"
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/edge_sampling.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/edge_at.h"
 #include "tests/support/error_message.h"
 

@@ -12,8 +12,7 @@
 
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/edge_point.h"
-#include "stereo/rectified_pair.h"
+#include "stereo/grey_levels.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {

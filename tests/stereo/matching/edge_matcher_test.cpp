@@ -12,7 +12,6 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_points_by_row.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/stretched_image.h"
@@ -20,7 +19,6 @@
 #include "stereo/matcher_evaluation.h"
 #include "stereo/matching/census.h"
 #include "stereo/matching/edge_support.h"
-#include "stereo/rectified_pair.h"
 #include "stereo/stereo_truth.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
@@ -314,7 +312,7 @@ TEST_F(Evaluation, CountsByTheProtocol) {
 
 TEST_F(Evaluation, TheCurveFallsWithConfidence) {
   found[0].disparity_px = 20;  // the least sure is wrong
-  const std::vector<CurvePoint> curve = density_curve(edges, found, truth, 100, 5);
+  const std::vector<CurvePoint> curve = density_curve(edges, found, truth, 100, {.points = 5});
   ASSERT_EQ(curve.size(), 5u);
   EXPECT_DOUBLE_EQ(curve.front().density, 1);
   EXPECT_DOUBLE_EQ(curve.front().bad_1, 0.25);
@@ -328,7 +326,7 @@ TEST_F(Evaluation, TheCurveFallsWithConfidence) {
 TEST_F(Evaluation, MoreCurvePointsThanMatches) {
   for (std::size_t i = 2; i < found.size(); ++i) found[i] = {};
   found[0].confidence = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<CurvePoint> curve = density_curve(edges, found, truth, 100, 10);
+  const std::vector<CurvePoint> curve = density_curve(edges, found, truth, 100, {.points = 10});
   ASSERT_FALSE(curve.empty());
   EXPECT_DOUBLE_EQ(curve.front().density, 0.5);
 }

@@ -10,11 +10,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 
+#include "stereo/canny_edges.h"
 #include "stereo/disparity_file.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/edge_sampling.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 

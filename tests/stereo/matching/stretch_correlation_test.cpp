@@ -12,12 +12,10 @@
 #include <functional>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
 #include "stereo/matching/stretch_filter.h"
 #include "stereo/matching/stretch_search.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 #include "tests/support/plane_figures.h"

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "stereo/canny_edges.h"
-#include "stereo/edge_point.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matching/stretch_correlation.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/error_message.h"
 #include "tests/support/leaf_pair.h"
 

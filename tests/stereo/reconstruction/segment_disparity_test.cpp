@@ -4,18 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 
+#include "calib/base/decompositions.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_segments.h"
+#include "stereo/grey_levels.h"
 #include "stereo/matcher.h"
-#include "stereo/rectified_pair.h"
 #include "tests/support/edge_images.h"
 #include "tests/support/error_message.h"
 #include "tests/support/step_pair.h"
@@ -78,8 +78,7 @@ TEST_F(OneEdge, ALineIsFoundExactly) {
   EXPECT_EQ(all[0].points.size(), 30u);
   EXPECT_EQ(all[0].edge_points, 30);
   EXPECT_NEAR(all[0].right_px().a_px.x(), 20, 1e-4);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(all[0].covariance_px2);
-  EXPECT_GT(spectrum.eigenvalues()[0], 0);
+  EXPECT_GT(symmetric_eigenvalues(all[0].covariance_px2)[0], 0);
   // The ends keep their own covariance.
   EXPECT_LT((all[0].covariance_px2.topLeftCorner<2, 2>() - segment.a_covariance_px2).norm(), 1e-9);
   EXPECT_LT((all[0].covariance_px2.block<2, 2>(2, 2) - segment.b_covariance_px2).norm(), 1e-9);
@@ -159,7 +158,7 @@ TEST_F(OneEdge, CorrelatedNoiseHasTheStatedCovariance) {
                 std::pow(options.floor_px, 2) * std::exp(-apart / options.floor_length_px);
     }
   }
-  const Eigen::MatrixXd root = C.llt().matrixL();
+  const Eigen::MatrixXd root = Cholesky(C).lower();
   RandomStream draws = draws_of(501);
   const int trials = 2000;
   double sum = 0, independent = 0;

@@ -10,12 +10,11 @@
 #include "calib/statistics/distributions.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
-#include "stereo/edge_point.h"
 #include "stereo/edges/edge_segments.h"
+#include "stereo/grey_levels.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
-#include "stereo/rectified_geometry.h"
-#include "stereo/rectified_pair.h"
+#include "stereo/rectification.h"
 #include "tests/support/leaf_pair.h"
 
 namespace vernier {

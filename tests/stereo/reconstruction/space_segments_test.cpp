@@ -4,12 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "calib/base/decompositions.h"
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
@@ -18,10 +19,11 @@
 #include "calib/statistics/random.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/triangulate.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/rectification_covariance.h"
-#include "stereo/rectified_geometry.h"
 #include "stereo/segment.h"
 #include "tests/support/calibrations_covariance.h"
+#include "tests/support/dense_oracles.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"
 
@@ -198,8 +200,8 @@ TEST(SpaceSegments, TheIndependentPartIsThatOfDraws) {
   RandomStream draws({.seed = 511, .source = static_cast<std::uint32_t>(DrawSource::noisy_copy)});
   for (const SegmentDisparity& truth : some()) {
     const MeasuredSegment stated = space_segments(std::vector{truth}, g)[0];
-    const Matrix6d root = truth.covariance_px2.llt().matrixL();
-    const Matrix6d inverse = stated.independent_m2.inverse();
+    const Matrix6d root = Cholesky(truth.covariance_px2).lower();
+    const Matrix6d inverse = test::inverse(stated.independent_m2);
     const int trials = 3000;
     double nees = 0;
     for (int k = 0; k < trials; ++k) {
@@ -229,7 +231,7 @@ TEST(SpaceSegments, TheCalibrationPartIsThatOfDrawnRigs) {
   const auto found = some();
   const auto placed = space_segments(found, g, estimate);
   const Eigen::MatrixXd C = calibration_covariance_m2(placed, estimate.covariance->matrix);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(C);
+  const SymmetricEigen spectrum(C);
   const double largest = spectrum.eigenvalues().tail<1>()[0];
   int rank = 0;
   while (rank < 24 && spectrum.eigenvalues()[23 - rank] > 1e-4 * largest) ++rank;

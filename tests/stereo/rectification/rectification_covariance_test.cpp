@@ -9,8 +9,8 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/lens_models.h"
 #include "calib/pose.h"
-#include "calib/radial1.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
@@ -19,7 +19,6 @@
 #include "calib/triangulation.h"
 #include "stereo/rectification.h"
 #include "stereo/rectification/vertical_disparity.h"
-#include "stereo/rectified_geometry.h"
 #include "tests/support/calibrations_covariance.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/scenes.h"

@@ -8,7 +8,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
-#include "calib/radial1.h"
+#include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "calib/base/grey_image.h"
-#include "stereo/rectified_pair.h"
+#include "stereo/grey_levels.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/grey_levels.h"
 #include "tests/support/stereo_scenes.h"

@@ -6,16 +6,20 @@
 #include <string>
 #include <vector>
 
-namespace vernier {
+#include "calib/data_and_prior.h"
 
-/// Consistency test of new data with a prior.
-struct PriorConsistency {
-  double chi2 = 0;          ///< over the observed directions
-  int dof = 0;              ///< number of directions that the data improved
-  int clusters = 0;         ///< number used to estimate the scatter; 0: it is known
-  double p_value = 1;       ///< of a χ² this large or larger, by the law below
-  double in_sigma = 0;      ///< along the direction of largest disagreement …
-  std::string description;  ///< … described here
+namespace vernier::internal {
+
+/// The covariances that are compared, all over the same directions.
+struct PriorAndEstimate {
+  Eigen::MatrixXd prior;   ///< C_0 below
+  Eigen::MatrixXd bound;   ///< C_mvb, of the estimate
+  Eigen::MatrixXd honest;  ///< C, of the estimate
+};
+
+struct PriorConsistencyOptions {
+  int clusters = 0;      ///< of data, used to estimate the scatter; 0: it is known
+  double looseness = 1;  ///< of the estimate's prior, times the prior's standard deviations
 };
 
 /// With δ the estimate's offset from the prior's mean, C_0 the prior's covariance, C_mvb the bound
@@ -37,10 +41,7 @@ struct PriorConsistency {
 /// equation. Throws Error if C_0 is singular.
 PriorConsistency prior_consistency(const Eigen::VectorXd& offset,
                                    const std::vector<std::string>& names,
-                                   const Eigen::MatrixXd& prior,
-                                   const Eigen::MatrixXd& bound,
-                                   const Eigen::MatrixXd& honest,
-                                   int clusters = 0,
-                                   double looseness = 1);
+                                   const PriorAndEstimate& covariance,
+                                   const PriorConsistencyOptions& options = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

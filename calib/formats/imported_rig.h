@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/camera.h"
-#include "calib/pose.h"
 #include "calib/rig.h"
 
-namespace vernier {
+namespace vernier::internal {
 
 /// Information that another tool's file may lack.
 struct ImportOptions {
@@ -33,19 +32,6 @@ struct ExportedFile {
   std::string text;
 };
 
-/// A camera and its pose, before the rig's frame is chosen.
-struct PlacedCamera {
-  Camera camera;
-  Pose T_camera_reference;
-};
-
-/// The rig in the frame of the first camera: T_i_first = T_i_reference T_first_reference⁻¹. Cameras
-/// without a name, or with a repeated one, are named left, right, camera2 …
-Rig rig_of(std::vector<PlacedCamera> cameras);
-
-/// Default camera names: left, right, camera2 ….
-std::string default_camera_name(std::size_t index);
-
 /// The camera's name, usable as a file name. Throws Error if it is empty, begins with a dot, or
 /// contains a slash, a backslash or a control character.
 const std::string& file_stem(const Camera& camera);
@@ -55,4 +41,4 @@ const std::string& file_stem(const Camera& camera);
 /// larger deviations, and for a reflection.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place);
 
-}  // namespace vernier
+}  // namespace vernier::internal

@@ -3,9 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vernier::internal {
+
+/// Camera and frame of an image from its name.
+struct ImageName {
+  std::string camera;      ///< the name without its last number
+  std::int64_t frame = 0;  ///< the last number; its frame by FrameNumbering
+};
+
+/// Throws Error for a name without a number, or with one of more than 18 digits.
+ImageName parse_image_name(const std::filesystem::path& image);
 
 /// Frame numbers of images from the numbers in their names: the numbers themselves if all are below
 /// 2147483648, else (time stamps in nanoseconds) their ranks from 0 in ascending order.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/base/yaml_node.h"
+#include "calib/formats/yaml_node.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

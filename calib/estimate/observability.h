@@ -7,31 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/data_and_prior.h"
 #include "calib/rig.h"
 
-namespace vernier {
-
-/// One direction in parameter space, and how the data improved it.
-struct ObservedDirection {
-  double sd_ratio = 1;        ///< standard deviation after the data over that before
-  Eigen::VectorXd direction;  ///< unit, in the prior's standard deviations
-  std::string description;
-};
-
-/// How much of a targetless calibration comes from its data and how much from its prior.
-struct Observability {
-  std::vector<ObservedDirection> directions;  ///< most improved first
-  double from_data = 0;  ///< number of parameters determined by the data, tr(I − C C_0⁻¹)
-  int improved = 0;      ///< directions known at least twice as well as before
-  int unchanged = 0;     ///< directions whose standard deviation fell by less than a tenth
-  /// The scale direction n (T → s T, all else fixed), which no pair can observe: nᵀ C⁻¹ n over nᵀ
-  /// C_0⁻¹ n, 1 for any data.
-  double scale_information_ratio = 1;
-  double baseline_sd_before_m = 0, baseline_sd_after_m = 0;  ///< of the length |T|
-
-  /// Whether the data determine less than half of the parameters.
-  bool is_prior_dominated() const { return 2 * from_data < static_cast<double>(directions.size()); }
-};
+namespace vernier::internal {
 
 /// The spectrum of C_0^(-1/2) C C_0^(-1/2), C_0 = `before` and C = `after` in the tangent of `rig`
 /// over the parameters `names`. Throws Error if `before` is not positive definite.
@@ -55,4 +34,4 @@ Observability observability(const Rig& rig,
 Eigen::MatrixXd unobservable_directions(const Rig& rig,
                                         const std::optional<Eigen::Vector3d>& plane = {});
 
-}  // namespace vernier
+}  // namespace vernier::internal

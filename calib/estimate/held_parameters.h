@@ -2,22 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "calib/rig.h"
+#include "calib/rig_prior.h"
 
-namespace vernier {
-
-/// A parameter of the rig that is not estimated. A component of a rotation is held as that
-/// component of the rotation vector.
-struct HeldParameter {
-  std::string name;  ///< such as "left.ax" (see parameter_names)
-  /// std::nullopt: ax 1, the principal point at the image centre, no distortion; a focal length or
-  /// a component of a pose keeps its start value.
-  std::optional<double> value;
-};
+namespace vernier::internal {
 
 /// One flag a parameter of the rig. Throws Error for a name that the rig does not have, for a
 /// parameter held twice and for values that no camera has (f_px or ax not above 0, not finite).
@@ -50,4 +42,7 @@ std::vector<bool> without_variance(const Rig& rig, const Eigen::MatrixXd& C);
 /// Names of the parameters that are not held.
 std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& held);
 
-}  // namespace vernier
+/// The parameters that `prior` does not name, held at the values of its rig.
+std::vector<HeldParameter> held_by(const GaussianRigPrior& prior);
+
+}  // namespace vernier::internal

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/held_parameters.h"
+#include "calib/estimate/held_parameters.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,8 +14,9 @@
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
+#include "calib/rig_prior.h"
 
-namespace vernier {
+namespace vernier::internal {
 namespace {
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -155,4 +156,16 @@ std::vector<std::string> free_names(const Rig& rig, const std::vector<bool>& hel
   return free;
 }
 
-}  // namespace vernier
+std::vector<HeldParameter> held_by(const GaussianRigPrior& prior) {
+  std::vector<HeldParameter> held;
+  const std::vector<std::string> names = parameter_names(prior.rig);
+  const Eigen::VectorXd a = parameters(prior.rig);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& known = prior.covariance.names;
+    if (std::find(known.begin(), known.end(), names[i]) != known.end()) continue;
+    held.push_back({names[i], a[static_cast<Eigen::Index>(i)]});
+  }
+  return held;
+}
+
+}  // namespace vernier::internal

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib/interval.h"
+#include "sim/study/study.h"
+
+namespace vernier::sim::internal {
+
+/// Statistics of a cell.
+struct CellSummary {
+  int trials = 0;
+  int maps = 0;  ///< number of recorded maps
+  double success = 0;
+  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
+  std::string why_no_interval;            ///< "needs 6 maps, has 1"; empty if there is an interval
+  Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
+  double coverage = 0;                    ///< fraction answered
+  double success_when_answered = 0;
+  double node_success = 0;               ///< for the map node instead of the refined pose
+  double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
+  double median_error_m = 0;             ///< over answered trials
+  double median_heading_error_rad = 0;
+  double cpu_ms_mean = 0, cpu_ms_median = 0, cpu_ms_p95 = 0, wall_ms_mean = 0;
+};
+CellSummary summarise(const CellResult& cell);
+
+}  // namespace vernier::sim::internal

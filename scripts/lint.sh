@@ -134,7 +134,7 @@ lint_one() {
   fi
   if "$tidy" --quiet -p "$results" "${options[@]}" "$1" >"$found" 2>"$messages"; then return; fi
   # It also fails if there are findings; without findings, clang-tidy itself failed.
-  if ! grep --quiet --extended-regexp ':[0-9]+:[0-9]+: (warning|error): ' "$found"; then
+  if ! grep --quiet --extended-regexp '(:[0-9]+:[0-9]+: (warning|error)|^error): ' "$found"; then
     echo "$1:1:1: error: $(tail --lines=1 "$messages") [clang-tidy-failed]" >"$found"
   fi
 }

@@ -73,6 +73,7 @@ void write_atomically(const std::filesystem::path& file, std::string_view conten
 void write_atomically(
     const std::vector<std::pair<std::filesystem::path, std::string>>& named_contents) {
   std::vector<Staged> staged;
+  staged.reserve(named_contents.size());
   for (const auto& [file, content] : named_contents) staged.emplace_back(file, content);
   for (Staged& file : staged) file.put_in_place();
 }

@@ -46,9 +46,9 @@ Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
   return Eigen::LDLT<Eigen::MatrixXd>(A).solve(B);
 }
 
-Eigen::MatrixXd qr_triangle(Eigen::MatrixXd A) {
+Eigen::MatrixXd qr_triangle(const Eigen::MatrixXd& A) {
   const auto n = A.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(A));
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
   return qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
 }
 

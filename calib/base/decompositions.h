@@ -75,7 +75,7 @@ struct RightSingularVectors {
 };
 
 /// The upper triangle R of A = Q R (Eigen::HouseholderQR). A has at least as many rows as columns.
-Eigen::MatrixXd qr_triangle(Eigen::MatrixXd A);
+Eigen::MatrixXd qr_triangle(const Eigen::MatrixXd& A);
 
 /// An orthonormal basis of the columns of X, which must be linearly independent
 /// (Eigen::HouseholderQR).

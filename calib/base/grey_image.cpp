@@ -9,7 +9,7 @@
 namespace vernier::internal {
 
 cv::Mat read_grey_image(const std::filesystem::path& file) {
-  const cv::Mat grey =
+  cv::Mat grey =
       decode_image(read_image_bytes(file), cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, file);
   if (grey.depth() == CV_8U) return grey;
   double largest = 0;

@@ -30,7 +30,7 @@ struct Head {
 PythonLiteral description(std::string_view bytes, const std::string& place, std::size_t& data_at) {
   const Error cut(place, "is cut off in its NumPy header", "write it again");
   if (bytes.size() < 10) throw cut;
-  const int version = bytes[6];
+  const int version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) {
     throw Error(place, fmt::format("has version {} of NumPy's format", version),
                 "write it with numpy.save");

@@ -302,9 +302,10 @@ class Diagnosis {
     std::vector<std::string> whole;
     for (const auto& [place, left_out] : out) {
       const auto& views = observations_.views;
-      const bool kept = std::any_of(views.begin(), views.end(), [&](const BoardView& view) {
-        return std::pair(view.frame, view.camera) == place;
-      });
+      const bool kept =
+          std::any_of(views.begin(), views.end(), [&key = place](const BoardView& view) {
+            return std::pair(view.frame, view.camera) == key;
+          });
       if (!kept) whole.push_back(left_out.first);
     }
     if (!whole.empty()) {

@@ -130,7 +130,7 @@ ObservationDiagnosis check_tilts(const BoardObservations& observations, const Bo
         "the boards are tilted too little to determine the focal length (to {:.0f} % at best)",
         100 * std::min(known_to, 10.0));
     if (known_to > undetermined) throw Error(place, fault, cure);
-    diagnosis.trust_warnings.push_back(place + ": " + fault + "; " + cure);
+    diagnosis.trust_warnings.push_back(fmt::format("{}: {}; {}", place, fault, cure));
   }
   return diagnosis;
 }

@@ -139,7 +139,8 @@ std::vector<double> YamlNode::vector() const {
   const double r = at("rows").number(), c = at("cols").number();
   if (r * c == 0) return {};
   if (r != 1 && c != 1) throw Error(place(), "is not a single row or column", "correct it");
-  return at("data").numbers(static_cast<std::size_t>(at("rows").count() * at("cols").count()));
+  return at("data").numbers(static_cast<std::size_t>(at("rows").count()) *
+                            static_cast<std::size_t>(at("cols").count()));
 }
 
 Eigen::Vector2i YamlNode::size_px() const {

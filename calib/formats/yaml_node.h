@@ -45,8 +45,8 @@ class YamlNode {
   std::string place() const;
 
  private:
-  YamlNode(YAML::Node node, std::string file, std::string path)
-      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
+  YamlNode(const YAML::Node& node, std::string file, std::string path)
+      : node_(node), file_(std::move(file)), path_(std::move(path)) {}
   YamlNode item(std::size_t index) const;
 
   YAML::Node node_;

@@ -45,7 +45,7 @@ struct ReducedSums {
 /// Number of lanes that eliminate_frames() stores for eight frames for the back-substitution: L
 /// (21, with inverted diagonal), y (6), Z (6 per parameter).
 inline std::size_t frame_factor_size(int parameters) {
-  return static_cast<std::size_t>(27 + 6 * parameters);
+  return 27 + 6 * static_cast<std::size_t>(parameters);
 }
 
 /// Eliminates the board's pose from eight frames. `sums[c]` is the result of sum_views() for camera

@@ -66,6 +66,7 @@ Pose consensus_pose(const std::vector<Pose>& candidates) {
   Pose centre;
   for (const Pose& candidate : candidates) {
     std::vector<double> distances;
+    distances.reserve(candidates.size());
     for (const Pose& other : candidates) distances.push_back(distance(candidate, other));
     const double median = middle(std::move(distances));
     if (median < least) {

@@ -230,6 +230,7 @@ class Minimisation {
   void add_priors() {
     std::vector<double*> blocks;
     const auto cameras = static_cast<int>(start_.rig.cameras.size());
+    blocks.reserve(2 * start_.rig.cameras.size());
     for (int c = 0; c < cameras; ++c) blocks.push_back(buffer_.intrinsics(c));
     for (int c = 1; c < cameras; ++c) blocks.push_back(buffer_.camera_pose(c));
     for (const RigPrior& prior : what_.priors) {
@@ -276,7 +277,7 @@ class Minimisation {
 }  // namespace
 
 BoardState minimise_reprojection(const BoardObservations& observations,
-                                 BoardState start,
+                                 const BoardState& start,
                                  const ReprojectionProblem& problem) {
   check_problem(observations, start.rig, problem);
   check_cameras(observations, start.rig, problem);

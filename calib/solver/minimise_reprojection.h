@@ -24,7 +24,7 @@ namespace vernier::internal {
 /// threads log, so this function does not touch it. To silence it, a program sets FLAGS_minloglevel
 /// = google::GLOG_FATAL before it starts threads, as vernier does.
 BoardState minimise_reprojection(const BoardObservations& observations,
-                                 BoardState start,
+                                 const BoardState& start,
                                  const ReprojectionProblem& problem = {});
 
 }  // namespace vernier::internal

@@ -31,6 +31,7 @@ ReducedNormalEquations pair_equations(const PairObservations& pairs,
   constexpr double min_bend = 0.3;  // below, the loss does not suit the residuals
   const double mean_bend = count > 0 ? std::max(min_bend, bend / count) : 1;
   std::vector<double> counted;
+  counted.reserve(residuals.size());
   for (const double r : residuals) {
     counted.push_back(weight_of(loss, r / sigma_scale) > 0 ? mean_bend : 0);
   }

@@ -10,7 +10,7 @@ namespace vernier::internal {
 
 Eigen::LLT<Eigen::Matrix<double, 6, 6>> pose_factor(const Eigen::Matrix<double, 6, 6>& BtB,
                                                     int frame) {
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(BtB);
+  Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(BtB);
   const Eigen::Array<double, 6, 1> pivots = factor.matrixLLT().diagonal().array().square();
   if (factor.info() != Eigen::Success ||
       !(pivots > min_pose_pivot * BtB.diagonal().array()).all()) {

@@ -28,7 +28,8 @@ inline constexpr std::size_t packed_index(int i, int j, int n) {
   return static_cast<std::size_t>(i * (2 * n - i - 1) / 2 + j);
 }
 inline constexpr std::size_t packed_size(int n) {
-  return static_cast<std::size_t>(n * (n + 1) / 2);
+  const auto size = static_cast<std::size_t>(n);
+  return size * (size + 1) / 2;
 }
 
 /// Eight views of one camera.

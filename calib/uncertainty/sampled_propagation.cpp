@@ -128,6 +128,7 @@ std::vector<SampledPixel> sampled_projection(const RigSampler& sampler,
     }
   }
   std::vector<SampledPixel> result;
+  result.reserve(moments.size());
   for (const Moments<2>& m : moments) {
     result.push_back({m.mean(), m.covariance(), m.missing_share(options.samples)});
   }

@@ -72,7 +72,7 @@ std::vector<std::vector<int>> dealt(const BoardObservations& observations) {
 BoardState determined_minimum(const BoardObservations& observations,
                               const BoardState& start,
                               const ReprojectionProblem& problem) {
-  const BoardState state = minimise_reprojection(observations, start, problem);
+  BoardState state = minimise_reprojection(observations, start, problem);
   const LinearisedCost cost = linearised_cost(observations, state, problem);
   minimum_variance_bound(cost.equations, cost.names);
   return state;

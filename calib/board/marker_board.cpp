@@ -166,10 +166,11 @@ std::vector<Mistake> mistakes_for(const CharucoBoard& board) {
   if (board.rows % 2 == 0) {
     CharucoBoard other = board;
     other.legacy = !board.legacy;
-    mistakes.push_back({{layout_of(other)},
-                        board.legacy
-                            ? "they match the layout of OpenCV 4.6 and later: leave out --legacy"
-                            : "they match the layout of OpenCV before 4.6: give --legacy"});
+    Mistake& mistake = mistakes.emplace_back();
+    mistake.layouts = {layout_of(other)};
+    mistake.remedy = board.legacy
+                         ? "they match the layout of OpenCV 4.6 and later: leave out --legacy"
+                         : "they match the layout of OpenCV before 4.6: give --legacy";
   }
   mistakes.push_back({{layout_of(swapped(board))}, swap_remedy(board)});
   return mistakes;

@@ -23,9 +23,9 @@ using namespace vernier::internal;
 namespace {
 
 /// NaN if there are none.
-double quantile_or_nan(std::vector<double> values, double p) {
+double quantile_or_nan(const std::vector<double>& values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return quantile(std::move(values), p, QuantileKind::linear);
+  return quantile(values, p, QuantileKind::linear);
 }
 
 }  // namespace

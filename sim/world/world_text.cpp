@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -62,11 +64,10 @@ std::string number(double value) {
   }
   const std::int64_t steps = std::llround(value * steps_per_unit);
   const std::int64_t size = steps < 0 ? -steps : steps;
-  std::string digits = std::to_string(size % 10000);
-  digits.insert(0, 4 - digits.size(), '0');
-  digits.erase(digits.find_last_not_of('0') + 1);
-  if (!digits.empty()) digits.insert(0, 1, '.');
-  return (steps < 0 ? "-" : "") + std::to_string(size / 10000) + digits;
+  std::string text = fmt::format("{}{}.{:04}", steps < 0 ? "-" : "", size / 10000, size % 10000);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 template <typename Vector>

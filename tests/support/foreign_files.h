@@ -39,9 +39,10 @@ class Folder {
     return path_ / name;
   }
 
-  std::vector<std::filesystem::path> write(const std::vector<internal::ExportedFile>& files) const {
+  std::vector<std::filesystem::path> write(
+      const std::vector<vernier::internal::ExportedFile>& files) const {
     std::vector<std::filesystem::path> written;
-    for (const internal::ExportedFile& file : files)
+    for (const vernier::internal::ExportedFile& file : files)
       written.push_back(write(file.name.string(), file.text));
     return written;
   }

@@ -238,7 +238,7 @@ TEST(Outliers, FramesAndCamerasThatTheStateDoesNotHaveAreAnError) {
   outliers = {{1, 2, 0, "", {0, 0}, 0}};
   EXPECT_NE(test::error_message([&] {
               measure_outliers(board.observations.target_m, board.truth, outliers);
-            }).find("none of number 2"),
+            }).find("no camera 2"),
             std::string::npos);
   outliers = {{1, 0, 54, "", {0, 0}, 0}};
   EXPECT_NE(test::error_message([&] {

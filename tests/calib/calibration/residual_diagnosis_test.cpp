@@ -147,7 +147,7 @@ TEST_F(ResidualDiagnosis, ACameraOutOfFocusIsNamed) {
   }
   bool named = false;
   for (const ResidualFinding& finding : found_in(good_).findings) {
-    named |= finding.text.find("camera 1 (\"right\") leaves ") == 0;
+    named |= finding.text.find("camera 1 (\"right\") has residuals of ") == 0;
   }
   EXPECT_TRUE(named);
 }

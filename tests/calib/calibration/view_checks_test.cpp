@@ -102,7 +102,7 @@ TEST_P(ViewChecks, CamerasExchangedThroughoutAreDoubted) {
   for (int frame = 0; frame < 13; ++frame) test::exchange(good_, frame);
   const ObservationDiagnosis diagnosis = diagnosis_of(good_);
   ASSERT_EQ(diagnosis.trust_warnings.size(), 1u);
-  EXPECT_EQ(diagnosis.trust_warnings[0].find("camera 1 (\"right\") stands 0."), 0u)
+  EXPECT_EQ(diagnosis.trust_warnings[0].find("camera 1 (\"right\") is 0."), 0u)
       << diagnosis.trust_warnings[0];
   EXPECT_NE(diagnosis.trust_warnings[0].find(
                 "m to the left of camera 0 (\"left\"): the cameras seem to be "

@@ -190,8 +190,8 @@ TEST(RigFile, AnErrorOfWhatItNamesKeepsItsParts) {
       "rig.json", replaced(format_rig(estimate(), KeepEvidence::no), "radial1", "radial9"));
   const auto [place, fault, remedy] = test::error_parts([&] { read_rig(file); });
   EXPECT_EQ(place, file.string() + ": cameras[0].model");
-  EXPECT_EQ(fault, "camera model \"radial9\": there is no such model");
-  EXPECT_EQ(remedy, "use radial1, pinhole, opencv4, opencv5, opencv8 or fisheye4");
+  EXPECT_EQ(fault, "camera model \"radial9\": unknown model");
+  EXPECT_EQ(remedy, "supported: radial1, pinhole, opencv4, opencv5, opencv8, fisheye4");
 }
 
 }  // namespace

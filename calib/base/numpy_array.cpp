@@ -121,7 +121,7 @@ NumpyArray parse_numpy(std::string_view bytes, const std::string& place) {
   const std::string_view data = bytes.substr(head.data_at);
   if (data.size() != wanted) {
     throw Error(place,
-                fmt::format("holds {} bytes of values, {} than the {} of {} x {} of type {}",
+                fmt::format("has {} bytes of values, {} than the {} for {} x {} of type {}",
                             data.size(), data.size() < wanted ? "fewer" : "more", wanted, head.rows,
                             head.columns, head.type),
                 "write it again");

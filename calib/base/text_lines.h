@@ -38,8 +38,8 @@ class TextLines {
 std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);
 
 /// The number that all of `text` represents, or std::nullopt. The decimal separator is a point in
-/// every locale. Infinities and "nan" are accepted, a leading sign too, a leading blank not. A value
-/// too small for a double is 0; one too large is not accepted.
+/// every locale. Infinities and "nan" are accepted, a leading sign too, a leading blank not. A
+/// value too small for a double is 0; one too large is not accepted.
 std::optional<double> to_real(std::string_view text);
 
 /// Parses a number. Throws Error(`place`), naming `what`, if `field` is not one.

@@ -11,8 +11,8 @@ namespace vernier::internal {
 
 // Distributions, by Boost.Math. A cdf is P(X <= x), a survival function P(X > x), each computed
 // directly and not as one minus the other, so that both tails keep their relative accuracy. All
-// throw Error for degrees of freedom that are not positive and finite, a p outside (0, 1), an x that
-// is NaN, and a result that overflows.
+// throw Error for degrees of freedom that are not positive and finite, a p outside (0, 1), an x
+// that is NaN, and a result that overflows.
 
 /// The standard normal. Its quantile is normal_quantile (calib/statistics/random.h).
 double normal_cdf(double z);

@@ -279,7 +279,7 @@ class RealPairs(Case):
         (self.folder / 'c.vnl').write_text('\n'.join(lines))
         done = self.works('calibrate', '--corners', self.folder / 'c.vnl', '--board', '9x6',
                           '--square-m', '0.025', '--size', '640x480', '-o', self.folder / 'r.json')
-        self.assertIn('1 corners of level above 0', done.stderr)
+        self.assertIn('1 corners have a level above 0', done.stderr)
         view = json.loads((self.folder / 'r.json').read_text())['evidence']['observations'][0]
         self.assertEqual(view['ids'], [0] + list(range(2, 54)))
 
@@ -702,7 +702,7 @@ class ModelCheck(Case):
         (self.folder / 'o.csv').write_text('\n'.join([header] + seen))
         done = self.works('calibrate', '--observations', self.folder / 'o.csv', '--size',
                           '640x480', '-o', self.folder / 'rig.json')
-        words = ('models were not compared: with some views left out, camera 1 ("right"): it has '
+        words = ('lens models were not compared: with some views left out, camera 1 ("right"): it has '
                  'no view of the board')
         self.assertIn(words, done.stderr)
         rig = json.loads((self.folder / 'rig.json').read_text())
@@ -1137,7 +1137,7 @@ class Study(Case):
         for name in files:
             before = (out / name).read_bytes()
             self.complains('report', out, '-o', out / name,
-                           of='is an input, which the output would replace')
+                           of='is an input and would be overwritten')
             self.assertEqual((out / name).read_bytes(), before)
 
     def test_a_study_names_the_covariance_that_drives_psi_c(self):

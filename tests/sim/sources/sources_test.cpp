@@ -383,7 +383,7 @@ TEST_F(Sources, OutOfRangeIsNamed) {
     Sensor(test::nominal_rig().rig, settings);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "sources: sources.edge_loss = 1.5 is out of range; give 0 to 0.95");
+    EXPECT_STREQ(error.what(), "sources: sources.edge_loss = 1.5 is out of range; use 0 to 0.95");
   }
 }
 

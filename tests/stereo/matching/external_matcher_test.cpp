@@ -220,9 +220,9 @@ TEST_F(ExternalMatcher, TellsWhatWentWrongInTheProgram) {
   expect_complaint(script("folder", "mkdir \"$3\"\n") + names,
                    "exited with status 0 but wrote no file");
   expect_complaint(script("text", "echo hello >\"$3\"\n") + names,
-                   ": output.pfm: is neither PFM, PNG, PGM nor .npy; give");
+                   ": output.pfm: is neither PFM, PNG, PGM nor .npy; use");
   expect_complaint(script("cut", "printf 'Pf 4 3 -1\\nabc' >\"$3\"\n") + names,
-                   ": output.pfm: holds 3 bytes of values, fewer than the 48");
+                   ": output.pfm: has 3 bytes of values, fewer than the 48");
   write_disparity(folder_.path() / "other.pfm", {3, 4, std::vector<float>(12, 1)});
   expect_complaint(
       script("turned", "cp '" + folder_.path().string() + "/other.pfm' \"$3\"\n") + names,

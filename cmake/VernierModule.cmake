@@ -39,14 +39,10 @@ function(vernier_module name)
 endfunction()
 
 # vernier_simd_sources(NAME FILE …): sources that include themselves once for each instruction set
-# (Highway), which they cannot do as a part of a unity build. Under sanitizers they check addresses
-# only: their thousands of temporary packs would take minutes to compile with the other checks.
+# (Highway), which they cannot do as a part of a unity build.
 function(vernier_simd_sources name)
   set_source_files_properties(${ARGN} TARGET_DIRECTORY ${name}
                               PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
-    set_source_files_properties(
-      ${ARGN} TARGET_DIRECTORY ${name} PROPERTIES
-      COMPILE_OPTIONS "-fno-sanitize=undefined;-fno-sanitize-address-use-after-scope")
-  endif()
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
+  set_property(GLOBAL APPEND PROPERTY vernier_simd_sources ${files})
 endfunction()

@@ -1068,8 +1068,13 @@ class Simulation(Case):
 
 class Study(Case):
     def study(self, trials=24):
+        """Of a small office, since a whole run is repeated several times."""
+        world = self.folder / 'small.world.toml'
+        if not world.exists():
+            self.works('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', world)
         file = self.folder / 's.toml'
-        file.write_text(f'[study]\ntrials = {trials}\nprotocol = "near_path"\n[map]\n'
+        file.write_text(f'[study]\ntrials = {trials}\nprotocol = "near_path"\n'
+                        f'[world]\nfile = "{world.name}"\n[map]\n'
                         'spacing_m = 2\n[sweep]\n"sources.calibration" = [0.1, 10]\n')
         return file
 

@@ -47,17 +47,7 @@ function(vernier_sanitized_test name)
   add_dependencies(${program} ${name})
   add_dependencies(sanitized_tests ${program})
 
-  # In few processes: each takes longer to start than most tests to run.
-  set(shards 4)
   file(STRINGS ${PROJECT_SOURCE_DIR}/tests/sanitizer_exclusions.txt excluded REGEX "^[^#]")
   list(JOIN excluded ":" excluded)
-  math(EXPR last "${shards} - 1")
-  foreach(shard RANGE ${last})
-    add_test(NAME ${program}.${shard} COMMAND ${program})
-    set_tests_properties(
-      ${program}.${shard} PROPERTIES
-      LABELS sanitized TIMEOUT 1800
-      ENVIRONMENT
-      "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${shard};GTEST_FILTER=-${excluded}")
-  endforeach()
+  vernier_sharded_test(${program} sanitized "GTEST_FILTER=-${excluded}")
 endfunction()

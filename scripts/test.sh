@@ -72,8 +72,8 @@ begin_part "format"
 scripts/check_format.sh
 
 begin_part "release: build"
-options=(-DVERNIER_SANITIZED_TESTS=ON)
-if [[ $quick == yes ]]; then options=(-DVERNIER_SANITIZED_TESTS=OFF); fi
+options=(-DVERNIER_TEST_SHARDS=4 -DVERNIER_SANITIZED_TESTS=ON)
+if [[ $quick == yes ]]; then options+=(-DVERNIER_SANITIZED_TESTS=OFF); fi
 if [[ $measure == yes ]]; then options+=(-DVERNIER_MEASURE_BUILD=ON); fi
 # Without unity builds, which hide missing includes.
 cmake --preset release -DVERNIER_BUILD_TESTS=ON -DVERNIER_BUILD_PROGRAM=ON \

@@ -266,6 +266,7 @@ class Evaluation : public testing::Test {
     for (int i = 0; i < 5; ++i) {
       EdgePoint edge;
       edge.x = 20 + i;
+      edge.pixel_px = Eigen::Vector2f(edge.x, edge.y);
       edge.normal = {1, 0};
       edges.push_back(edge);
       TruthAtEdge at;

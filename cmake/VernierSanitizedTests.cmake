@@ -17,13 +17,15 @@ function(vernier_sanitized_module name)
   add_library(${name}_sanitized OBJECT EXCLUDE_FROM_ALL ${sources})
   target_include_directories(${name}_sanitized
                              PRIVATE $<TARGET_PROPERTY:${name},INCLUDE_DIRECTORIES>)
-  # With the assertions of Eigen; without warnings, which the other build gives.
+  # With the assertions of Eigen; without warnings, which the other build gives. Eigen would align
+  # its memory itself where addresses are checked, and the tests could not free it.
   target_compile_options(
-    ${name}_sanitized PRIVATE -ffp-contract=off -O1 -g1 -UNDEBUG -w ${sanitizer_checks}
+    ${name}_sanitized PRIVATE -ffp-contract=off -O1 -g1 -UNDEBUG -DEIGEN_MALLOC_ALREADY_ALIGNED=1 -w
+                              ${sanitizer_checks}
                               -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_libraries(${name}_sanitized PRIVATE $<TARGET_PROPERTY:${name},LINK_LIBRARIES>)
   target_precompile_headers(${name}_sanitized PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
-  set_target_properties(${name}_sanitized PROPERTIES UNITY_BUILD ON)
+  set_target_properties(${name}_sanitized PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 48)
   # Kernels for several instruction sets check addresses only: their thousands of temporary packs
   # would take minutes to compile with the other checks.
   get_property(simd_sources GLOBAL PROPERTY vernier_simd_sources)

@@ -25,7 +25,7 @@ function(vernier_sanitized_module name)
                               -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_libraries(${name}_sanitized PRIVATE $<TARGET_PROPERTY:${name},LINK_LIBRARIES>)
   target_precompile_headers(${name}_sanitized PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
-  set_target_properties(${name}_sanitized PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 48)
+  set_target_properties(${name}_sanitized PROPERTIES UNITY_BUILD ON)
   # Kernels for several instruction sets check addresses only: their thousands of temporary packs
   # would take minutes to compile with the other checks.
   get_property(simd_sources GLOBAL PROPERTY vernier_simd_sources)

@@ -87,7 +87,7 @@ std::size_t allowed_threads() {
 }
 
 TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
-  const Study s = study(120);
+  const Study s = study(48);
   const auto words_of = [&](int threads) {
     std::set<std::thread::id> seen;
     const auto look_at = [&](int, int) { seen.insert(std::this_thread::get_id()); };
@@ -159,8 +159,8 @@ TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
 }
 
 TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
-  Study s = study(120), half = study(60);
-  s.file.trials_per_block = half.file.trials_per_block = 50;
+  Study s = study(48), half = study(24);
+  s.file.trials_per_block = half.file.trials_per_block = 20;
   const std::string whole = words(run(s, "whole", 2));
   run(s, "sharded", 1, {0, 3});
   run(s, "sharded", 1, {2, 3});

@@ -19,6 +19,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/report/report_data.h"
+#include "cli/verbs.h"
 
 namespace vernier::cli {
 namespace {

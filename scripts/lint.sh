@@ -96,7 +96,7 @@ with open(sys.argv[1], encoding="utf-8") as file:
                 skip = False
             elif word == "-include" and words[i + 1].endswith("/cmake_pch.hxx"):
                 skip = True
-            elif word not in ("-Winvalid-pch", "-fpch-preprocess"):
+            elif word not in ("-Winvalid-pch", "-fpch-preprocess") and "--param=ggc" not in word:
                 kept.append(word)
         kept.insert(1, "-Wno-unknown-warning-option")
         entries.append({"directory": entry["directory"], "file": name, "arguments": kept})

@@ -182,6 +182,7 @@ std::vector<std::filesystem::path> matching_files(const std::string& pattern) {
 ImageDetections detect_images(const std::vector<std::string>& patterns, const BoardTarget& target) {
   check_target(target);
   std::vector<std::vector<std::filesystem::path>> images;
+  images.reserve(patterns.size());
   for (const std::string& pattern : patterns) images.push_back(matching_files(pattern));
   const FrameNumbering numbering(frame_numbers(images));
   ImageDetections result;

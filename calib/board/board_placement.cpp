@@ -127,8 +127,9 @@ std::vector<PlacedBoard> placed_boards(const Rig& rig,
   std::vector<PlacedBoard> boards;
   for (int place = 0; place < n * n; ++place) {
     // the centres of the outermost cells of a grid
-    const Eigen::Vector2d centre((place % n + 0.5) / n * size[0] - 0.5,
-                                 (place / n + 0.5) / n * size[1] - 0.5);
+    const int column = place % n, row = place / n;
+    const Eigen::Vector2d centre((column + 0.5) / n * size[0] - 0.5,
+                                 (row + 0.5) / n * size[1] - 0.5);
     const auto ray = try_unproject(left, centre);
     if (!ray) continue;
     for (int k = 0; k < options.fills * options.angles * options.angles; ++k) {

@@ -107,7 +107,8 @@ std::vector<Eigen::Vector3d> points(const CharucoBoard& board) {
 
 std::vector<Eigen::Vector3d> points(const AprilTagGrid& grid) {
   const auto along = [&](int i) {
-    return (i / 2) * (1 + grid.spacing) * grid.tag_m + (i % 2) * grid.tag_m;
+    const int tag = i / 2;
+    return tag * (1 + grid.spacing) * grid.tag_m + (i % 2) * grid.tag_m;
   };
   std::vector<Eigen::Vector3d> all;
   for (int row = 0; row < 2 * grid.rows; ++row) {

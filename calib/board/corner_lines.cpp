@@ -20,7 +20,7 @@ void check_pixel(const Eigen::Vector2d& pixel_px,
     throw Error(place, corner + ": its pixel is not a finite number", "remove or correct it");
   }
   if (size_px.size() != 1 && camera >= size_px.size()) return;
-  const Eigen::Vector2i size = size_px[size_px.size() == 1 ? 0 : camera];
+  const Eigen::Vector2i& size = size_px[size_px.size() == 1 ? 0 : camera];
   const Eigen::Array2d from_edge = pixel_px.array() + 0.5;
   if ((from_edge >= 0).all() && (from_edge <= size.cast<double>().array()).all()) return;
   throw Error(place,

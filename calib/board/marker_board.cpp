@@ -145,6 +145,7 @@ std::optional<FoundLayout> find_layout(const cv::Mat& grey,
 /// A tag may be printed at any quarter turn, which is determined from its neighbours.
 std::vector<MarkerLayout> turned_layouts(const AprilTagGrid& grid) {
   std::vector<MarkerLayout> layouts;
+  layouts.reserve(4);
   for (int turns = 0; turns < 4; ++turns) layouts.push_back(layout_of(grid, turns));
   return layouts;
 }
@@ -195,6 +196,7 @@ std::array<int, 4> corners_of(const AprilTagGrid& grid, int tag) {
 
 std::vector<Eigen::Vector2d> plane_points(const std::vector<Eigen::Vector3d>& target_m) {
   std::vector<Eigen::Vector2d> points;
+  points.reserve(target_m.size());
   for (const auto& X : target_m) points.push_back(X.head<2>());
   return points;
 }

@@ -64,6 +64,7 @@ std::vector<std::pair<double, const DetectedMarker*>> by_distance(
     const MarkerLayout& layout,
     const Eigen::Vector2d& from) {
   std::vector<std::pair<double, const DetectedMarker*>> sorted;
+  sorted.reserve(markers.size());
   for (const DetectedMarker& marker : markers) {
     sorted.emplace_back((centre(layout.corners_m[marker.id]) - from).norm(), &marker);
   }

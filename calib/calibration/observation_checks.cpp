@@ -56,6 +56,7 @@ void check_grids(const BoardObservations& observations,
 /// are identified individually, so their views cannot be mirrored, and their y may point up.
 bool evenly_spaced(const std::vector<Eigen::Vector3d>& target_m) {
   std::vector<double> columns;
+  columns.reserve(target_m.size());
   for (const Eigen::Vector3d& X : target_m) columns.push_back(X.x());
   std::sort(columns.begin(), columns.end());
   const double near = 1e-3 * (columns.back() - columns.front());

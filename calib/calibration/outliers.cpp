@@ -41,6 +41,7 @@ std::vector<double> camera_sigmas(const BoardObservations& observations,
     of_camera[static_cast<std::size_t>(observations.views[v].camera)].push_back(residuals[v]);
   }
   std::vector<double> sigmas;
+  sigmas.reserve(of_camera.size());
   for (const CornerResiduals& own : of_camera) {
     sigmas.push_back(std::max(min_sigma_px, robust_pixel_sigma(own)));
   }

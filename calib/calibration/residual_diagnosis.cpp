@@ -86,10 +86,10 @@ class Diagnosis {
   double rms() const { return rms_of(sum_px2_, corners_); }
 
   /// The same views solved with another problem; std::nullopt if that fails.
-  std::optional<Trial> solved(BoardState start, ReprojectionProblem trial) const {
+  std::optional<Trial> solved(const BoardState& start, ReprojectionProblem trial) const {
     trial.max_iterations = 60;
     try {
-      Trial result{minimise_reprojection(observations_, std::move(start), trial), 0};
+      Trial result{minimise_reprojection(observations_, start, trial), 0};
       result.sum_px2 = sum_of_squares(corner_residuals(observations_, result.state));
       if (std::isfinite(result.sum_px2)) return result;
     } catch (const Error&) {
@@ -106,7 +106,7 @@ class Diagnosis {
     try {
       BoardState start = initial_state(observations_, models);
       start.warp_m = state_.warp_m;
-      return solved(std::move(start), std::move(trial));
+      return solved(start, std::move(trial));
     } catch (const Error&) {
       return std::nullopt;
     }
@@ -212,6 +212,7 @@ class Diagnosis {
       if (apart.empty()) continue;
       std::sort(apart.rbegin(), apart.rend());
       std::vector<std::string> names;
+      names.reserve(apart.size());
       for (const auto& [px, i] : apart) {
         names.push_back(fmt::format("{} ({:.1f} px against {:.1f})", pair.pairs()[i].first.frame,
                                     px, pair.pairs()[i].alone_px));
@@ -247,6 +248,7 @@ class Diagnosis {
     if (poor.empty()) return;
     std::sort(poor.rbegin(), poor.rend());
     std::vector<std::string> names;
+    names.reserve(poor.size());
     for (const auto& [px, v] : poor) {
       names.push_back(fmt::format("{} ({:.1f} px)", view_label(observations_.views[v]), px));
     }

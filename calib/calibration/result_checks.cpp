@@ -108,6 +108,7 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
   }
   if (known.empty()) return {};
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const Eigen::Index i : known) names.push_back(parameter_names(rig)[i]);
   const Eigen::VectorXd offset = difference(rig, prior.mean)(known);
   const Eigen::MatrixXd before = prior.information(known, known).inverse();

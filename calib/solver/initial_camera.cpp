@@ -187,6 +187,7 @@ InitialCamera initial_camera(const BoardObservations& observations,
     }
   };
   std::vector<BoardHomography> homographies;
+  homographies.reserve(views.size());
   for (const BoardView& view : views) {
     homographies.push_back(board_homography(observations.target_m, view));
   }

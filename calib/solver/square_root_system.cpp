@@ -17,7 +17,7 @@ Eigen::MatrixXd triangle(Eigen::MatrixXd M) {
     M.conservativeResize(n, n);
     M.bottomRows(n - given).setZero();
   }
-  return qr_triangle(std::move(M));
+  return qr_triangle(M);
 }
 
 }  // namespace

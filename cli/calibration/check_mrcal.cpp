@@ -147,7 +147,7 @@ CheckSection check_by_mrcal(const CheckedProblem& p, const Session& session) {
   } else {
     bool possible = false;
     try {
-      MrcalProblem(p.observations, p.start);
+      const MrcalProblem problem(p.observations, p.start);  // throws where mrcal has no such one
       possible = true;
       const ComparableProblem like = comparable_problem(p, session);
       const MrcalAnswers answers = ask_both(p, like);

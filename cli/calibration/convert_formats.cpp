@@ -189,6 +189,7 @@ std::vector<std::pair<std::filesystem::path, std::string>> files_of(
                 fmt::format("{} stores this rig in {} files", name(format), files.size()),
                 "give a folder, with a trailing slash if it does not exist yet");
   }
+  named.reserve(files.size());
   for (const ExportedFile& file : files) {
     named.emplace_back(folder   ? output / file.name
                        : beside ? output.parent_path() / file.name

@@ -79,7 +79,7 @@ void Progress::update(int done, int total) {
 void Progress::draw(int done, int total, double elapsed_s) {
   constexpr int width = 30;
   const int filled = width * done / total;
-  std::string left = "";
+  std::string left;
   if (done > 0 && done < total) {
     left = fmt::format("{:.0f} s left", elapsed_s * (total - done) / done);
   }

@@ -74,7 +74,7 @@ fs::path shipped_file(const fs::path& name) {
 
 fs::path shipped_script(const std::string& name) {
   for (const fs::path& folder : share_folders()) {
-    const fs::path script = folder / "python" / name;
+    fs::path script = folder / "python" / name;
     if (script.is_absolute() && fs::is_regular_file(script)) return script;
   }
   return name;

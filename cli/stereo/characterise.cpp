@@ -116,6 +116,7 @@ void run(const CharacteriseArguments& options, Session& session) {
   }
   measuring.bootstrap.resamples = 0;
   std::vector<MeasuredSources> each;
+  each.reserve(samples.size());
   for (const PairSamples& pair : samples) each.push_back(measure_sources({pair}, measuring));
   const CharacteriseReport report{sources, each, mode, matcher.name};
   session.result(report_json(report), report_text(report));

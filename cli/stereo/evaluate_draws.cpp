@@ -183,6 +183,7 @@ std::vector<double> clusters_of(const ErrorCell& cell,
   std::vector<double> clusters;
   for (const auto& scene : cell.figures) {
     std::vector<double> draws;
+    draws.reserve(scene.size());
     for (const auto& draw : scene) draws.push_back(draw[matcher].*figure);
     if (cell.figures.size() == 1) {
       clusters = draws;
@@ -212,6 +213,7 @@ Interval interval_of(const ErrorCell& cell, std::size_t matcher, double DrawMetr
 
 double rms(const std::vector<double>& values) {
   std::vector<double> squares;
+  squares.reserve(values.size());
   for (const double v : values) squares.push_back(v * v);
   return std::sqrt(mean_of_numbers(squares));
 }

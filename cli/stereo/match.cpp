@@ -44,6 +44,7 @@ struct MatchArguments {
 
 double median_sigma(const std::vector<CornerMatch>& matches) {
   std::vector<double> sigma;
+  sigma.reserve(matches.size());
   for (const CornerMatch& match : matches) sigma.push_back(match.sigma_px);
   return median_or_zero(std::move(sigma));
 }

@@ -103,8 +103,7 @@ void take_rectified(const StereoInputOptions& o, StereoInput& input, Session& se
   check_two_images(input.pair, o.left, o.right);
   take_cameras(o, input, session);
   input.field = vertical_field(input.pair, input.range);
-  const RectifiedPair other{input.pair.right, input.pair.left};
-  input.exchanged = [other] { return other; };
+  input.exchanged = [other = RectifiedPair{input.pair.right, input.pair.left}] { return other; };
 }
 
 void repair_rows(bool wanted, StereoInput& input, Session& session) {

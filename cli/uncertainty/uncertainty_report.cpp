@@ -193,6 +193,7 @@ void add_vertical_disparity(const Input& in, int other, UncertaintyReport& out) 
     for (const double sd : report.map.sd_px) report.worst_sd_px = std::fmax(report.worst_sd_px, sd);
     const auto seen = seen_pairs(pair, distance_m, false, out.notes);
     std::vector<PixelPair> pairs;
+    pairs.reserve(seen.size());
     for (const auto& [place, q] : seen) pairs.push_back(q);
     const double f_px = report.map.rectified_f_px;
     const auto sampled = sampled_vertical_disparity(sampler, pairs, f_px, out.request.sampling);

@@ -73,6 +73,7 @@ Eigen::Vector3d displacement_of(const std::vector<SegmentShift>& shifts) {
     const auto row = [](const SegmentShift& s) {
       return Eigen::Vector3d(s.normal.x(), s.normal.y(), 1);
     };
+    sizes.reserve(shifts.size());
     for (const SegmentShift& s : shifts) sizes.push_back(std::abs(s.shift_px - row(s).dot(b)));
     const double huber = 1.345 * std::max(0.02, 1.4826 * median_or_zero(sizes));
     Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
@@ -105,6 +106,7 @@ ClusteredSamples<Shift> shifts_of(const PairList& pairs, const ClusterOf& cluste
 /// Larger shifts belong to another edge or have another cause.
 double beyond_px(const std::vector<Shift>& shifts) {
   std::vector<double> sizes;
+  sizes.reserve(shifts.size());
   for (const Shift& s : shifts) sizes.push_back(std::abs(s.towards_px));
   return std::max(0.3, 4 * 1.4826 * median_or_zero(sizes));
 }
@@ -191,6 +193,7 @@ MeasuredLateralShift measured_lateral_shift(const PairList& pairs,
   }
   result.towards_px = measured(shifts, options, [](const std::vector<Shift>& all) {
     std::vector<double> towards;
+    towards.reserve(all.size());
     for (const Shift& s : all) towards.push_back(s.towards_px);
     return median_or_zero(std::move(towards));
   });

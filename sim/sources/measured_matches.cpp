@@ -134,6 +134,7 @@ std::vector<MismatchByDisparity> by_disparity(const PairList& pairs,
   const double width = (most - least) / disparity_bins;
   std::map<int, Sums> sums[disparity_bins];
   std::vector<MismatchByDisparity> bins;
+  bins.reserve(disparity_bins);
   for (int bin = 0; bin < disparity_bins; ++bin) {
     bins.push_back({least + bin * width, least + (bin + 1) * width, 0, 0, {}});
   }

@@ -19,6 +19,7 @@ namespace {
 /// Of |squares|; robust against a few large ones.
 double median_square(const std::vector<SquareSample>& samples) {
   std::vector<double> squares;
+  squares.reserve(samples.size());
   for (const SquareSample& sample : samples) squares.push_back(std::abs(sample.square));
   return median_or_zero(std::move(squares));
 }

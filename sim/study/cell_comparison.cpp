@@ -69,6 +69,7 @@ PairedComparison compare(const CellResult& a, const CellResult& b) {
     ++map.trials;
   }
   std::vector<MapDifference> maps;
+  maps.reserve(by_map.size());
   for (const auto& [block, map] : by_map) maps.push_back(map);
   c.maps = static_cast<int>(maps.size());
   if (const std::optional<double> p = paired_p_value(maps)) {

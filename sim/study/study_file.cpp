@@ -126,7 +126,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   const toml::table* own = section(root, "sources");
   const toml::node* node = own ? own->get("file") : nullptr;
   if (!node) return {};
-  const std::filesystem::path file =
+  std::filesystem::path file =
       instead.empty() ? std::filesystem::path(place()).parent_path() / text(*node, "sources.file")
                       : instead;
   std::error_code unknown;

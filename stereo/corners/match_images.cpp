@@ -53,7 +53,7 @@ void check_all_paired(const FilesByNumber& own, const FilesByNumber& others, con
 cv::Mat read_image(const std::filesystem::path& file,
                    const Camera& camera,
                    const std::string& prior_place) {
-  const cv::Mat grey = read_grey_image(file);
+  cv::Mat grey = read_grey_image(file);
   if (Eigen::Vector2i(grey.cols, grey.rows) != camera.size_px) {
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     throw Error(file.string(),

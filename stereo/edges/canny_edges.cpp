@@ -54,8 +54,8 @@ void find_peaks_in_row(const GradientRows& gradient, int row, float low, std::ve
     const float one_side = (major - minor) * one + minor * one_aside;
     const float other_side = (major - minor) * other + minor * other_aside;
     const float across = own * major;
-    const int is_peak = (across > one_side) & (across >= other_side) & (own >= low) ? 1 : 0;
-    const int is_sharp = (own > one) & (own >= other) ? 1 : 0;
+    const int is_peak = (across > one_side) & (across >= other_side) & (own >= low);
+    const int is_sharp = (own > one) & (own >= other);
     peak[x] = is_peak + (is_peak & is_sharp);
   }
 }

@@ -93,6 +93,7 @@ std::vector<CornerRepeatability> corner_repeatabilities(
 std::vector<CornerError> corner_errors(const std::vector<CornerMatch>& matches,
                                        const StereoTruth& truth) {
   std::vector<Eigen::Vector2d> left_px;
+  left_px.reserve(matches.size());
   for (const CornerMatch& match : matches) left_px.push_back(match.left_px);
   const std::vector<TruthAtEdge> at = truth_at_corners(left_px, truth);
   std::vector<CornerError> errors;

@@ -72,6 +72,7 @@ CornerImage corners_of(const GreyLevels& image, int count) {
 
 std::vector<Eigen::Vector2d> places(const std::vector<ImageCorner>& corners) {
   std::vector<Eigen::Vector2d> all;
+  all.reserve(corners.size());
   for (const ImageCorner& corner : corners) all.push_back(corner.pixel_px);
   return all;
 }

@@ -29,6 +29,7 @@ struct Beside {
 
 double median_across(const std::vector<Beside>& points) {
   std::vector<double> across;
+  across.reserve(points.size());
   for (const Beside& point : points) across.push_back(point.across_px);
   return median_or_zero(std::move(across));
 }

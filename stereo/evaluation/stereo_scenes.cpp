@@ -118,7 +118,7 @@ class SceneReader : private TomlReader {
   }
 
   std::filesystem::path file_of(const toml::node& node, const char* key) const {
-    const std::filesystem::path file = folder_ / text(node, key);
+    std::filesystem::path file = folder_ / text(node, key);
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) {
       fail(node, std::string(key) + ": no such file: " + file.string(),

@@ -163,7 +163,8 @@ WarpedPair with_shifted_rows(const RectifiedPair& pair, const StereoTruth& truth
   const auto width = static_cast<std::size_t>(pair.left.width_px);
   for (std::size_t i = 0; i < truth.disparity.values.size(); ++i) {
     if (std::isnan(truth.disparity.values[i])) continue;
-    const double right_y = static_cast<double>(i / width) + lower_px;
+    const std::size_t row = i / width;
+    const double right_y = static_cast<double>(row) + lower_px;
     warped.vertical_px.values[i] = static_cast<float>(-lower_px);
     warped.bias_px.values[i] = 0;
     if (right_y < 0 || right_y > pair.right.height_px - 1) warped.truth.occluded[i] = 1;
@@ -177,7 +178,8 @@ void repair(WarpedPair& warped, const VerticalField& field) {
   const auto width = static_cast<std::size_t>(warped.vertical_px.width_px);
   for (std::size_t i = 0; i < warped.vertical_px.values.size(); ++i) {
     const double right_x = static_cast<double>(i % width) - warped.truth.disparity.values[i];
-    const double dy = field.dy_px(right_x, static_cast<double>(i / width));
+    const std::size_t row = i / width;
+    const double dy = field.dy_px(right_x, static_cast<double>(row));
     warped.vertical_px.values[i] += static_cast<float>(dy);
   }
 }

@@ -200,8 +200,7 @@ DisparityMap run(const Command& command,
   write_image(folder.path() / "right.png", pair.right);
   check_run(run_program(filled(command, folder.path(), range), options.time_limit_s), command,
             options.time_limit_s);
-  const DisparityMap map =
-      read_output(folder.path() / command.output, command, range, options.scale);
+  DisparityMap map = read_output(folder.path() / command.output, command, range, options.scale);
   if (map.width_px != pair.left.width_px || map.height_px != pair.left.height_px) {
     throw Error(command.place,
                 fmt::format("wrote a map of {}x{} for images of {}x{}", map.width_px, map.height_px,

@@ -149,8 +149,9 @@ float vertex(float before, float at, float after) {
 
 /// Maximum distance in pixels of a sample from its block's right centre, plus vector padding.
 int right_margin(const StretchOptions& options) {
-  const double most = stretches_of(options).back() * (options.width_px / 2) +
-                      std::abs(shears_of(options).back()) * (options.height_px / 2);
+  const int half_width_px = options.width_px / 2, half_height_px = options.height_px / 2;
+  const double most = stretches_of(options).back() * half_width_px +
+                      std::abs(shears_of(options).back()) * half_height_px;
   return static_cast<int>(std::ceil(most)) + 2 + lanes;
 }
 

@@ -48,7 +48,7 @@ void rectify(const Rig& rig,
                                      static_cast<std::size_t>(height))};
   const RawPixels raw_pixels(rig, geometry, camera);
   const auto source = [&](int x, int y) {
-    const auto at = raw_pixels.at({static_cast<double>(x), static_cast<double>(y)});
+    auto at = raw_pixels.at({static_cast<double>(x), static_cast<double>(y)});
     if (at) {
       valid.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(x)] =

@@ -279,7 +279,7 @@ std::vector<PlacedId> read_poses(const std::filesystem::path& cameras,
                                  std::vector<std::string>& notes) {
   std::vector<int> ids, found;
   for (const Line& line : lines) ids.push_back(line.whole(0));
-  const std::vector<PlacedId> placed = from_beside(cameras, {lines, unit_m}, notes);
+  std::vector<PlacedId> placed = from_beside(cameras, {lines, unit_m}, notes);
   for (const PlacedId& p : placed) {
     check_camera(p.id, ids, cameras.string());
     found.push_back(p.id);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
@@ -34,7 +35,8 @@ constexpr LensModel lens_models[] = {{"LENSMODEL_PINHOLE", 0},
                                      {"LENSMODEL_OPENCV12", 12}};
 
 /// The value of the first of these names of a key (mrcal renamed some) that is present.
-const PythonLiteral* find_any(const PythonLiteral& model, std::vector<const char*> names) {
+const PythonLiteral* find_any(const PythonLiteral& model,
+                              std::initializer_list<const char*> names) {
   for (const char* name : names) {
     if (const PythonLiteral* value = model.find(name)) return value;
   }

@@ -31,6 +31,7 @@ double pitch_along(std::vector<double> values) {
 
 std::vector<double> coordinates(const std::vector<Eigen::Vector3d>& points, int axis) {
   std::vector<double> values;
+  values.reserve(points.size());
   for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
   return values;
 }

@@ -81,7 +81,8 @@ MrcalCheck check_against_mrcal(const BoardObservations& observations,
                                const RefinedMinimum& ours,
                                double pixel_sigma_px,
                                const std::vector<bool>& held) {
-  MrcalProblem(observations, start);  // throws if mrcal cannot express the problem
+  const MrcalProblem expressible(observations,
+                                 start);  // throws if mrcal cannot express the problem
   MrcalCheck check;
   try {
     check.solution = mrcal_solve(observations, start, held);

@@ -29,16 +29,18 @@ class RigSampler {
   /// Throws Error if the estimate has no covariance or one that is not positive semi-definite.
   explicit RigSampler(const RigEstimate& estimate, const std::string& place = "rig");
 
-  /// Deviation in the tangent of draw `trial` under `seed`.
+  /// Deviation in the tangent of draw `trial` under `seed`. Throws Error if it overflows.
   Eigen::VectorXd deviation(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
 
-  /// The rig of that draw.
+  /// The rig of that draw, all its parameters finite; otherwise throws Error. Wide covariances give
+  /// rigs that no cameras can have, such as a negative focal length.
   Rig sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const;
 
   const ScaledDecomposition& decomposition() const { return decomposition_; }
   const Rig& mean() const { return mean_; }
 
  private:
+  std::string place_;
   Rig mean_;
   ScaledDecomposition decomposition_;
 };

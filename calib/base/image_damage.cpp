@@ -16,18 +16,10 @@
 
 #include <jerror.h>
 
+#include "calib/base/image_size.h"
+
 namespace vernier::internal {
 namespace {
-
-// Of 16384 x 16384 pixels, more than a camera has. libjpeg holds up to 6 bytes of each of them (a
-// progressive file in colour), whatever little of them the file has.
-constexpr std::uint64_t most_pixels = 1u << 28;
-
-std::string too_many(std::uint32_t width, std::uint32_t height) {
-  if (std::uint64_t{width} * height <= most_pixels) return "";
-  return "has a header of " + std::to_string(width) + "x" + std::to_string(height) +
-         " pixels, more than can be read (" + std::to_string(most_pixels) + ")";
-}
 
 /// libjpeg and libpng report errors by longjmp, so no object with a destructor may be alive across
 /// their calls.
@@ -71,7 +63,7 @@ void read_jpeg(JpegCheck& check, const unsigned char* bytes, std::size_t size) {
   jpeg_read_header(&decoder, TRUE);
   check.width = decoder.image_width;
   check.height = decoder.image_height;
-  if (std::uint64_t{check.width} * check.height > most_pixels) return;
+  if (!size_fault({check.width, check.height}).empty()) return;
   decoder.out_color_space = decoder.jpeg_color_space;
   decoder.scale_num = 1;
   decoder.scale_denom = 8;
@@ -88,7 +80,7 @@ struct PngCheck {
   const unsigned char* next = nullptr;
   std::size_t left = 0;
   std::uint32_t width = 0, height = 0;  ///< as the header says
-  bool cut_off = false;
+  bool cut_off = false, warned = false;
   std::array<char, 200> damage{};  ///< libpng's message
 };
 
@@ -109,7 +101,9 @@ void on_png_error(png_structp decoder, png_const_charp words) {
   png_longjmp(decoder, 1);
 }
 
-void on_png_warning(png_structp, png_const_charp) {}
+void on_png_warning(png_structp decoder, png_const_charp) {
+  static_cast<PngCheck*>(png_get_error_ptr(decoder))->warned = true;
+}
 
 void read_png(PngCheck& check, png_structp decoder, png_infop info) {
   if (setjmp(png_jmpbuf(decoder)) != 0) return;
@@ -119,7 +113,7 @@ void read_png(PngCheck& check, png_structp decoder, png_infop info) {
   png_read_info(decoder, info);
   check.width = png_get_image_width(decoder, info);
   check.height = png_get_image_height(decoder, info);
-  if (std::uint64_t{check.width} * check.height > most_pixels) return;
+  if (!size_fault({check.width, check.height}).empty()) return;
   const int passes = png_set_interlace_handling(decoder);
   png_start_read_image(decoder);
   for (int pass = 0; pass < passes; ++pass) {
@@ -140,11 +134,11 @@ std::string jpeg_damage(std::string_view bytes, bool* warned) {
   jpeg_destroy_decompress(&check.decoder);
   if (warned) *warned = check.warned;
   if (check.cut_off) return "is cut off (its JPEG data have no end)";
-  if (check.damage[0] == '\0') return too_many(check.width, check.height);
+  if (check.damage[0] == '\0') return size_fault({check.width, check.height});
   return "is damaged (libjpeg: " + std::string(check.damage.data()) + ")";
 }
 
-std::string png_damage(std::string_view bytes) {
+std::string png_damage(std::string_view bytes, bool* warned) {
   PngCheck check;
   check.next = reinterpret_cast<const unsigned char*>(bytes.data());
   check.left = bytes.size();
@@ -153,8 +147,9 @@ std::string png_damage(std::string_view bytes) {
   png_infop info = decoder ? png_create_info_struct(decoder) : nullptr;
   if (info) read_png(check, decoder, info);
   png_destroy_read_struct(&decoder, &info, nullptr);
+  if (warned) *warned = check.warned;
   if (check.cut_off) return "is cut off (its PNG data have no end)";
-  if (check.damage[0] == '\0') return too_many(check.width, check.height);
+  if (check.damage[0] == '\0') return size_fault({check.width, check.height});
   return "is damaged (libpng: " + std::string(check.damage.data()) + ")";
 }
 

@@ -17,6 +17,6 @@ std::string jpeg_damage(std::string_view bytes, bool* warned = nullptr);
 
 /// The same for a PNG file, by libpng: "is cut off …" if its end is missing, "is damaged …" for any
 /// other error, such as a wrong checksum.
-std::string png_damage(std::string_view bytes);
+std::string png_damage(std::string_view bytes, bool* warned = nullptr);
 
 }  // namespace vernier::internal

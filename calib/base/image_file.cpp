@@ -6,13 +6,17 @@
 #include <cctype>
 #include <charconv>
 #include <cstddef>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/image_damage.h"
+#include "calib/base/image_size.h"
 #include "calib/base/jpeg_rewriting.h"
+#include "calib/base/png_rewriting.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -24,7 +28,14 @@ bool is_netpbm(std::string_view bytes) {
   return bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6";
 }
 
-/// The header of a binary Netpbm file.
+/// As text, or of bits.
+bool is_rare_netpbm(std::string_view bytes) {
+  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '4';
+}
+
+constexpr const char* no_image = "is not an image that can be read";
+
+/// The header of a Netpbm file.
 struct NetpbmHead {
   std::size_t width = 0, height = 0, largest = 0;
   std::size_t end = 0;  ///< of the header; 0 if it is invalid
@@ -34,6 +45,7 @@ NetpbmHead netpbm_head(std::string_view bytes) {
   NetpbmHead head;
   std::size_t at = 2;
   for (std::size_t* value : {&head.width, &head.height, &head.largest}) {
+    if (value == &head.largest && (bytes[1] == '1' || bytes[1] == '4')) break;
     while (at < bytes.size() &&
            (std::isspace(static_cast<unsigned char>(bytes[at])) || bytes[at] == '#')) {
       at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
@@ -50,18 +62,20 @@ NetpbmHead netpbm_head(std::string_view bytes) {
 std::string netpbm_fault(std::string_view bytes) {
   const NetpbmHead head = netpbm_head(bytes);
   if (head.end == 0) return "has an invalid Netpbm header";
+  const std::string fault = size_fault({head.width, head.height});
+  if (!fault.empty() || is_rare_netpbm(bytes)) return fault;
   const std::size_t pixel = (bytes[1] == '6' ? 3 : 1) * (head.largest > 255 ? 2 : 1);
-  const bool whole = head.width <= 1u << 20 && head.height <= 1u << 20 &&
-                     bytes.size() >= head.end + 1 + head.width * head.height * pixel;
+  const bool whole = bytes.size() >= head.end + 1 + head.width * head.height * pixel;
   return whole ? "" : "is cut off (it has fewer pixels than its header says)";
 }
 
 /// `warned`: another decoder would print something nevertheless.
 std::string fault_of(std::string_view bytes, bool& warned) {
-  if (is_netpbm(bytes)) return netpbm_fault(bytes);
-  if (is_png(bytes)) return png_damage(bytes);
+  if (is_netpbm(bytes) || is_rare_netpbm(bytes)) return netpbm_fault(bytes);
+  if (is_png(bytes)) return png_damage(bytes, &warned);
   if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_damage(bytes, &warned);
-  return "";
+  const std::optional<ImageSize> size = bitmap_size(bytes);
+  return size ? size_fault(*size) : no_image;
 }
 
 }  // namespace
@@ -71,10 +85,11 @@ std::string read_image_bytes(const std::filesystem::path& file) {
   bool warned = false;
   const std::string fault = fault_of(bytes, warned);
   if (!fault.empty()) {
-    throw Error(file.string(), fault, "copy it again, or leave it out");
+    throw Error(file.string(), fault,
+                fault == no_image ? "check the file" : "copy it again, or leave it out");
   }
   if (warned) {
-    std::string silent = rewritten_jpeg(bytes);
+    std::string silent = is_png(bytes) ? rewritten_png(bytes) : rewritten_jpeg(bytes);
     if (!silent.empty()) return silent;
   }
   return bytes;
@@ -86,11 +101,12 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     try {
       pixels = cv::imdecode(buffer, flags);
-    } catch (const cv::Exception&) {  // reported below
+    } catch (const cv::Exception& fault) {  // others are reported below
+      if (fault.code == cv::Error::StsNoMem) throw std::bad_alloc();
     }
   }
   if (pixels.empty()) {
-    throw Error(file.string(), "is not an image that can be read", "check the file");
+    throw Error(file.string(), no_image, "check the file");
   }
   return pixels;
 }
@@ -98,8 +114,10 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::filesystem::p
 bool is_png(std::string_view bytes) { return bytes.substr(0, 8) == png_signature; }
 
 int largest_grey_value(std::string_view bytes) {
-  constexpr std::size_t depth_at = 24;  // in the header chunk, which comes first
-  if (is_png(bytes) && bytes.size() > depth_at) return (1 << (bytes[depth_at] & 31)) - 1;
+  constexpr std::size_t depth_at = 24;             // in the header chunk, which comes first
+  if (is_png(bytes) && bytes.size() > depth_at) {  // a PNG has at most 16 bits, whatever this says
+    return (1 << std::clamp<int>(bytes[depth_at], 0, 16)) - 1;
+  }
   if (is_netpbm(bytes))
     return static_cast<int>(std::min<std::size_t>(netpbm_head(bytes).largest, 65535));
   return 0;

@@ -20,16 +20,46 @@ struct Rewriting {
   std::jmp_buf at_error{};
   jpeg_decompress_struct decoder{};
   jpeg_compress_struct encoder{};
-  unsigned char* written = nullptr;  // by malloc
-  unsigned long size = 0;
   bool done = false;
 };
+
+/// The written bytes. libjpeg's own destination in memory (jpeg_mem_dest) frees the buffer that its
+/// caller holds when it grows, and tells the caller at the end only: after an error it is freed
+/// twice.
+struct WrittenBytes {
+  jpeg_destination_mgr manager{};  // first: libjpeg knows no more of this than its address
+  unsigned char* bytes = nullptr;  // by malloc
+  std::size_t room = 0, size = 0;
+};
+
+WrittenBytes& written_by(j_compress_ptr encoder) {
+  return *reinterpret_cast<WrittenBytes*>(encoder->dest);
+}
 
 void leave(j_common_ptr coder) {
   std::longjmp(reinterpret_cast<Rewriting*>(coder->err)->at_error, 1);
 }
 
 void say_nothing(j_common_ptr) {}
+
+void begin_writing(j_compress_ptr) {}
+
+boolean make_room(j_compress_ptr encoder) {
+  WrittenBytes& written = written_by(encoder);  // full: libjpeg says no more than that
+  const std::size_t room = written.room == 0 ? 4096 : 2 * written.room;
+  auto* bytes = static_cast<unsigned char*>(std::realloc(written.bytes, room));
+  if (bytes == nullptr) leave(reinterpret_cast<j_common_ptr>(encoder));
+  written.manager.next_output_byte = bytes + written.room;
+  written.manager.free_in_buffer = room - written.room;
+  written.bytes = bytes;
+  written.room = room;
+  return TRUE;
+}
+
+void end_writing(j_compress_ptr encoder) {
+  WrittenBytes& written = written_by(encoder);
+  written.size = written.room - written.manager.free_in_buffer;
+}
 
 /// Whether every scan of a progressive file is there: decoders smooth where digits are missing.
 bool has_all_digits(const jpeg_decompress_struct& decoder) {
@@ -42,7 +72,7 @@ bool has_all_digits(const jpeg_decompress_struct& decoder) {
   return true;
 }
 
-void rewrite(Rewriting& r, const unsigned char* bytes, std::size_t size) {
+void rewrite(Rewriting& r, WrittenBytes& written, const unsigned char* bytes, std::size_t size) {
   constexpr int exif = JPEG_APP0 + 1;
   if (setjmp(r.at_error) != 0) return;
   jpeg_create_decompress(&r.decoder);
@@ -54,7 +84,11 @@ void rewrite(Rewriting& r, const unsigned char* bytes, std::size_t size) {
   if (!has_all_digits(r.decoder)) return;
   jpeg_copy_critical_parameters(&r.decoder, &r.encoder);
   r.encoder.optimize_coding = TRUE;  // the standard tables do not code every coefficient
-  jpeg_mem_dest(&r.encoder, &r.written, &r.size);
+  written.manager.init_destination = begin_writing;
+  written.manager.empty_output_buffer = make_room;
+  written.manager.term_destination = end_writing;
+  r.encoder.dest = &written.manager;
+  make_room(&r.encoder);
   jpeg_write_coefficients(&r.encoder, coefficients);
   for (const auto* marker = r.decoder.marker_list; marker; marker = marker->next) {
     jpeg_write_marker(&r.encoder, marker->marker, marker->data, marker->data_length);
@@ -70,12 +104,13 @@ std::string rewritten_jpeg(std::string_view bytes) {
   r.decoder.err = r.encoder.err = jpeg_std_error(&r.errors);
   r.errors.error_exit = leave;
   r.errors.output_message = say_nothing;
-  rewrite(r, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  WrittenBytes out;
+  rewrite(r, out, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   jpeg_destroy_compress(&r.encoder);
   jpeg_destroy_decompress(&r.decoder);
   std::string written;
-  if (r.done) written.assign(reinterpret_cast<const char*>(r.written), r.size);
-  std::free(r.written);
+  if (r.done) written.assign(reinterpret_cast<const char*>(out.bytes), out.size);
+  std::free(out.bytes);
   return written;
 }
 

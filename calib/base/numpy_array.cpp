@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "calib/base/byte_order.h"
+#include "calib/base/image_size.h"
 #include "calib/base/python_literal.h"
 #include "calib/error.h"
 
@@ -75,6 +76,9 @@ Head head_of(std::string_view bytes, const std::string& place) {
   head.type = type->kind == PythonLiteral::Kind::text ? type->text : "of a structure";
   head.rows = side_of(shape->items[0], place);
   head.columns = side_of(shape->items[1], place);
+  if (const std::string fault = size_fault({head.columns, head.rows}); !fault.empty()) {
+    throw Error(place, fault, "give an array of image size");
+  }
   return head;
 }
 

@@ -13,10 +13,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <thread>
 
+#include "calib/base/unfinished_work.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -27,7 +30,18 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Starts a program with empty standard input and its output redirected to files. Returns errno.
+/// The signals that this process ignores or blocks are as usual in the program.
+short with_usual_signals(posix_spawnattr_t& attributes) {
+  sigset_t none, all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  return POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
+}
+
+/// Starts a program with empty standard input and its output redirected to files. It inherits no
+/// other descriptor. Returns errno.
 int start(const std::vector<std::string>& words,
           const std::string& output,
           const std::string& error_output,
@@ -39,14 +53,19 @@ int start(const std::vector<std::string>& words,
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), make, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_output.c_str(), make, 0600);
+  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  if (in_own_group) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  short flags = with_usual_signals(attributes);
+  if (in_own_group) flags |= POSIX_SPAWN_SETPGROUP;
+  posix_spawnattr_setflags(&attributes, flags);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  const auto lock = hold_off_abandoning();
   const int failed =
       posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  if (!failed) note_child(child, in_own_group);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   return failed;
@@ -68,16 +87,36 @@ bool ends_within(double time_limit_s, pid_t child, int& status) {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "vernier-XXXXXX").string();
+  const char* const wanted = std::getenv("TMPDIR");
+  const std::filesystem::path parent = wanted && *wanted ? wanted : "/tmp";
+  std::string name = (parent / "vernier-XXXXXX").string();
+  const auto lock = hold_off_abandoning();
   if (!::mkdtemp(name.data())) {
-    throw Error(name, "a temporary folder cannot be created", "set TMPDIR to a writable folder");
+    throw Error(parent.string(),
+                std::string("a temporary folder cannot be made in it: ") + std::strerror(errno),
+                "set the environment variable TMPDIR to a folder that you may write to");
   }
   path_ = name;
+  note_unfinished(path_, Unfinished::folder);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string& name,
+                                             std::string_view content) const {
+  std::filesystem::path file = path_ / name;
+  std::ofstream out(file, std::ios::binary);
+  errno = 0;
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.flush();
+  if (out) return file;
+  throw Error(file.string(),
+              std::string("cannot be written: ") + std::strerror(errno ? errno : EIO),
+              "set the environment variable TMPDIR to a folder with free space");
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  forget_unfinished(path_);
 }
 
 std::string ProgramRun::last_output_line() const {
@@ -108,6 +147,7 @@ ProgramRun run_program(const std::vector<std::string>& words, double time_limit_
     ::kill(-child, SIGKILL);
   }
   if (time_limit_s <= 0 || run.timed_out) wait_for(child, status);
+  forget_child(child);
   if (WIFEXITED(status) && !run.timed_out) run.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
   run.output = read_text(output);

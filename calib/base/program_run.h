@@ -4,19 +4,22 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vernier::internal {
 
-/// A temporary folder, removed by the destructor.
+/// A temporary folder in TMPDIR, or in /tmp if that is not set; removed by the destructor.
 class TemporaryFolder {
  public:
-  TemporaryFolder();  ///< throws Error if it cannot be created
+  TemporaryFolder();  ///< throws Error, naming TMPDIR, if it cannot be made
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Writes a file in the folder. Throws Error, naming TMPDIR, if it cannot.
+  std::filesystem::path write(const std::string& name, std::string_view content) const;
 
  private:
   std::filesystem::path path_;
@@ -34,7 +37,8 @@ struct ProgramRun {
   std::string last_output_line() const;
 };
 
-/// Runs a program, searched in PATH, with empty standard input and without a shell. With a time
+/// Runs a program, searched in PATH, with empty standard input and without a shell. It inherits no
+/// descriptor and no changed signal. With a time
 /// limit (0: none) the program and its children are killed when it expires; the program then runs
 /// in its own process group, which the terminal's interrupt does not reach.
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s = 0);

@@ -2,14 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/base/python_literal.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstddef>
+#include <system_error>
+#include <utility>
 
+#include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
+#include "calib/base/utf8.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
+
+// A cameramodel with the data of its optimisation has some MB of text, and a hundred values.
+constexpr std::size_t most_bytes = 64'000'000, most_values = 100'000, most_keys = 1'000,
+                      most_word_bytes = 1'000;
 
 class Parser {
  public:
@@ -62,7 +74,8 @@ class Parser {
   }
 
   PythonLiteral literal(int depth) {
-    if (depth > 32) fail("is nested too deeply");
+    if (depth > 32) fail("is nested more than 32 levels deep");
+    if (++values_ > most_values) fail(fmt::format("holds more than {} values", most_values));
     const char c = next();
     PythonLiteral value;
     value.line = line_;
@@ -85,9 +98,12 @@ class Parser {
     while (!take('}')) {
       if (!text_begins()) fail("has a key that is not a quoted string");
       std::string key = quoted();
-      if (value.find(key)) fail("has the key '" + key + "' twice");
-      if (!take(':')) fail("has no colon after the key '" + key + "'");
-      value.entries.emplace_back(std::move(key), literal(depth + 1));
+      if (value.find(key)) fail("has the key '" + shortened(key) + "' twice");
+      if (value.entries.size() >= most_keys) {
+        fail(fmt::format("holds more than {} keys", most_keys));
+      }
+      if (!take(':')) fail("has no colon after the key '" + shortened(key) + "'");
+      value.entries.push_back({std::move(key), literal(depth + 1)});
       if (!take(',') && next() != '}') fail("has no comma between two entries");
     }
   }
@@ -129,11 +145,22 @@ class Parser {
     }
     value.text = text_.substr(begin, at_ - begin);
     if (value.text.empty())
-      fail(std::string("has a \"") + text_[at_] + "\" where a value is expected");
+      fail("has a " +
+           in_quotes(text_.substr(at_, std::max<std::size_t>(1, utf8_length(text_, at_)))) +
+           " where a value is expected");
+    if (value.text.size() > most_word_bytes) {
+      fail(fmt::format("holds a number or word of more than {} bytes", most_word_bytes));
+    }
     const char* first = value.text.data() + (value.text[0] == '+');
     const char* last = value.text.data() + value.text.size();
     const auto parsed = std::from_chars(first, last, value.number);
-    const bool number = parsed.ec == std::errc() && parsed.ptr == last;
+    const bool all = parsed.ptr == last;
+    if (parsed.ec == std::errc::result_out_of_range && all) {
+      const auto small = to_real(value.text);
+      if (!small) fail(in_quotes(value.text) + " is not a number that a double can hold");
+      value.number = *small;
+    }
+    const bool number = all && parsed.ec != std::errc::invalid_argument;
     value.kind = number ? PythonLiteral::Kind::number : PythonLiteral::Kind::word;
   }
 
@@ -141,6 +168,7 @@ class Parser {
   const std::string& place_;
   std::size_t at_ = 0;
   int line_ = 1;
+  std::size_t values_ = 0;
 };
 
 }  // namespace
@@ -153,6 +181,7 @@ const PythonLiteral* PythonLiteral::find(std::string_view key) const {
 }
 
 PythonLiteral parse_python_literal(std::string_view text, const std::string& place) {
+  check_text(text, place, "a Python literal", most_bytes);
   return Parser(text, place).whole();
 }
 

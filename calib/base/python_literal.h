@@ -4,7 +4,6 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 /// The subset of Python's ast.literal_eval that the files of mrcal and NumPy need. Not installed.
@@ -17,14 +16,22 @@ struct PythonLiteral {
   double number = 0;
   std::string text;  ///< of a string or word, escapes not decoded
   std::vector<PythonLiteral> items;
-  std::vector<std::pair<std::string, PythonLiteral>> entries;  ///< of a dictionary
+  struct Entry;                ///< a pair would need the whole type here
+  std::vector<Entry> entries;  ///< of a dictionary
   int line = 0;
 
   /// The value of `key`, or null. Repeated keys are rejected when parsing.
   const PythonLiteral* find(std::string_view key) const;
 };
 
-/// Parses one literal; comments (#) are allowed anywhere. Throws Error("place:line").
+struct PythonLiteral::Entry {
+  std::string key;
+  PythonLiteral value;
+};
+
+/// Parses one literal; comments (#) are allowed anywhere. Throws Error("place:line") if it is
+/// malformed, nested more than 32 levels deep, longer than 64 MB or of more than 100,000 values,
+/// has a key twice, or a number that no double can hold.
 PythonLiteral parse_python_literal(std::string_view text, const std::string& place);
 
 }  // namespace vernier::internal

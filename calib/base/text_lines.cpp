@@ -9,10 +9,15 @@
 #include <cstddef>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
+
+// The longest exact double has 1,075 digits, but no program writes them; a line holds a file name
+// and ten numbers at most.
+constexpr std::size_t most_number_bytes = 1'000, most_line_bytes = 20'000;
 
 std::string_view without_blanks(std::string_view field) {
   while (!field.empty() && field.front() == ' ') field.remove_prefix(1);
@@ -26,7 +31,7 @@ Number number_or_error(const std::optional<Number>& value,
                        const std::string& place,
                        std::string_view what) {
   if (value) return *value;
-  throw Error(place, fmt::format("{} is \"{}\", not a number", what, field),
+  throw Error(place, fmt::format("{} is {}, not a number", what, in_quotes(field)),
               "correct or remove the line");
 }
 
@@ -57,6 +62,10 @@ bool TextLines::next(std::string_view& line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   begin_ = end + 1;
   ++number_;
+  if (line.size() > most_line_bytes) {
+    throw Error(place(), fmt::format("the line has {} bytes", line.size()),
+                fmt::format("it may have {}; is this another kind of file?", most_line_bytes));
+  }
   return true;
 }
 
@@ -75,6 +84,7 @@ std::vector<std::string_view> split_fields(std::string_view line, std::string_vi
 }
 
 std::optional<double> to_real(std::string_view text) {
+  if (text.size() > most_number_bytes) return {};
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -17,7 +17,8 @@ class TextLines {
   /// Throws Error if the file cannot be read.
   explicit TextLines(const std::filesystem::path& file);
 
-  /// The next line without its end (LF or CRLF); false at the end of the file.
+  /// The next line without its end (LF or CRLF); false at the end of the file. Throws Error if it
+  /// is longer than 20,000 bytes.
   bool next(std::string_view& line);
 
   /// Bytes of the whole file.
@@ -39,7 +40,7 @@ std::vector<std::string_view> split_fields(std::string_view line, std::string_vi
 
 /// The number that all of `text` represents, or std::nullopt. The decimal separator is a point in
 /// every locale. Infinities and "nan" are accepted, a leading sign too, a leading blank not. A
-/// value too small for a double is 0; one too large is not accepted.
+/// value too small for a double is 0; one too large, or of more than 1,000 bytes, is not accepted.
 std::optional<double> to_real(std::string_view text);
 
 /// Parses a number. Throws Error(`place`), naming `what`, if `field` is not one.

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "calib/base/shown_text.h"
+#include "calib/base/toml_grammar.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -31,6 +33,8 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& place) {
+  check_toml(text, place);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -40,6 +44,8 @@ toml::table parse_toml(std::string_view text, const std::string& place) {
 }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
+  constexpr std::size_t most_bytes = 100;
+  word = word.substr(0, most_bytes);
   std::string best;
   std::size_t best_distance = std::string::npos;
   for (const std::string_view candidate : known) {
@@ -56,7 +62,10 @@ void TomlReader::fail(toml::source_index line,
                       const std::string& fault,
                       const std::string& remedy) const {
   const toml::source_index named = line_ > 0 ? line_ : std::max<toml::source_index>(line, 1);
-  throw Error(place_ + ":" + std::to_string(named), fault, remedy);
+  // Names and texts of the file are part of them.
+  constexpr std::size_t most_bytes = 240;
+  throw Error(place_ + ":" + std::to_string(named), printable(fault, most_bytes),
+              printable(remedy, most_bytes));
 }
 
 void TomlReader::fail(const toml::node& node,
@@ -71,7 +80,7 @@ void TomlReader::check_keys(const toml::table& table,
   for (const auto& [key, value] : table) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
     fail(key.source().begin.line,
-         "unknown key '" + std::string(key.str()) + "'" + (owner.empty() ? "" : " in " + owner),
+         "unknown key '" + shortened(key.str()) + "'" + (owner.empty() ? "" : " in " + owner),
          "did you mean '" + nearest_word(key.str(), known) + "'?");
   }
 }

@@ -15,7 +15,8 @@
 /// TOML reading with error messages that give file and line. Not installed.
 namespace vernier::internal {
 
-/// Parses TOML; throws Error(place:line) for bad syntax.
+/// Parses TOML. Throws Error(place:line) for bad syntax, a key given twice, and what is beyond the
+/// limits of calib/base/toml_grammar.h.
 toml::table parse_toml(std::string_view text, const std::string& place);
 
 /// The known word with the smallest edit distance.

@@ -2,78 +2,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/board/kalibr_target.h"
 
-#include <algorithm>
-#include <charconv>
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
-#include <string_view>
+#include <type_traits>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
+#include "calib/base/yaml_reader.h"
 #include "calib/board_target.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-/// The part of a line before a comment: a # at the beginning or after a blank, outside quotes.
-std::string_view without_comment(std::string_view line) {
-  char quote = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quote) {
-      if (c == quote) quote = 0;
-    } else if (c == '\'' || c == '"') {
-      quote = c;
-    } else if (c == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) {
-      return line.substr(0, i);
-    }
-  }
-  return line;
-}
-
-std::string_view unquoted(std::string_view text) {
-  const bool quoted = text.size() >= 2 && (text.front() == '\'' || text.front() == '"') &&
-                      text.back() == text.front();
-  return quoted ? text.substr(1, text.size() - 2) : text;
-}
+constexpr int most_in_row = 1000;  // tags or corners
 
 /// The keys of a flat YAML file. Each key can be taken once.
 class FlatYaml {
  public:
   struct Entry {
     std::string value;
-    int line = 0;
+    std::size_t line = 0;
   };
 
   explicit FlatYaml(const std::filesystem::path& file) : file_(file.string()) {
-    const std::string text = read_whole(file);
-    int number = 0;
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      add(std::string_view(text).substr(begin, end - begin), ++number);
-      begin = end + 1;
+    const YamlValue root = parse_yaml(read_whole(file), file_);
+    for (const auto& [key, value] : root.entries) {
+      if (value.kind != YamlValue::Kind::scalar) {
+        throw Error(place(value.line), "is not of the form key: value",
+                    "see Kalibr's target files");
+      }
+      entries_.insert({key, {value.text, value.line}});
     }
+    if (root.kind == YamlValue::Kind::map || root.kind == YamlValue::Kind::null) return;
+    throw Error(place(root.line), "is not of the form key: value", "see Kalibr's target files");
   }
 
   template <class Number>
   Number number(const std::string& key) {
     const Entry entry = take(key);
-    Number value{};
-    const char* end = entry.value.data() + entry.value.size();
-    const auto parsed = std::from_chars(entry.value.data(), end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end || !(value > 0)) {
-      throw Error(
-          place(entry.line), key + " is \"" + entry.value + "\"",
-          std::is_integral_v<Number> ? "give a whole number above 0" : "give a number above 0");
+    const double value = to_real(entry.value).value_or(-1);
+    const bool whole = value == std::round(value);
+    if (std::is_integral_v<Number> ? whole && value >= 1 && value <= most_in_row
+                                   : value > 0 && std::isfinite(value)) {
+      return static_cast<Number>(value);
     }
-    return value;
+    throw Error(place(entry.line), key + " is " + in_quotes(entry.value),
+                std::is_integral_v<Number>
+                    ? fmt::format("give a whole number of 1 to {}", most_in_row)
+                    : "give a number above 0");
   }
 
   bool has(const std::string& key) const { return entries_.count(key) > 0; }
@@ -91,28 +73,14 @@ class FlatYaml {
   void expect_no_more() const {
     if (entries_.empty()) return;
     const auto& [key, entry] = *entries_.begin();
-    throw Error(place(entry.line), "unknown key '" + key + "'",
+    throw Error(place(entry.line), "unknown key '" + shortened(key) + "'",
                 "a target has target_type, and tagCols, tagRows, tagSize, tagSpacing or "
                 "targetCols, targetRows, rowSpacingMeters, colSpacingMeters");
   }
 
-  std::string place(int line) const { return file_ + ":" + std::to_string(line); }
+  std::string place(std::size_t line) const { return file_ + ":" + std::to_string(line); }
 
  private:
-  void add(std::string_view raw, int number) {
-    const std::string_view line = without_comment(raw);
-    if (trimmed(line).empty() || trimmed(line) == "---" || raw.substr(0, 1) == "%") return;
-    const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos || line.front() == ' ' || line.front() == '\t') {
-      throw Error(place(number), "is not of the form key: value", "see Kalibr's target files");
-    }
-    const std::string key(trimmed(line.substr(0, colon)));
-    const std::string value(unquoted(trimmed(line.substr(colon + 1))));
-    if (!entries_.insert({key, {value, number}}).second) {
-      throw Error(place(number), key + " appears a second time", "remove one of the lines");
-    }
-  }
-
   std::string file_;
   std::map<std::string, Entry> entries_;
 };
@@ -126,7 +94,7 @@ AprilTagGrid april_grid(FlatYaml& yaml) {
   if (!yaml.has("codeOffset")) return grid;
   const FlatYaml::Entry offset = yaml.take("codeOffset");
   if (offset.value != "0") {
-    throw Error(yaml.place(offset.line), "codeOffset is \"" + offset.value + "\"",
+    throw Error(yaml.place(offset.line), "codeOffset is " + in_quotes(offset.value),
                 "only codeOffset 0 is supported");
   }
   return grid;
@@ -155,11 +123,15 @@ BoardTarget read_kalibr_target(const std::filesystem::path& file) {
     throw Error(yaml.place(type.line), "circlegrid targets are not supported",
                 "use a checkerboard, a ChArUco board or an aprilgrid");
   } else {
-    throw Error(yaml.place(type.line), "target_type is \"" + type.value + "\"",
+    throw Error(yaml.place(type.line), "target_type is " + in_quotes(type.value),
                 "supported: aprilgrid, checkerboard");
   }
   yaml.expect_no_more();
-  check_target(target);
+  try {
+    check_target(target);
+  } catch (const Error& error) {
+    throw Error(file.string(), error.place() + ": " + error.fault(), error.remedy());
+  }
   return target;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -26,7 +27,7 @@ cv::Ptr<cv::aruco::Dictionary> marker_dictionary(const std::string& name) {
   if (at == names.end()) {
     std::string known;
     for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
-    throw Error("dictionary", "\"" + name + "\" is unknown", "supported: " + known);
+    throw Error("dictionary", in_quotes(name) + " is unknown", "supported: " + known);
   }
   return cv::aruco::getPredefinedDictionary(static_cast<int>(at - names.begin()));
 }

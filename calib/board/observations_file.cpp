@@ -136,9 +136,10 @@ BoardObservations read_observations(const std::filesystem::path& file,
   return rows.take(file);
 }
 
-void write_observations(const BoardObservations& observations, const std::filesystem::path& file) {
-  // A target without a grid of its own is written as one row.
-  const auto& target = observations.target_m;
+namespace {
+
+/// Row and column of every point on the target; a target without a grid of its own is one row.
+std::vector<std::pair<long, long>> rows_and_columns(const std::vector<Eigen::Vector3d>& target) {
   std::vector<double> xs, ys;
   for (const auto& point : target) {
     xs.push_back(point.x());
@@ -151,13 +152,28 @@ void write_observations(const BoardObservations& observations, const std::filesy
   const auto index = [](const std::vector<double>& values, double value) {
     return std::lower_bound(values.begin(), values.end(), value) - values.begin();
   };
-  const bool grid = xs.size() * ys.size() == target.size();
+  std::vector<std::pair<long, long>> places, in_one_row;
+  for (const auto& point : target) {
+    places.emplace_back(index(ys, point.y()), index(xs, point.x()));
+    in_one_row.emplace_back(0, static_cast<long>(in_one_row.size()));
+  }
+  // Two points that differ in height only would be one corner.
+  const bool is_grid = xs.size() * ys.size() == target.size() &&
+                       std::set(places.begin(), places.end()).size() == target.size();
+  return is_grid ? places : in_one_row;
+}
+
+}  // namespace
+
+void write_observations(const BoardObservations& observations, const std::filesystem::path& file) {
+  const auto& target = observations.target_m;
+  const std::vector<std::pair<long, long>> places = rows_and_columns(target);
   std::string text(observation_header);
   text += '\n';
   for (const BoardView& view : observations.views) {
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
       const Eigen::Vector3d& p = target[view.ids[i]];
-      const long row = grid ? index(ys, p.y()) : 0, col = grid ? index(xs, p.x()) : view.ids[i];
+      const auto [row, col] = places[static_cast<std::size_t>(view.ids[i])];
       text += fmt::format("{},{},{},{},{},{},{},{},{}\n", view.frame, view.camera, row, col, p.x(),
                           p.y(), p.z(), view.pixels_px[i].x(), view.pixels_px[i].y());
     }

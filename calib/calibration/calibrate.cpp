@@ -15,6 +15,7 @@
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibration/calibration_problem.h"
+#include "calib/calibration/change_findings.h"
 #include "calib/calibration/cluster_robust_covariance.h"
 #include "calib/calibration/covariance_estimators.h"
 #include "calib/calibration/observation_checks.h"
@@ -45,6 +46,7 @@ using namespace internal;
 namespace {
 
 constexpr double largest_corner_noise_px = 1;  // larger residuals indicate a fault
+constexpr double rounding_px = 1e-3;           // smaller ones are not noise (exact corners)
 constexpr int few_frames = 8;                  // fewer give an uncertain scatter
 
 /// A minimum of the cost and related quantities.
@@ -302,8 +304,10 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
   const auto out = summary.outliers.size();
   const auto all = out + static_cast<std::size_t>(s.cost.equations.residuals) / 2;
   if (out > 0) {
+    const auto whole = images_left_out(summary.outliers, s.observations);
     warnings.push_back(fmt::format(
-        "{} of {} corners were left out as outliers{}", out, all,
+        "{} of {} corners were left out as outliers{}{}", out, all,
+        whole.empty() ? "" : ", with them the whole image of " + list_of(whole),
         100 * out > 2 * all ? ": so many suggest a wrong model, a bent board or blurred images"
                             : ""));
   }
@@ -318,6 +322,16 @@ std::vector<std::string> warnings_of(const CalibrationSummary& summary,
   return warnings;
 }
 
+/// Doubts of residuals that corner noise could have, but that are not noise.
+void doubt_structure(const Solution& s, CalibrationSummary& summary) {
+  const bool free = s.problem.priors.empty() && s.cost.free.cols() == s.cost.free.rows();
+  if (!free || summary.rms_px > largest_corner_noise_px || summary.rms_px < rounding_px) return;
+  std::optional<ResidualFinding> finding;
+  if (s.problem.warp == BoardWarp::known) finding = bent_board_finding(s.observations, s.state);
+  if (!finding) finding = change_finding(s.observations, s.state);
+  if (finding) summary.trust_warnings.push_back(finding->text);
+}
+
 /// Trust warnings about the result.
 void add_trust_warnings(const Solution& s,
                         const CalibrationOptions& options,
@@ -326,7 +340,11 @@ void add_trust_warnings(const Solution& s,
   const auto add = [&](const std::optional<std::string>& warning) {
     if (warning) trust_warnings.push_back(*warning);
   };
+  doubt_structure(s, *estimate.calibration);
   add(ill_conditioning_warning({CovarianceKind::mvb, s.cost.names, s.bound}, estimate.rig));
+  if (options.pixel_sigma_px > 0 && estimate.calibration->rms_px <= largest_corner_noise_px) {
+    add(noise_warning(s.cost.equations.chi2, degrees_of_freedom(s), options.pixel_sigma_px));
+  }
   const int clusters = options.white_noise ? 0 : estimate.calibration->views;
   for (const RigPrior& prior : s.problem.priors) {
     add(prior_conflict_warning(prior, estimate.rig, *estimate.covariance_mvb,

@@ -18,6 +18,7 @@
 #include "calib/calibration/merged_boards.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/pair_checks.h"
+#include "calib/calibration/pair_sides.h"
 #include "calib/calibration/result_checks.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
@@ -41,6 +42,9 @@ namespace vernier {
 using namespace internal;
 
 namespace {
+
+/// Below it, data and prior contradict each other.
+constexpr double largest_conflicting_p = 1e-4;
 
 /// The equations of boards and pairs, in all parameters.
 ReducedNormalEquations data_equations(const JointMinimum& joint,
@@ -238,6 +242,51 @@ std::optional<Observability> what_pairs_brought(const JointMinimum& joint,
   }
 }
 
+/// A calibration from pairs and a prior, before the judgement of its result.
+struct PairSolution {
+  JointCalibration joint;
+  std::vector<std::string> unlisted;  ///< held, since the prior does not name them
+  PriorConsistency agreement;
+  SideVerdict sides = SideVerdict::as_given;
+};
+
+PairSolution solve_pairs(const PairObservations& pairs,
+                         const GaussianRigPrior& prior,
+                         const JointOptions& options) {
+  const std::string& place = options.place;
+  JointOptions with_held = options;
+  PairSolution solution;
+  for (const HeldParameter& held : held_by(prior)) {
+    const bool twice = std::any_of(options.held.begin(), options.held.end(),
+                                   [&](const HeldParameter& h) { return h.name == held.name; });
+    if (twice) continue;
+    with_held.held.push_back(held);
+    solution.unlisted.push_back(held.name);
+  }
+  const std::vector<std::string> names = parameter_names(prior.rig);
+  for (HeldParameter& held : with_held.held) {  // at the prior's values
+    const auto at = std::find(names.begin(), names.end(), held.name);
+    if (held.value || at == names.end()) continue;
+    held.value = parameters(prior.rig)[at - names.begin()];
+  }
+  const std::vector<bool> mask = held_mask(prior.rig, with_held.held);
+  const auto free = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), false));
+  if (pairs.size() < free) {
+    throw Error(place.empty() ? "pairs" : place,
+                fmt::format("{} pairs for {} free parameters", pairs.size(), free),
+                "match more corners, or fix parameters");
+  }
+  check_sides(pairs, prior.rig, full_covariance(prior).matrix, place);
+  JointEvidence evidence;
+  evidence.priors.push_back(prior);
+  evidence.pairs = pairs;
+  solution.joint = calibrate_jointly(evidence, prior.rig, with_held);
+  solution.agreement = consistency_with(prior, solution.joint.estimate);
+  solution.sides = judge_sides(pairs, prior, with_held, solution.joint,
+                               solution.agreement.p_value < largest_conflicting_p);
+  return solution;
+}
+
 }  // namespace
 
 JointCalibration calibrate_jointly(const JointEvidence& evidence,
@@ -290,54 +339,33 @@ JointCalibration calibrate_jointly(const JointEvidence& evidence,
   return result;
 }
 
+SideVerdict internal::judge_sides(const PairObservations& pairs, const GaussianRigPrior& prior) {
+  return solve_pairs(pairs, prior, {}).sides;
+}
+
 JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                                       const GaussianRigPrior& prior,
                                       const JointOptions& options) {
-  const std::string& place = options.place;
-  check_pairs(pairs, prior.rig, place);
-  JointOptions with_held = options;
-  std::vector<std::string> unlisted;
-  for (const HeldParameter& held : held_by(prior)) {
-    const bool twice = std::any_of(options.held.begin(), options.held.end(),
-                                   [&](const HeldParameter& h) { return h.name == held.name; });
-    if (twice) continue;
-    with_held.held.push_back(held);
-    unlisted.push_back(held.name);
-  }
-  const std::vector<std::string> names = parameter_names(prior.rig);
-  for (HeldParameter& held : with_held.held) {  // at the prior's values
-    const auto at = std::find(names.begin(), names.end(), held.name);
-    if (held.value || at == names.end()) continue;
-    held.value = parameters(prior.rig)[at - names.begin()];
-  }
-  const std::vector<bool> mask = held_mask(prior.rig, with_held.held);
-  const auto free = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), false));
-  if (pairs.size() < free) {
-    throw Error(place.empty() ? "pairs" : place,
-                fmt::format("{} pairs for {} free parameters", pairs.size(), free),
-                "match more corners, or fix parameters");
-  }
-  check_sides(pairs, prior.rig, full_covariance(prior).matrix, place);
-  JointEvidence evidence;
-  evidence.priors.push_back(prior);
-  evidence.pairs = pairs;
-  JointCalibration result = calibrate_jointly(evidence, prior.rig, with_held);
+  check_pairs(pairs, prior.rig, options.place);
+  PairSolution solution = solve_pairs(pairs, prior, options);
+  JointCalibration& result = solution.joint;
   std::vector<bool> inlier(pairs.size(), true);
   for (const PairOutlier& out : result.estimate.calibration->pair_outliers) inlier[out.row] = false;
   const ObservationDiagnosis diagnosis =
       check_scene(selected(pairs, inlier), result.estimate.rig, result.pair_sigma_scale);
   auto& summary = *result.estimate.calibration;
-  const PriorConsistency agreement = consistency_with(prior, result.estimate);
-  if (agreement.p_value < 1e-4) {
+  doubt_sides(solution.sides, options.place, summary);
+  const PriorConsistency& agreement = solution.agreement;
+  if (agreement.p_value < largest_conflicting_p) {
     summary.trust_warnings.push_back(
         fmt::format("pairs and prior are inconsistent (chi² {:.1f} for {}, p {:.1g}; {:.1f} sigma "
                     "where {}): the rig has changed, or one of them understates its uncertainty",
                     agreement.chi2, agreement.dof, agreement.p_value, agreement.in_sigma,
                     agreement.description));
   }
-  if (!unlisted.empty()) {
+  if (!solution.unlisted.empty()) {
     summary.warnings.push_back(fmt::format("fixed, since the prior gives them no variance: {}",
-                                           fmt::join(unlisted, ", ")));
+                                           fmt::join(solution.unlisted, ", ")));
   }
   const auto folds = inversion_warnings(result.estimate.rig);
   summary.warnings.insert(summary.warnings.end(), folds.begin(), folds.end());
@@ -345,7 +373,7 @@ JointCalibration calibrate_from_pairs(const PairObservations& pairs,
                           diagnosis.warnings.end());
   summary.trust_warnings.insert(summary.trust_warnings.begin(), diagnosis.trust_warnings.begin(),
                                 diagnosis.trust_warnings.end());
-  return result;
+  return std::move(result);
 }
 
 }  // namespace vernier

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -257,6 +258,19 @@ std::vector<std::string> overrejected_cameras(const BoardObservations& observati
                     out.size(), out.size() + kept.size(), c, rig.cameras[c].name, list_of(out)));
   }
   return words;
+}
+
+std::vector<std::string> images_left_out(const std::vector<CornerOutlier>& outliers,
+                                         const BoardObservations& inliers) {
+  std::map<std::pair<int, int>, std::string> out;  // by frame, camera
+  for (const CornerOutlier& corner : outliers) {
+    out[{corner.frame, corner.camera}] =
+        view_label({corner.frame, corner.camera, corner.image, {}, {}});
+  }
+  for (const BoardView& view : inliers.views) out.erase({view.frame, view.camera});
+  std::vector<std::string> images;
+  for (const auto& [place, image] : out) images.push_back(image);
+  return images;
 }
 
 void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,

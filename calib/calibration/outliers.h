@@ -57,6 +57,10 @@ std::vector<std::string> overrejected_cameras(const BoardObservations& observati
                                               const BoardObservations& inliers,
                                               const Rig& rig);
 
+/// The images all of whose corners are outliers, as view_label names them.
+std::vector<std::string> images_left_out(const std::vector<CornerOutlier>& outliers,
+                                         const BoardObservations& inliers);
+
 /// Sets the distance of outliers from their prediction by `state`: NaN if the state lacks their
 /// frame. Throws Error if the rig lacks the camera or the target the corner.
 void measure_outliers(const std::vector<Eigen::Vector3d>& target_m,

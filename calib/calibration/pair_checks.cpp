@@ -16,6 +16,7 @@
 
 #include "calib/calibration/bent_plane.h"
 #include "calib/calibration/observation_checks.h"
+#include "calib/calibration/pair_sides.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pair_observations.h"
@@ -29,86 +30,6 @@ namespace {
 /// Number of pairs of an image pair that are used at most.
 constexpr std::size_t enough_pairs = 200;
 constexpr std::size_t fewest_pairs = 12;  // of an image pair that is checked
-
-/// The image of a point at infinity on the left pixel's ray in the right image, and the unit
-/// direction in which it moves as the point comes nearer.
-struct FarPoint {
-  Eigen::Vector2d pixel_px, nearer;
-};
-std::optional<FarPoint> far_point(const Rig& rig, const Eigen::Vector2d& left_px) {
-  const auto ray = try_unproject(rig.cameras[0], left_px);
-  if (!ray) return std::nullopt;
-  const Pose& T = rig.T_camera_first[1];
-  const Eigen::Vector3d X = T.R * *ray;
-  if (!(X.z() > 0)) return std::nullopt;
-  ProjectionJacobian J;
-  FarPoint far{project(rig.cameras[1], X, J), {}};
-  far.nearer = (J.point * T.t).normalized();
-  if (!far.nearer.allFinite()) return std::nullopt;
-  return far;
-}
-
-/// Distance of a pair before infinity along its epipolar line, in pixels of the right image.
-std::optional<double> before_infinity_px(const Rig& rig, const Eigen::Vector4d& y) {
-  const std::optional<FarPoint> far = far_point(rig, y.head<2>());
-  if (!far) return std::nullopt;
-  return (y.tail<2>() - far->pixel_px).dot(far->nearer);
-}
-
-std::vector<Eigen::Vector4d> some_of(const PairObservations& pairs, const ImagePair& image) {
-  const std::size_t step = std::max<std::size_t>(1, image.count / enough_pairs);
-  std::vector<Eigen::Vector4d> some;
-  for (std::size_t i = 0; i < image.count; i += step) {
-    some.push_back(pairs.pixels_px[image.first + i]);
-  }
-  return some;
-}
-
-/// Lower quartile of the distances before infinity; std::nullopt if most pairs have none. An
-/// approximate rig adds a common offset to all corners, so near corners show a wrong side best.
-std::optional<double> quartile_before_px(const Rig& rig, const std::vector<Eigen::Vector4d>& some) {
-  std::vector<double> before;
-  for (const Eigen::Vector4d& y : some) {
-    if (const auto b = before_infinity_px(rig, y)) before.push_back(*b);
-  }
-  if (2 * before.size() <= some.size()) return std::nullopt;
-  return quantile(std::move(before), 0.25, QuantileKind::lower);
-}
-
-/// Standard deviation of that quartile due to the rig, by central differences.
-double sigma_before_px(const Rig& rig,
-                       const Eigen::MatrixXd& covariance,
-                       const std::vector<Eigen::Vector4d>& some) {
-  const auto p = covariance.rows();
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
-  for (Eigen::Index i = 0; i < p; ++i) {
-    const double h = 1e-3 * std::sqrt(covariance(i, i));
-    if (!(h > 0)) continue;
-    const auto up = quartile_before_px(retract(rig, h * Eigen::VectorXd::Unit(p, i)), some);
-    const auto down = quartile_before_px(retract(rig, -h * Eigen::VectorXd::Unit(p, i)), some);
-    if (up && down) gradient[i] = (*up - *down) / (2 * h);
-  }
-  return std::sqrt(gradient.dot(covariance * gradient));
-}
-
-enum class Sides { right, swapped, unknown };
-
-Sides sides_of(const Rig& rig,
-               const Eigen::MatrixXd& covariance,
-               const std::vector<Eigen::Vector4d>& some) {
-  const auto before = quartile_before_px(rig, some);
-  if (!before) return Sides::unknown;
-  const double limit = 3 + 3 * sigma_before_px(rig, covariance, some);  // px: noise of the corners
-  if (*before > limit) return Sides::right;
-  if (*before > -limit) return Sides::unknown;
-  std::vector<Eigen::Vector4d> other;
-  for (const Eigen::Vector4d& y : some) {
-    other.emplace_back();
-    other.back() << y.tail<2>(), y.head<2>();
-  }
-  const auto exchanged_before = quartile_before_px(rig, other);
-  return exchanged_before && *exchanged_before > -limit ? Sides::swapped : Sides::unknown;
-}
 
 /// Whether a plane explains almost all pairs within their noise. The lenses of an approximate rig
 /// bend it, in directions that pairs on a plane cannot show, so both images get an r² term.
@@ -156,26 +77,18 @@ void check_sides(const PairObservations& pairs,
                  const Eigen::MatrixXd& covariance,
                  const std::string& place) {
   check_rays(pairs, rig, place);
-  std::vector<int> exchanged_pairs;
-  std::size_t judged = 0, right = 0;
-  for (const ImagePair& image : pairs.image_pairs) {
-    if (image.count < fewest_pairs) continue;
-    ++judged;
-    const Sides sides = sides_of(rig, covariance, some_of(pairs, image));
-    right += sides == Sides::right;
-    if (sides == Sides::swapped) exchanged_pairs.push_back(image.number);
-  }
-  if (exchanged_pairs.empty()) return;
+  const SideCounts sides = count_sides(pairs, rig, covariance);
+  if (sides.swapped.empty()) return;
   throw Error(place.empty() ? "pairs" : place,
-              exchanged_pairs.size() == judged
+              sides.swapped.size() == sides.judged
                   ? "left and right are swapped: the corners lie behind the rig"
-              : 2 * exchanged_pairs.size() > judged && right == 0
+              : 2 * sides.swapped.size() > sides.judged && sides.right == 0
                   ? fmt::format("left and right are swapped: the corners of {} of {} image pairs "
                                 "lie behind the rig, the others are ambiguous",
-                                exchanged_pairs.size(), judged)
+                                sides.swapped.size(), sides.judged)
                   : fmt::format("left and right are swapped in image pairs {}: their corners lie "
                                 "behind the rig",
-                                fmt::join(exchanged_pairs, ", ")),
+                                fmt::join(sides.swapped, ", ")),
               "exchange the images, or the cameras of the prior");
 }
 

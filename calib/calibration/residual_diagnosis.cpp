@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
+#include "calib/calibration/change_findings.h"
 #include "calib/calibration/observation_checks.h"
 #include "calib/calibration/outliers.h"
 #include "calib/calibration/view_pair.h"
@@ -70,7 +70,7 @@ class Diagnosis {
     if (!(sum_px2_ > 0)) return {};
     check_lens();
     check_board();
-    check_simultaneity();
+    if (!check_change()) check_simultaneity();
     check_images();
     check_cameras();
     std::erase_if(findings_, [&](const auto& f) { return f.share < options_.min_share; });
@@ -138,11 +138,13 @@ class Diagnosis {
     return sum / std::max(1, count);
   }
 
+  bool is_free() const {
+    return problem_.priors.empty() &&
+           std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
+  }
+
   void check_lens() {
-    const bool free =
-        problem_.priors.empty() &&
-        std::find(problem_.held.begin(), problem_.held.end(), true) == problem_.held.end();
-    if (!free) return;
+    if (!is_free()) return;
     std::set<std::string_view> tried;
     for (const CameraModel& model : models_of(state_.rig)) tried.insert(model_name(model));
     std::optional<Trial> best;
@@ -180,6 +182,22 @@ class Diagnosis {
              "the board is not flat: a warp of {:.2g} mm in x and {:.2g} mm in y fits to {:.2f} px "
              "instead of {:.2f} px; estimate the board's shape or use a stiff board",
              warp_mm.x(), warp_mm.y(), rms_of(bent->sum_px2, corners_), rms())});
+  }
+
+  /// Whether the rig changed once. A change in every frame is left to check_simultaneity, which
+  /// names the frames, unless that explains much less.
+  bool check_change() {
+    if (!is_free()) return false;
+    const std::optional<ResidualFinding> change = change_finding(observations_, state_);
+    if (!change) return false;
+    if (change->text.find("the rig changed") != 0) {
+      const std::size_t before = findings_.size();
+      check_simultaneity();
+      if (findings_.size() > before && 2 * findings_.back().share > change->share) return true;
+      findings_.resize(before);
+    }
+    findings_.push_back(*change);
+    return true;
   }
 
   void check_simultaneity() {
@@ -295,21 +313,7 @@ class Diagnosis {
   }
 
   void check_missing() {
-    std::map<std::pair<int, int>, std::pair<std::string, int>> out;  // by frame, camera
-    for (const CornerOutlier& corner : options_.outliers) {
-      auto& [image, count] = out[{corner.frame, corner.camera}];
-      image = view_label({corner.frame, corner.camera, corner.image, {}, {}});
-      ++count;
-    }
-    std::vector<std::string> whole;
-    for (const auto& [place, left_out] : out) {
-      const auto& views = observations_.views;
-      const bool kept =
-          std::any_of(views.begin(), views.end(), [&key = place](const BoardView& view) {
-            return std::pair(view.frame, view.camera) == key;
-          });
-      if (!kept) whole.push_back(left_out.first);
-    }
+    const std::vector<std::string> whole = images_left_out(options_.outliers, observations_);
     if (!whole.empty()) {
       findings_.push_back({0, fmt::format("{} image{} left out as a whole, because no pose of the "
                                           "board fits the rest: {}; inspect {}",

@@ -30,6 +30,7 @@ struct ResidualDiagnosisOptions {
 ///    with the mean residual along the radius at the image's edge, which shows a wrong radial
 ///    model;
 ///  - the board: solved with free warp (calib/board/board_warp.h);
+///  - one change of a camera or lens during the session (calib/calibration/change_findings.h);
 ///  - time: two images of a frame that fit alone but not with one pose of the board;
 ///  - images, and cameras, with residuals much larger than the others';
 ///  - pixels or squares that are not square, images without a board, images excluded as a whole.

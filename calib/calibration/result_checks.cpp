@@ -20,6 +20,7 @@
 #include "calib/lens_models.h"
 #include "calib/rig.h"
 #include "calib/rig_prior.h"
+#include "calib/statistics/distributions.h"
 
 namespace vernier::internal {
 namespace {
@@ -94,6 +95,24 @@ std::optional<std::string> ill_conditioning_warning(const Covariance& bound, con
       condition, words.empty() ? "" : " (" + words + ")",
       richest ? "use --model opencv5"
               : "use a model with fewer parameters, or add tilted views that fill the image");
+}
+
+std::optional<std::string> noise_warning(double chi2, double dof, double pixel_sigma_px) {
+  constexpr double most = 9, chance = 1e-4, no_chance_dof = 60;
+  const double ratio = chi2 / dof;
+  const bool too_small = !(ratio <= most);
+  if (!too_small && ratio >= 1 / most) return {};
+  if (dof < no_chance_dof && chi2 < 1e3) {  // with more, neither limit is reached by chance
+    const double p = too_small ? chi_squared_survival(chi2, dof) : chi_squared_cdf(chi2, dof);
+    if (p > chance) return {};
+  }
+  return fmt::format(
+      "the residuals do not have the stated noise of {:.3g} px: chi² is {:.3g} for {:.0f} degrees "
+      "of "
+      "freedom, as for a noise of {:.3g} px{}; state that noise, or leave it to be estimated",
+      pixel_sigma_px, chi2, dof, pixel_sigma_px * std::sqrt(ratio),
+      too_small ? ", so corners or models are wrong, or the noise is understated"
+                : ", so the noise is overstated");
 }
 
 std::optional<std::string> prior_conflict_warning(const RigPrior& prior,

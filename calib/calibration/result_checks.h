@@ -32,6 +32,13 @@ std::optional<std::string> prior_conflict_warning(const RigPrior& prior,
                                                   const Eigen::MatrixXd& honest,
                                                   int clusters);
 
+/// Checks the stated noise of a pixel coordinate against the residuals, by χ² over its degrees of
+/// freedom. Beyond 3² or below 1/3² (and not by chance, p < 1e-4) the stated noise is not that of
+/// the corners: standard deviations from it are wrong by more than a factor of three. The limits do
+/// not depend on the number of corners, since lens and board models of real sets are off by a share
+/// of the noise, which many corners would show.
+std::optional<std::string> noise_warning(double chi2, double dof, double pixel_sigma_px);
+
 /// Checks that each pixel of each camera has a ray. One warning, with the region, per camera whose
 /// distortion cannot be inverted at some of 33 x 25 pixels spread over its image: the coefficients
 /// fold the image where no corner constrains them.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -81,6 +82,32 @@ struct Repair {
   double as_is_px, repaired_px;
 };
 
+/// The views as if the images of a camera were mirrored, left to right, and its corners numbered
+/// again from the left as seen; std::nullopt if the target is not symmetric.
+std::optional<BoardObservations> mirrored_images(const BoardObservations& observations,
+                                                 int camera) {
+  const auto& target_m = observations.target_m;
+  const auto [low, high] = std::minmax_element(
+      target_m.begin(), target_m.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  const double sum = low->x() + high->x(), near = 1e-3 * (high->x() - low->x());
+  std::vector<int> replaced;
+  for (const Eigen::Vector3d& X : target_m) {
+    const Eigen::Vector2d wanted(sum - X.x(), X.y());
+    const auto at = std::find_if(target_m.begin(), target_m.end(), [&](const auto& other) {
+      return (other.template head<2>() - wanted).norm() < near;
+    });
+    if (at == target_m.end()) return std::nullopt;
+    replaced.push_back(static_cast<int>(at - target_m.begin()));
+  }
+  BoardObservations mirrored = observations;
+  for (BoardView& view : mirrored.views) {
+    if (view.camera != camera) continue;
+    for (int& id : view.ids) id = replaced[static_cast<std::size_t>(id)];
+    for (auto& p : view.pixels_px) p.x() = observations.size_px[camera].x() - 1 - p.x();
+  }
+  return mirrored;
+}
+
 /// Checks two cameras of the rig.
 class PairCheck {
  public:
@@ -138,6 +165,18 @@ class PairCheck {
           "number the images so that simultaneous ones have the same number");
     }
     if (2 * as_is.gross <= n) return;  // the approximate start may be the reason
+    if (const auto mirrored = mirrored_images(observations_, second_)) {
+      const PairConsensus reflected(*mirrored, rig_, first_, second_);
+      const std::size_t count = agreement(reflected, PairReading::as_is).count;
+      if (2 * count >= n && count > agreeing) {
+        throw Error(cameras(),
+                    fmt::format("the images of one of them are mirrored: {} of {} frames agree on "
+                                "the pose between the two as they are, {} with those of one camera "
+                                "mirrored",
+                                agreeing, n, count),
+                    "give that camera's images unmirrored");
+      }
+    }
     const std::string fault = fmt::format(
         "only {} of {} frames agree on the pose between the two: their images are not simultaneous "
         "or are paired wrongly, or the cameras moved relative to each other",

@@ -25,6 +25,7 @@ struct ViewCheckOptions {
 ///  - corners numbered half a turn apart, in some frames or in all;
 ///  - left and right exchanged in some frames;
 ///  - images paired wrongly throughout: they fit when one camera's are shifted by some frames;
+///  - the images of one camera mirrored: most frames agree if they are mirrored back;
 ///  - most frames agree on no pose at all (not simultaneous, or the cameras moved);
 ///  - boards whose tilts leave the intrinsics undetermined (check_tilts,
 ///  calib/calibration/tilt_check.h).

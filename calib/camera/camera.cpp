@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 
 namespace vernier {
@@ -14,7 +15,7 @@ namespace {
 template <std::size_t I = 0>
 CameraModel find_model(std::string_view name) {
   if constexpr (I == std::variant_size_v<CameraModel>) {
-    throw Error("camera model \"" + std::string(name) + "\"", "unknown model",
+    throw Error("camera model " + internal::in_quotes(name), "unknown model",
                 "supported: radial1, pinhole, opencv4, opencv5, opencv8, fisheye4");
   } else {
     using Model = std::variant_alternative_t<I, CameraModel>;

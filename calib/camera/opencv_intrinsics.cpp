@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/error.h"
 #include "calib/lens_models.h"
 
@@ -75,9 +76,24 @@ void check(const OpenCvIntrinsics& i, const Eigen::Vector2i& size_px, const std:
       !std::all_of(i.coefficients.begin(), i.coefficients.end(), finite)) {
     throw Error(place, "an intrinsic parameter is not finite", "correct it");
   }
+  const auto beyond = [](double x) { return std::abs(x) > most_value; };
+  if (std::any_of(core.begin(), core.end(), beyond) ||
+      std::any_of(i.coefficients.begin(), i.coefficients.end(), beyond)) {
+    throw Error(place, fmt::format("an intrinsic parameter is beyond {:g}", most_value),
+                "correct it");
+  }
   if (!(i.fx_px > 0) || !(i.fy_px > 0)) {
     throw Error(place, fmt::format("its focal lengths are {} and {}", i.fx_px, i.fy_px),
                 "both must be above 0 (0: the camera was never calibrated)");
+  }
+  if (i.fx_px > most_focal_ratio * i.fy_px || i.fy_px > most_focal_ratio * i.fx_px) {
+    throw Error(place, fmt::format("its focal lengths are {} and {}", i.fx_px, i.fy_px),
+                fmt::format("they may differ by a factor of {}", most_focal_ratio));
+  }
+  constexpr double least_px = 1e-3, most_px = 1e9;
+  if (std::min(i.fx_px, i.fy_px) < least_px || std::max(i.fx_px, i.fy_px) > most_px) {
+    throw Error(place, fmt::format("its focal lengths are {} and {} px", i.fx_px, i.fy_px),
+                fmt::format("both must be from {} to {}", least_px, most_px));
   }
   if (size_px.minCoeff() < 1) {
     throw Error(place, fmt::format("its image size is {} x {}", size_px[0], size_px[1]),

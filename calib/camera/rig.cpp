@@ -8,7 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 
@@ -91,9 +93,17 @@ std::string default_camera_name(std::size_t index) {
 }
 
 Rig rig_of(std::vector<PlacedCamera> cameras) {
+  if (cameras.size() > internal::most_cameras) {
+    throw Error("rig", fmt::format("it has {} cameras", cameras.size()),
+                fmt::format("a rig may have {}", internal::most_cameras));
+  }
   std::set<std::string> names;
   bool distinct = true;
   for (const PlacedCamera& c : cameras) {
+    if (!internal::is_camera_name(c.camera.name)) {
+      throw Error("camera " + internal::in_quotes(c.camera.name),
+                  "its name is longer than 100 bytes or not on one line", "rename it");
+    }
     distinct = distinct && !c.camera.name.empty() && names.insert(c.camera.name).second;
   }
   Rig rig;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
@@ -81,6 +83,11 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   if (different.size() != names.size() || different.count("")) {
     throw Error("names of cameras", "two cameras have the same name, or one has none",
                 "give each its own name");
+  }
+  for (const std::string& name : names) {
+    if (is_camera_name(name)) continue;
+    throw Error("names of cameras",
+                in_quotes(name) + " is longer than 100 bytes or not on one line", "shorten it");
   }
   const std::vector<std::string> before = parameter_names(rig);
   std::vector<std::string> cameras_before;

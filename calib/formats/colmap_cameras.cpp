@@ -14,6 +14,7 @@
 #include <utility>
 #include <variant>
 
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -50,7 +51,7 @@ const Model& find_model(const std::string& name, const std::string& place) {
   for (const Model& model : models) {
     if (name == model.name) return model;
   }
-  throw Error(place, "unsupported camera model " + name,
+  throw Error(place, "unsupported camera model " + shortened(name),
               "supported: PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE and "
               "their simpler forms");
 }

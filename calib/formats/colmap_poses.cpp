@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/json_reader.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/formats/rig_json.h"
@@ -68,7 +70,8 @@ std::vector<PlacedId> from_rigs(const std::filesystem::path& file,
   std::vector<PlacedId> placed{{line.whole(3), "", Pose{}}};
   for (std::size_t at = 4; at < line.size();) {
     if (line.word(at) != "CAMERA") {
-      throw Error(line.place(), "holds a sensor " + line.word(at), "keep the cameras only");
+      throw Error(line.place(), "holds a sensor " + in_quotes(line.word(at)),
+                  "keep the cameras only");
     }
     if (line.whole(at + 2) == 0) {
       throw Error(line.place(), fmt::format("camera {} has no pose", line.whole(at + 1)),
@@ -84,14 +87,6 @@ std::vector<PlacedId> from_rigs(const std::filesystem::path& file,
 std::string name_of_prefix(std::string prefix) {
   while (!prefix.empty() && prefix.back() == '/') prefix.pop_back();
   return prefix.substr(prefix.rfind('/') + 1);
-}
-
-Json parse_json(const std::filesystem::path& file) {
-  try {
-    return Json::parse(read_whole(file));
-  } catch (const Json::parse_error&) {
-    throw Error(file.string(), "is not JSON: a comma, quote or bracket is wrong", "correct it");
-  }
 }
 
 PlacedId from_entry(const Node& camera, int id, double unit_m) {
@@ -162,7 +157,7 @@ std::vector<int> identified_cameras(const Node& entries,
 std::vector<PlacedId> from_rig_config(const std::filesystem::path& file,
                                       const Cameras& cameras,
                                       std::vector<std::string>& notes) {
-  const Json json = parse_json(file);
+  const Json json = parse_json(read_whole(file), file.string());
   const Node root(json, file.string() + ":");
   if (root.array().size() != 1) {
     throw Error(file.string(), fmt::format("holds {} rigs", root.size()), "keep one");
@@ -233,8 +228,14 @@ std::vector<PlacedId> from_beside(const std::filesystem::path& file,
 }  // namespace
 
 Line::Line(const std::string& text, std::string place) : place_(std::move(place)) {
+  constexpr std::size_t most_words = 1000;  // a rig of 32 cameras has 323
   std::istringstream in(text);
-  for (std::string word; in >> word;) words_.push_back(word);
+  for (std::string word; in >> word;) {
+    if (words_.size() == most_words) {
+      throw Error(place_, fmt::format("has more than {} words", most_words), "correct it");
+    }
+    words_.push_back(word);
+  }
 }
 
 const std::string& Line::word(std::size_t index) const {
@@ -245,7 +246,7 @@ const std::string& Line::word(std::size_t index) const {
 double Line::number(std::size_t index) const {
   const std::string& text = word(index);
   if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
-  throw Error(place_, "\"" + text + "\" is not a finite number", "correct it");
+  throw Error(place_, in_quotes(text) + " is not a finite number", "correct it");
 }
 
 int Line::whole(std::size_t index) const {

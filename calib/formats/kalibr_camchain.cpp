@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -34,14 +35,14 @@ std::string camera_of_topic(const std::string& topic) {
 OpenCvIntrinsics read_intrinsics(const YamlNode& node) {
   const YamlNode model = node.at("camera_model");
   if (model.text() != "pinhole") {
-    throw Error(model.place(), "unsupported camera model \"" + model.text() + "\"",
+    throw Error(model.place(), "unsupported camera model " + in_quotes(model.text()),
                 "calibrate with pinhole-radtan or pinhole-equi");
   }
   const std::vector<double> core = node.at("intrinsics").numbers(4);
   const YamlNode distortion = node.at("distortion_model");
   const std::string name = distortion.text();
   if (name != "radtan" && name != "equidistant" && name != "none") {
-    throw Error(distortion.place(), "unsupported distortion model \"" + name + "\"",
+    throw Error(distortion.place(), "unsupported distortion model " + in_quotes(name),
                 "supported: radtan, equidistant, none");
   }
   OpenCvIntrinsics in{core[0], core[1], core[2], core[3], name == "equidistant", {}};

@@ -12,6 +12,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/python_literal.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -80,7 +81,7 @@ std::size_t coefficient_count(const PythonLiteral& value, const std::string& fil
     if (name == model.name) return model.coefficients;
   }
   throw Error(fmt::format("{}:{}: lensmodel", file, value.line),
-              "unsupported lens model" + (name.empty() ? "" : " " + name),
+              "unsupported lens model" + (name.empty() ? "" : " " + shortened(name)),
               "convert it in mrcal first (mrcal-convert-lensmodel) to LENSMODEL_OPENCV8 or a "
               "smaller one");
 }

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -35,7 +36,8 @@ class Keys {
       const YamlNode root = YamlNode::parse(read_whole(file), file.string());
       for (const std::string& key : root.keys()) {
         if (!roots_.emplace(key, root).second) {
-          throw Error(file.string(), "the key \"" + key + "\" is also in another of the files",
+          throw Error(file.string(),
+                      "the key " + in_quotes(key) + " is also in another of the files",
                       "give the files of one rig");
         }
       }
@@ -120,7 +122,7 @@ std::optional<bool> stated_fisheye(const Keys& keys, std::size_t i) {
     const std::string name = node.text();
     if (name == "fisheye" || name == "equidistant") return true;
     if (name == "plumb_bob" || name == "rational_polynomial" || name == "opencv") return false;
-    throw Error(node.place(), "unsupported distortion model \"" + name + "\"",
+    throw Error(node.place(), "unsupported distortion model " + in_quotes(name),
                 "supported: fisheye, opencv, plumb_bob, rational_polynomial");
   }
   return std::nullopt;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <iterator>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,8 +40,8 @@ void read_row(std::string_view line,
   if (!y.allFinite()) {
     throw Error(lines.place(), "a pixel coordinate is not finite", "remove the line");
   }
-  constexpr double most = 1e6;  // px
-  if (!(sigma > 0 && sigma <= most)) {
+  constexpr double most = 1e6;                              // px
+  if (!(static_cast<float>(sigma) > 0 && sigma <= most)) {  // it is kept as a float
     throw Error(lines.place(), fmt::format("sigma_px is {}", sigma),
                 "give a standard deviation above 0 and below a million");
   }
@@ -74,7 +75,7 @@ PairObservations read_pairs(const std::filesystem::path& file) {
   return pairs;
 }
 
-void write_pairs(const PairObservations& pairs, const std::filesystem::path& file) {
+std::string format_pairs(const PairObservations& pairs) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "{}\n", header);
   for (const ImagePair& image : pairs.image_pairs) {
@@ -84,7 +85,11 @@ void write_pairs(const PairObservations& pairs, const std::filesystem::path& fil
                      y[2], y[3], static_cast<float>(pairs.sigma_of(i)));
     }
   }
-  write_atomically(file, {text.data(), text.size()});
+  return fmt::to_string(text);
+}
+
+void write_pairs(const PairObservations& pairs, const std::filesystem::path& file) {
+  write_atomically(file, format_pairs(pairs));
 }
 
 }  // namespace vernier::internal

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "calib/pair_observations.h"
 
@@ -15,6 +16,7 @@ namespace vernier::internal {
 PairObservations read_pairs(const std::filesystem::path& file);
 
 /// Writes the same; numbers are exact (shortest form that reads back equal).
+std::string format_pairs(const PairObservations& pairs);
 void write_pairs(const PairObservations& pairs, const std::filesystem::path& file);
 
 }  // namespace vernier::internal

@@ -10,15 +10,16 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/error_place.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/estimate/held_parameters.h"
 #include "calib/formats/rig_json.h"
-#include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_prior.h"
@@ -37,85 +38,6 @@ constexpr std::array<const char*, 9> known_keys{"format",          "version",   
                                                 "parameter_names", "parameters",  "covariance",
                                                 "covariance_mvb",  "calibration", "evidence"};
 
-Json camera_json(const Camera& camera, const Pose& T_camera_first, bool first) {
-  Json json;
-  json["name"] = camera.name;
-  json["model"] = model_name(camera.model);
-  json["size_px"] = {camera.size_px[0], camera.size_px[1]};
-  const std::vector<std::string> names = parameter_names(camera.model);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    json["parameters"][names[i]] = camera.parameters[static_cast<Eigen::Index>(i)];
-    if (names[i] == "ax") json["parameters"]["ay"] = 1;
-  }
-  if (!first) {
-    json["from_first"]["rotation_rad"] =
-        to_json(Eigen::VectorXd(vector_from_rotation(T_camera_first.R)));
-    json["from_first"]["translation_m"] = to_json(Eigen::VectorXd(T_camera_first.t));
-  }
-  return json;
-}
-
-Camera parse_camera(const Node& node) {
-  Camera camera;
-  camera.name = node.at("name").text();
-  const Node model = node.at("model");
-  const std::string wanted = model.text();
-  try {
-    camera.model = camera_model(wanted);
-  } catch (const Error& error) {
-    throw Error(model.place(), error.place() + ": " + error.fault(), error.remedy());
-  }
-  const Eigen::VectorXd size = node.at("size_px").vector();
-  if (size.size() != 2 || !(size.minCoeff() >= 1) || size != size.array().round().matrix()) {
-    throw Error(node.at("size_px").place(), "is not [width, height]", "give two whole numbers");
-  }
-  camera.size_px = size.cast<int>();
-  const Node values = node.at("parameters");
-  if (values.has("ay") && values.at("ay").number() != 1) {
-    throw Error(values.at("ay").place(),
-                "is not 1: (f, ax, ay) together have a null direction, so ay is 1 by definition",
-                "multiply f_px by ay and divide ax by it");
-  }
-  const std::vector<std::string> names = parameter_names(camera.model);
-  camera.parameters.resize(static_cast<Eigen::Index>(names.size()));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    camera.parameters[static_cast<Eigen::Index>(i)] = values.at(names[i]).number();
-  }
-  for (const auto& [key, value] : values.json().items()) {
-    if (key != "ay" && std::find(names.begin(), names.end(), key) == names.end()) {
-      throw Error(values.place() + "." + key,
-                  fmt::format("the model {} has no such parameter", model_name(camera.model)),
-                  "remove it or choose another model");
-    }
-  }
-  if (!(camera.f_px() > 0) || !(camera.ax() > 0)) {
-    throw Error(values.place(), "f_px and ax must be above 0", "");
-  }
-  return camera;
-}
-
-Rig parse_cameras(const Node& node) {
-  Rig rig;
-  std::set<std::string> names;
-  for (std::size_t i = 0; i < node.array().size(); ++i) {
-    const Node camera = node.at(i);
-    rig.cameras.push_back(parse_camera(camera));
-    if (!names.insert(rig.cameras.back().name).second) {
-      throw Error(camera.at("name").place(), "two cameras have this name",
-                  "give each its own name");
-    }
-    Pose T;
-    if (i > 0) {
-      const Node pose = camera.at("from_first");
-      T = {rotation_from_vector(pose.at("rotation_rad").vector3()),
-           pose.at("translation_m").vector3()};
-    }
-    rig.T_camera_first.push_back(T);
-  }
-  if (rig.cameras.empty()) throw Error(node.place(), "it has no camera", "");
-  return rig;
-}
-
 /// Indices of the rig's parameters that the file lists: all, or some in the same order.
 std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
   const std::vector<std::string> all = parameter_names(rig);
@@ -130,8 +52,9 @@ std::vector<Eigen::Index> parse_names(const Node& root, const Rig& rig) {
   if (next < stated.size() || stated.empty()) {
     throw Error(root.at("parameter_names").place(),
                 "are not the rig's parameters in the rig's order",
-                stated.empty() ? "see docs/file-formats.md"
-                               : fmt::format("check {}; see docs/file-formats.md", stated[next]));
+                stated.empty()
+                    ? "see docs/file-formats.md"
+                    : fmt::format("check {}; see docs/file-formats.md", in_quotes(stated[next])));
   }
   return places;
 }
@@ -162,6 +85,23 @@ std::vector<bool> unlisted(const Rig& rig, const std::vector<Eigen::Index>& list
   return held;
 }
 
+/// Throws Error if the listed parameters cannot have this covariance.
+void check_covariance(const Eigen::MatrixXd& matrix,
+                      const std::string& place,
+                      const Rig& rig,
+                      const std::vector<Eigen::Index>& listed) {
+  const std::vector<std::string> all = parameter_names(rig);
+  Covariance covariance{CovarianceKind::prior, {}, matrix};
+  for (const Eigen::Index i : listed) {
+    covariance.names.push_back(all[static_cast<std::size_t>(i)]);
+  }
+  try {
+    const ScaledDecomposition checked(covariance);
+  } catch (const Error& error) {
+    throw Error(place, error.fault(), error.remedy());
+  }
+}
+
 /// The matrix at `node`, one row per listed parameter, in the tangent; zero for the others.
 Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                                        const Rig& rig,
@@ -181,6 +121,8 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
                     parameter_names(rig)[static_cast<std::size_t>(listed[i])], matrix(i, i)),
         "give 0 or more");
   }
+  rig_json::check_bounded(matrix, most_variance, stated);
+  check_covariance(matrix, stated.place(), rig, listed);
   const Eigen::MatrixXd E = free_directions(rig, unlisted(rig, listed));
   return E * matrix * E.transpose();
 }
@@ -188,8 +130,14 @@ Eigen::MatrixXd parse_parameter_matrix(const Node& node,
 Covariance parse_covariance(const Node& node,
                             const Rig& rig,
                             const std::vector<Eigen::Index>& listed) {
-  return {covariance_kind(node.at("kind").text()), parameter_names(rig),
-          parse_parameter_matrix(node, rig, listed)};
+  const Node kind = node.at("kind");
+  CovarianceKind source{};
+  try {
+    source = covariance_kind(kind.text());
+  } catch (const Error& error) {
+    throw Error(kind.place(), error.place() + " is unknown", error.remedy());
+  }
+  return {source, parameter_names(rig), parse_parameter_matrix(node, rig, listed)};
 }
 
 /// JSON has no NaN: it would be written as null, which a rig file may contain only for the residual
@@ -217,29 +165,15 @@ Json prior_json(const GaussianRigPrior& prior) {
   return Json::parse(format_rig(estimate, KeepEvidence::no));
 }
 
-std::vector<GaussianRigPrior> parse_priors(const Node& evidence) {
-  std::vector<GaussianRigPrior> priors;
-  if (!evidence.has("priors")) return priors;
-  const Node list = evidence.at("priors");
-  for (std::size_t i = 0; i < list.array().size(); ++i) {
-    const Node prior = list.at(i);
-    priors.push_back(
-        gaussian_prior_of(parse_rig(prior.json().dump(), prior.place()).estimate, prior.place()));
-  }
-  return priors;
-}
+std::vector<GaussianRigPrior> parse_priors(const Node& evidence);
 
 }  // namespace
 
 std::string stored_warning_prefix(const std::string& place) { return place + ": stored warning: "; }
 
-RigFile parse_rig(const std::string& text, const std::string& place) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw rig_json::not_json(text, place, error.byte);
-  }
+namespace {
+
+RigFile rig_of(const Json& json, const std::string& place) {
   const Node root(json, place + ":");
   if (!root.has("format") || root.at("format").text() != "vernier/rig") {
     throw Error(place, "is not a rig file: its format is not \"vernier/rig\"",
@@ -250,12 +184,13 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   }
   RigFile file;
   RigEstimate& estimate = file.estimate;
-  estimate.rig = parse_cameras(root.at("cameras"));
+  estimate.rig = rig_json::parse_cameras(root.at("cameras"));
   const bool covariance = root.has("covariance");
   std::vector<Eigen::Index> listed(static_cast<std::size_t>(parameter_count(estimate.rig)));
   std::iota(listed.begin(), listed.end(), 0);
   if (covariance || root.has("parameter_names")) listed = parse_names(root, estimate.rig);
-  for (const Eigen::Index i : listed) file.listed.push_back(parameter_names(estimate.rig)[i]);
+  const std::vector<std::string> names = parameter_names(estimate.rig);
+  for (const Eigen::Index i : listed) file.listed.push_back(names[static_cast<std::size_t>(i)]);
   file.listed_places = listed;
   if (covariance || root.has("parameters")) check_parameters(root, estimate.rig, listed);
   if (covariance) {
@@ -279,10 +214,30 @@ RigFile parse_rig(const std::string& text, const std::string& place) {
   for (const auto& [key, value] : json.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;
     others[key] = value;
-    file.warnings.push_back(place + ": the key \"" + key + "\" is unknown; it is kept unchanged");
+    file.warnings.push_back(place + ": the key " + in_quotes(key) +
+                            " is unknown; it is kept unchanged");
   }
   if (!others.empty()) estimate.other_keys = others.dump();
   return file;
+}
+
+std::vector<GaussianRigPrior> parse_priors(const Node& evidence) {
+  std::vector<GaussianRigPrior> priors;
+  if (!evidence.has("priors")) return priors;
+  const Node list = evidence.at("priors");
+  for (std::size_t i = 0; i < list.array().size(); ++i) {
+    const Node prior = list.at(i);
+    priors.push_back(
+        gaussian_prior_of(rig_of(prior.json(), prior.place()).estimate, prior.place()));
+  }
+  return priors;
+}
+
+}  // namespace
+
+RigFile parse_rig(const std::string& text, const std::string& place) {
+  return with_errors_of(place,
+                        [&] { return rig_of(rig_json::parse_rig_json(text, place), place); });
 }
 
 GaussianRigPrior gaussian_rig_prior(const RigFile& file, const std::string& place) {
@@ -297,11 +252,7 @@ std::string format_rig(const RigEstimate& estimate, KeepEvidence evidence) {
   Json json;
   json["format"] = "vernier/rig";
   json["version"] = 1;
-  json["cameras"] = Json::array();
-  for (std::size_t i = 0; i < estimate.rig.cameras.size(); ++i) {
-    json["cameras"].push_back(
-        camera_json(estimate.rig.cameras[i], estimate.rig.T_camera_first[i], i == 0));
-  }
+  json["cameras"] = rig_json::cameras_json(estimate.rig);
   const std::vector<bool> held = held_parameters(estimate);
   json["parameter_names"] = free_names(estimate.rig, held);
   json["parameters"] = Json::array();

@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "calib/base/json_reader.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
@@ -19,25 +22,17 @@
 #include "calib/rig_estimate.h"
 
 namespace vernier::internal::rig_json {
-namespace {
-
-int line_of(const std::string& text, std::size_t byte) {
-  const auto end = text.begin() + static_cast<long>(std::min(byte, text.size()));
-  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
-}
-
-}  // namespace
-
-Error not_json(const std::string& text, const std::string& place, std::size_t byte) {
+Json parse_rig_json(const std::string& text, const std::string& place) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Error(place, "is empty", "write a rig file with vernier calibrate");
+    throw Error(place, "is empty", "write a rig file with vernier calibrate");
   }
-  if (text.find("vernier/rig") == std::string::npos) {
-    return Error(place, "is not a rig file",
-                 "vernier convert reads Kalibr's, OpenCV's, ROS's and mrcal's files");
+  try {
+    return parse_json(text, place);
+  } catch (const Error&) {
+    if (text.find("vernier/rig") != std::string::npos) throw;
+    throw Error(place, "is not a rig file",
+                "vernier convert reads Kalibr's, OpenCV's, ROS's and mrcal's files");
   }
-  return Error(fmt::format("{}:{}", place, line_of(text, byte)),
-               "is not JSON: a comma, quote or bracket is wrong here", "correct it");
 }
 
 Node Node::at(const std::string& key) const {
@@ -62,7 +57,12 @@ double Node::number() const {
 
 int Node::integer() const {
   if (!json_.is_number_integer()) throw Error(place_, "is not an integer", "");
-  return json_.get<int>();
+  const auto whole = json_.get<std::int64_t>();
+  const bool wrapped = json_.is_number_unsigned() && whole < 0;
+  if (wrapped || whole != static_cast<int>(whole)) {
+    throw Error(place_, json_.dump() + " is too large a whole number", "correct it");
+  }
+  return static_cast<int>(whole);
 }
 
 std::string Node::text() const {
@@ -115,7 +115,7 @@ int camera_index(const Node& name, const Rig& rig) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     if (rig.cameras[c].name == text) return static_cast<int>(c);
   }
-  throw Error(name.place(), "the rig has no camera \"" + text + "\"", "");
+  throw Error(name.place(), "the rig has no camera " + in_quotes(text), "");
 }
 
 Json to_json(const PairOutlier& o) {

@@ -29,7 +29,7 @@ class Node {
   std::size_t size() const { return json_.size(); }
 
   double number() const;  ///< finite
-  int integer() const;
+  int integer() const;    ///< within the range of int
   std::string text() const;
   const Json& array() const;
   Eigen::Vector3d vector3() const;
@@ -43,11 +43,19 @@ class Node {
   std::string place_;
 };
 
-/// Why a text is not JSON: empty, another format, or malformed at `byte`.
-Error not_json(const std::string& text, const std::string& place, std::size_t byte);
+/// Parses the text of a rig file (calib/base/json_reader.h). Throws Error, also if it is of another
+/// format.
+Json parse_rig_json(const std::string& text, const std::string& place);
 
 Json to_json(const Eigen::VectorXd& v);
 Json to_json(const Eigen::MatrixXd& m);
+
+/// Throws Error if a value is beyond `most` in magnitude.
+void check_bounded(const Eigen::MatrixXd& values, double most, const Node& node);
+
+/// Cameras with their poses, within the limits of calib/camera/rig_limits.h.
+Json cameras_json(const Rig& rig);
+Rig parse_cameras(const Node& node);
 
 /// Index of the camera of that name. Throws Error if the rig has none.
 int camera_index(const Node& name, const Rig& rig);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -47,7 +48,7 @@ void read_distortion(const YamlNode& root, OpenCvIntrinsics& in) {
     }
     return;
   }
-  throw Error(model.place(), "unsupported distortion model \"" + model.text() + "\"",
+  throw Error(model.place(), "unsupported distortion model " + in_quotes(model.text()),
               "supported: plumb_bob, rational_polynomial, equidistant");
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
@@ -45,7 +46,7 @@ std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
   const std::vector<std::string> names = parameter_names(rig);
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
-    throw Error(node.at("held").at(i).place(), "the rig has no parameter \"" + held[i] + "\"",
+    throw Error(node.at("held").at(i).place(), "the rig has no parameter " + in_quotes(held[i]),
                 "use a name from parameter_names");
   }
   return held;

@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
+#include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
+#include "calib/base/yaml_reader.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -17,74 +20,62 @@ namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// A scalar as quoted in error messages: short, on one line.
-std::string quoted(std::string scalar) {
-  for (char& c : scalar) c = is_control(c) ? '?' : c;
-  return '"' + (scalar.size() > 40 ? scalar.substr(0, 40) + "..." : scalar) + '"';
-}
-
 }  // namespace
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
-  std::string body = text;
-  if (body.rfind("%YAML:", 0) == 0) body.replace(0, 1, "#");
-  try {
-    YAML::Node root = YAML::Load(body);
-    if (!root.IsMap()) throw Error(file, "holds no keys", "name another file");
-    return {root, file, ""};
-  } catch (const YAML::Exception& error) {
-    const std::string line = error.mark.is_null() ? "" : fmt::format(":{}", error.mark.line + 1);
-    throw Error(file + line, "is not YAML: " + error.msg, "correct it");
-  }
+  auto root = std::make_shared<const YamlValue>(parse_yaml(text, file));
+  if (root->kind != YamlValue::Kind::map) throw Error(file, "holds no keys", "name another file");
+  return {std::move(root), file, ""};
+}
+
+YamlNode YamlNode::part(const YamlValue& value, std::string path) const {
+  return {std::shared_ptr<const YamlValue>(value_, &value), file_, std::move(path)};
 }
 
 std::string YamlNode::place() const {
-  const YAML::Mark mark = node_.Mark();
-  const std::string line = mark.is_null() ? "" : fmt::format(":{}", mark.line + 1);
+  const std::string line = value_->line == 0 ? "" : fmt::format(":{}", value_->line);
   return file_ + line + (path_.empty() ? "" : ": " + path_);
 }
 
 bool YamlNode::has(const std::string& key) const {
-  return node_.IsMap() && node_[key] && !node_[key].IsNull();
+  const YamlValue* value = value_->find(key);
+  return value && value->kind != YamlValue::Kind::null;
 }
 
 YamlNode YamlNode::at(const std::string& key) const { return at_any({key}); }
 
 YamlNode YamlNode::at_any(const std::vector<std::string>& keys) const {
-  if (!node_.IsMap()) throw Error(place(), "holds no keys", "");
+  if (!is_map()) throw Error(place(), "holds no keys", "");
   for (const std::string& key : keys) {
-    if (has(key)) return {node_[key], file_, path_.empty() ? key : path_ + "." + key};
+    if (has(key)) return part(*value_->find(key), path_.empty() ? key : path_ + "." + key);
   }
   throw Error(path_.empty() ? file_ : place(), "has no \"" + keys[0] + "\"", "add it");
 }
 
 YamlNode YamlNode::item(std::size_t index) const {
-  return {node_[index], file_, fmt::format("{}[{}]", path_, index)};
+  return part(value_->items.at(index), fmt::format("{}[{}]", path_, index));
 }
 
 std::vector<std::string> YamlNode::keys() const {
   std::vector<std::string> keys;
-  if (!node_.IsMap()) return keys;
-  for (const auto& entry : node_) {
-    if (entry.first.IsScalar()) keys.push_back(entry.first.Scalar());
-  }
+  for (const auto& [key, value] : value_->entries) keys.push_back(key);
   return keys;
 }
 
 std::string YamlNode::text() const {
-  if (!node_.IsScalar()) throw Error(place(), "is not a string", "");
-  const std::string& scalar = node_.Scalar();
+  if (!is_scalar()) throw Error(place(), "is not a string", "");
+  const std::string& scalar = value_->text;
   if (std::any_of(scalar.begin(), scalar.end(), is_control)) {
-    throw Error(place(), quoted(scalar) + " is not a single-line string", "correct it");
+    throw Error(place(), in_quotes(scalar) + " is not a single-line string", "correct it");
   }
   return scalar;
 }
 
 double YamlNode::number() const {
-  if (!node_.IsScalar()) throw Error(place(), "is not a number", "");
-  const std::string& scalar = node_.Scalar();
+  if (!is_scalar()) throw Error(place(), "is not a number", "");
+  const std::string& scalar = value_->text;
   if (const auto value = to_real(scalar); value && std::isfinite(*value)) return *value;
-  throw Error(place(), quoted(scalar) + " is not a finite number", "correct it");
+  throw Error(place(), in_quotes(scalar) + " is not a finite number", "correct it");
 }
 
 int YamlNode::count() const {
@@ -96,9 +87,9 @@ int YamlNode::count() const {
 }
 
 std::vector<double> YamlNode::numbers() const {
-  if (!node_.IsSequence()) throw Error(place(), "is not a list", "");
+  if (!is_list()) throw Error(place(), "is not a list", "");
   std::vector<double> values;
-  for (std::size_t i = 0; i < node_.size(); ++i) values.push_back(item(i).number());
+  for (std::size_t i = 0; i < value_->items.size(); ++i) values.push_back(item(i).number());
   return values;
 }
 
@@ -117,13 +108,14 @@ Eigen::MatrixXd YamlNode::matrix(Eigen::Index rows, Eigen::Index cols) const {
                 "correct it");
   };
   std::vector<double> values;
-  if (node_.IsMap()) {
+  if (is_map()) {
     const int r = at("rows").count(), c = at("cols").count();
     if (r != rows || c != cols) wrong(static_cast<std::size_t>(r), static_cast<std::size_t>(c));
     values = at("data").numbers(static_cast<std::size_t>(rows * cols));
-  } else if (node_.IsSequence() && node_.size() > 0 && node_[0].IsSequence()) {
-    if (node_.size() != static_cast<std::size_t>(rows)) wrong(node_.size(), node_[0].size());
-    for (std::size_t i = 0; i < node_.size(); ++i) {
+  } else if (is_list() && !value_->items.empty() && item(0).is_list()) {
+    if (value_->items.size() != static_cast<std::size_t>(rows))
+      wrong(value_->items.size(), value_->items[0].items.size());
+    for (std::size_t i = 0; i < value_->items.size(); ++i) {
       const std::vector<double> row = item(i).numbers(static_cast<std::size_t>(cols));
       values.insert(values.end(), row.begin(), row.end());
     }
@@ -135,7 +127,7 @@ Eigen::MatrixXd YamlNode::matrix(Eigen::Index rows, Eigen::Index cols) const {
 }
 
 std::vector<double> YamlNode::vector() const {
-  if (!node_.IsMap()) return numbers();
+  if (!is_map()) return numbers();
   const double r = at("rows").number(), c = at("cols").number();
   if (r * c == 0) return {};
   if (r != 1 && c != 1) throw Error(place(), "is not a single row or column", "correct it");

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <Eigen/Core>
 #include <cstddef>
-#include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "calib/base/yaml_reader.h"
 
 /// Internal to calib/: YAML as written by other tools. Not installed.
 namespace vernier::internal {
@@ -18,7 +18,7 @@ namespace vernier::internal {
 /// members but has() throw Error.
 class YamlNode {
  public:
-  /// Parses a text. OpenCV's first line (%YAML:1.0, which is not valid YAML) is accepted.
+  /// Parses a text (calib/base/yaml_reader.h), which must hold a map.
   static YamlNode parse(const std::string& text, const std::string& file);
 
   bool has(const std::string& key) const;
@@ -45,11 +45,16 @@ class YamlNode {
   std::string place() const;
 
  private:
-  YamlNode(const YAML::Node& node, std::string file, std::string path)
-      : node_(node), file_(std::move(file)), path_(std::move(path)) {}
+  YamlNode(std::shared_ptr<const YamlValue> value, std::string file, std::string path)
+      : value_(std::move(value)), file_(std::move(file)), path_(std::move(path)) {}
+  /// A part of this value, which it keeps.
+  YamlNode part(const YamlValue& value, std::string path) const;
   YamlNode item(std::size_t index) const;
+  bool is_map() const { return value_->kind == YamlValue::Kind::map; }
+  bool is_list() const { return value_->kind == YamlValue::Kind::list; }
+  bool is_scalar() const { return value_->kind == YamlValue::Kind::scalar; }
 
-  YAML::Node node_;
+  std::shared_ptr<const YamlValue> value_;
   std::string file_, path_;
 };
 

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "calib/base/atomic_file.h"
+#include "calib/base/json_reader.h"
 #include "calib/base/program_run.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
@@ -22,7 +24,7 @@
 namespace vernier::internal {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr int no_mrcal = 4;  // the script's exit code if Python has no mrcal
@@ -167,10 +169,11 @@ bool complete(const MrcalUncertaintyAnswer& answer, const MrcalUncertaintyProble
 MrcalUncertaintyAnswer read_answer(const fs::path& reply, const MrcalUncertaintyProblem& problem) {
   const Error broken("mrcal", "its Python script gave an unexpected answer", "leave mrcal out");
   try {
-    std::ifstream in(reply);
-    MrcalUncertaintyAnswer answer = answer_of(Json::parse(in));
+    MrcalUncertaintyAnswer answer = answer_of(parse_json(read_whole(reply), "mrcal's answer"));
     if (complete(answer, problem)) return answer;
   } catch (const Json::exception&) {
+    throw broken;
+  } catch (const Error&) {
     throw broken;
   }
   throw broken;
@@ -200,8 +203,8 @@ MrcalUncertaintyAnswer run_mrcal_uncertainty(const fs::path& script,
     return none;
   }
   const TemporaryFolder folder;
-  const fs::path question = folder.path() / "problem.json", reply = folder.path() / "answer.json";
-  std::ofstream(question) << problem_json(problem);
+  const fs::path question = folder.write("problem.json", problem_json(problem).dump());
+  const fs::path reply = folder.path() / "answer.json";
   const ProgramRun run = run_script(script, {question.string(), reply.string()});
   if (run.exit_code == -1) none.absent = "no Python can be run";
   if (run.exit_code == no_mrcal) none.absent = "no Python has mrcal: " + run.last_output_line();

@@ -57,6 +57,12 @@ double found(const char* distribution, Evaluate evaluate) {
   }
 }
 
+/// Whether P(χ² <= x) is less than any double, where Boost.Math gives up: by Chernoff's bound
+/// (x e / dof)^(dof / 2) e^(-x / 2), which holds below the mean.
+bool is_below_smallest_double(double x, double dof) {
+  return x < dof && 0.5 * dof * (1 + std::log(x / dof)) - 0.5 * x < -750;
+}
+
 void check_binomial(int trials, double probability) {
   if (trials < 0 || !(probability >= 0 && probability <= 1)) {
     throw Error("binomial distribution",
@@ -73,14 +79,14 @@ double normal_survival(double z) { return 0.5 * std::erfc(z / std::sqrt(2.0)); }
 double chi_squared_cdf(double x, double dof) {
   check_dof("chi-squared", dof);
   check_number("chi-squared", x);
-  if (x <= 0) return 0;
+  if (x <= 0 || is_below_smallest_double(x, dof)) return 0;
   return x == infinity ? 1 : found("chi-squared", [&] { return cdf(ChiSquared(dof), x); });
 }
 
 double chi_squared_survival(double x, double dof) {
   check_dof("chi-squared", dof);
   check_number("chi-squared", x);
-  if (x <= 0) return 1;
+  if (x <= 0 || is_below_smallest_double(x, dof)) return 1;
   if (x == infinity) return 0;
   return found("chi-squared", [&] { return cdf(complement(ChiSquared(dof), x)); });
 }

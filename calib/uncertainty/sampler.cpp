@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/sampler.h"
 
+#include <fmt/format.h>
+
+#include <string>
+
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -12,8 +16,19 @@ namespace vernier {
 
 using namespace internal;
 
+namespace {
+
+[[noreturn]] void throw_overflow(const std::string& place, double psi_c) {
+  throw Error(
+      place,
+      fmt::format("at psi_c = {} its standard deviations exceed the range of numbers", psi_c),
+      "give a smaller psi_c, or correct the covariance");
+}
+
+}  // namespace
+
 RigSampler::RigSampler(const RigEstimate& estimate, const std::string& place)
-    : mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {
+    : place_(place), mean_(estimate.rig), decomposition_(required_covariance(estimate, place)) {
   if (estimate.covariance->names != parameter_names(mean_)) {
     throw Error(place, "its covariance does not match the rig's parameters", "");
   }
@@ -25,11 +40,15 @@ Eigen::VectorXd RigSampler::deviation(double psi_c, std::uint64_t seed, std::uin
                       .source = static_cast<std::uint32_t>(DrawSource::calibration)});
   const Eigen::MatrixXd& factor = decomposition_.factor();
   const Eigen::VectorXd unit = factor * draws.normals(static_cast<int>(factor.cols()));
-  return psi_c * unit;
+  Eigen::VectorXd moved = psi_c * unit;
+  if (!moved.allFinite()) throw_overflow(place_, psi_c);
+  return moved;
 }
 
 Rig RigSampler::sample(double psi_c, std::uint64_t seed, std::uint32_t trial) const {
-  return retract(mean_, deviation(psi_c, seed, trial));
+  Rig rig = retract(mean_, deviation(psi_c, seed, trial));
+  if (!parameters(rig).allFinite()) throw_overflow(place_, psi_c);
+  return rig;
 }
 
 }  // namespace vernier

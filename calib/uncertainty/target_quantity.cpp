@@ -11,6 +11,7 @@
 #include <functional>
 #include <utility>
 
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -148,7 +149,7 @@ TargetQuantity parameter_error(const Rig& rig, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
     throw Error(
-        "\"" + name + "\"", "unknown quantity",
+        in_quotes(name), "unknown quantity",
         fmt::format("supported: depth, projection, rectification, baseline or a parameter: {}",
                     fmt::join(names, " ")));
   }

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/base/unfinished_work.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstddef>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace vernier::internal {
+namespace {
+
+struct UnfinishedPath {
+  std::string path;  // absolute
+  Unfinished kind;
+};
+
+struct Child {
+  pid_t id;
+  bool whole_group;
+};
+
+struct UnfinishedWork {
+  std::recursive_mutex mutex;
+  std::vector<UnfinishedPath> paths;
+  std::vector<Child> children;
+};
+
+UnfinishedWork& work() {
+  static UnfinishedWork* const only = new UnfinishedWork;  // never destroyed: threads may outlive
+  return *only;
+}
+
+std::string absolute_name(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const std::filesystem::path whole = std::filesystem::absolute(path, unknown);
+  return unknown ? path.string() : whole.string();
+}
+
+}  // namespace
+
+void note_unfinished(const std::filesystem::path& path, Unfinished kind) {
+  std::string name = absolute_name(path);
+  const std::lock_guard lock(work().mutex);
+  work().paths.push_back({std::move(name), kind});
+}
+
+void forget_unfinished(const std::filesystem::path& path) noexcept {
+  const std::lock_guard lock(work().mutex);
+  std::vector<UnfinishedPath>& paths = work().paths;
+  const std::string name = absolute_name(path);
+  const auto found = std::find_if(paths.rbegin(), paths.rend(),
+                                  [&](const UnfinishedPath& one) { return one.path == name; });
+  if (found != paths.rend()) paths.erase(std::next(found).base());
+}
+
+void note_child(pid_t child, bool whole_group) {
+  const std::lock_guard lock(work().mutex);
+  work().children.push_back({child, whole_group});
+}
+
+void forget_child(pid_t child) noexcept {
+  const std::lock_guard lock(work().mutex);
+  std::erase_if(work().children, [&](const Child& one) { return one.id == child; });
+}
+
+std::unique_lock<std::recursive_mutex> hold_off_abandoning() {
+  return std::unique_lock(work().mutex);
+}
+
+void abandon_unfinished_work() noexcept {
+  work().mutex.lock();  // for good
+  for (const Child& child : work().children) {
+    ::kill(child.whole_group ? -child.id : child.id, SIGKILL);
+  }
+  std::error_code ignored;
+  const std::vector<UnfinishedPath>& paths = work().paths;
+  for (std::size_t i = paths.size(); i-- > 0;) {  // what was made last first
+    if (paths[i].kind == Unfinished::folder) {
+      std::filesystem::remove_all(paths[i].path, ignored);
+    } else {
+      std::filesystem::remove(paths[i].path, ignored);  // a folder only if it is empty
+    }
+  }
+}
+
+}  // namespace vernier::internal

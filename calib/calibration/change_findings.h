@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/calibration/residual_diagnosis.h"
+
+namespace vernier::internal {
+
+/// The doubt that cameras are not rigid, or not simultaneous: one change during the session if it
+/// explains a quarter of Σ r² and nearly what a change in every frame does; otherwise a change in
+/// every frame if it explains half (calib/calibration/frame_scatter.h). Good real sets reach 0.08
+/// and 0.41, whatever their number of corners, since lens and board are never quite as modelled.
+/// std::nullopt if neither; `state` as there.
+std::optional<ResidualFinding> change_finding(const BoardObservations& observations,
+                                              const BoardState& state);
+
+/// The doubt that the board is bent: a warp (calib/board/board_warp.h), by a score test, explains
+/// half of Σ r². `state` is a minimum with a known warp, without prior or held parameters.
+std::optional<ResidualFinding> bent_board_finding(const BoardObservations& observations,
+                                                  const BoardState& state);
+
+}  // namespace vernier::internal

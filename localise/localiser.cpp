@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/localiser.h"
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "localise/baseline_localiser.h"
 #include "localise/pgh_localiser.h"
@@ -31,7 +32,7 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const LocaliserOptions& options) {
   if (method == "pgh") return std::make_unique<PghLocaliser>(map, options);
   if (method == "pgh_baseline") return std::make_unique<BaselineLocaliser>(map);
-  throw Error("localiser \"" + std::string(method) + "\"", "unknown method",
+  throw Error("localiser " + vernier::internal::in_quotes(method), "unknown method",
               "use pgh or pgh_baseline");
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "stereo/disparity_file.h"
@@ -70,9 +71,9 @@ class SceneReader : private TomlReader {
     scene.name = text(name, "name");
     if (scene.name.empty()) fail(name, "name is empty", "add a name");
     if (!names_.insert(scene.name).second) {
-      fail(name, "duplicate name '" + scene.name + "'", "rename one of the pairs");
+      fail(name, "duplicate name '" + shortened(scene.name) + "'", "rename one of the pairs");
     }
-    const std::string owner = "pair '" + scene.name + "'";
+    const std::string owner = "pair '" + shortened(scene.name) + "'";
     scene.left = file_of(required(pair, "left", owner), "left");
     scene.right = file_of(required(pair, "right", owner), "right");
     scene.truth = file_of(required(pair, "truth", owner), "truth");
@@ -114,13 +115,14 @@ class SceneReader : private TomlReader {
     for (std::size_t i = 0; i < truth_kinds.size(); ++i) {
       if (word == truth_kinds[i]) return static_cast<TruthKind>(i);
     }
-    fail(node, "unknown truth_kind '" + word + "'", "use exact, measured, reduced or labelled");
+    fail(node, "unknown truth_kind '" + shortened(word) + "'",
+         "use exact, measured, reduced or labelled");
   }
 
   std::filesystem::path file_of(const toml::node& node, const char* key) const {
     std::filesystem::path file = folder_ / text(node, key);
     std::error_code unknown;
-    if (!std::filesystem::is_regular_file(file, unknown)) {
+    if (!std::filesystem::exists(file, unknown) || std::filesystem::is_directory(file, unknown)) {
       fail(node, std::string(key) + ": no such file: " + file.string(),
            "give the path relative to the list");
     }

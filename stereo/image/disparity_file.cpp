@@ -15,6 +15,7 @@
 #include "calib/base/atomic_file.h"
 #include "calib/base/byte_order.h"
 #include "calib/base/image_file.h"
+#include "calib/base/image_size.h"
 #include "calib/base/numpy_array.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
@@ -57,6 +58,11 @@ StoredMap parse_pfm(std::string_view bytes, const std::string& place) {
   if (map.width < 1 || map.height < 1 || map.width > max_side || map.height > max_side) {
     throw Error(place, fmt::format("has the size {} x {}", map.width, map.height),
                 "use a map of an image");
+  }
+  const ImageSize size{static_cast<std::uint64_t>(map.width),
+                       static_cast<std::uint64_t>(map.height)};
+  if (const std::string fault = size_fault(size); !fault.empty()) {
+    throw Error(place, fault, "use a map of an image");
   }
   if (!std::isfinite(scale) || scale == 0) {
     throw Error(place, "the PFM scale is 0 or not finite",

@@ -138,13 +138,13 @@ std::vector<std::string> filled(const Command& command,
   return words;
 }
 
-void write_image(const fs::path& file, const GreyLevels& grey) {
+void write_image(const TemporaryFolder& folder, const std::string& name, const GreyLevels& grey) {
   const cv::Mat levels = matrix_of(grey);
   cv::Mat rounded;
   levels.convertTo(rounded, CV_8U);
   std::vector<uchar> bytes;
   cv::imencode(".png", rounded, bytes);
-  write_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  folder.write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 /// Throws Error for a program that failed.
@@ -196,8 +196,8 @@ DisparityMap run(const Command& command,
                  const ExternalMatcherOptions& options) {
   check_matcher_input(pair, range, command.place);
   const TemporaryFolder folder;
-  write_image(folder.path() / "left.png", pair.left);
-  write_image(folder.path() / "right.png", pair.right);
+  write_image(folder, "left.png", pair.left);
+  write_image(folder, "right.png", pair.right);
   check_run(run_program(filled(command, folder.path(), range), options.time_limit_s), command,
             options.time_limit_s);
   DisparityMap map = read_output(folder.path() / command.output, command, range, options.scale);

@@ -80,7 +80,8 @@ struct WorldDescription {
 
 /// Instantiates the templates. Object 0 holds the loose features, object i + 1 instance i. Throws
 /// Error for an instance of an unknown template, a segment shorter than 1 mm, and a surface with
-/// fewer than three points or not planar to 1 mm, naming template and index.
+/// fewer than three points or not planar to 1 mm, naming template and index; and for a world larger
+/// than 10 km or 1,000,000 features of a kind (docs/robustness.md).
 World build_world(const WorldDescription& description);
 
 /// Fraction of the world's segments that belong to templates used at least twice, in [0, 1].
@@ -107,7 +108,8 @@ RoutePoint route_point(const std::vector<RouteLeg>& route, double s_m);
 
 /// Poses at which a map is recorded: every leg is divided evenly into steps of at most `spacing_m`,
 /// including its start but not its end. With `headings` = 0 one per position, facing along the
-/// route; else that many all around. Throws Error for an empty route or spacing <= 0.
+/// route; else that many all around. Throws Error for an empty route, spacing <= 0 or
+/// more than 100,000 views.
 std::vector<localise::Pose2D> map_poses(const std::vector<RouteLeg>& route,
                                         double spacing_m,
                                         int headings = 0);

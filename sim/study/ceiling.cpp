@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/ceiling.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,7 +13,9 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
+#include "sim/study/floor_grid.h"
 #include "sim/visibility.h"
+#include "sim/visibility/box_tree.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -23,7 +26,8 @@ namespace {
 
 constexpr double tolerance_m = 0.02;
 constexpr double needed_share = 0.95;
-constexpr double cell_m = 0.1;
+constexpr double same_place_m = 0.5;        ///< hypotheses that close are one
+constexpr std::size_t most_aliases = 1000;  ///< a ceiling below 0.1 % is none
 
 bool is_upright(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).head<2>().norm() < 1e-6 * std::abs(a.z() - b.z());
@@ -56,40 +60,27 @@ bool mostly(const Edges& edges, Explained explained) {
 
 AliasFinder::AliasFinder(const Visibility& visibility, Rig rig, NoiseFreeViewOptions options)
     : visibility_(visibility), rig_(std::move(rig)), options_(options) {
-  const World& world = visibility.world();
-  const WorldExtent box = extent(world);
-  origin_m_ = box.low_m.head<2>();
-  columns_ = static_cast<int>((box.high_m.x() - origin_m_.x()) / cell_m) + 1;
-  rows_ = static_cast<int>((box.high_m.y() - origin_m_.y()) / cell_m) + 1;
-  cells_.resize(static_cast<std::size_t>(columns_) * rows_);
-  for (const WorldSegment& segment : world.segments) {
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(tolerance_m);
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const WorldSegment& segment : visibility.world().segments) {
+    boxes.emplace_back(segment.a_m.cwiseMin(segment.b_m) - margin,
+                       segment.a_m.cwiseMax(segment.b_m) + margin);
     if (!is_upright(segment.a_m, segment.b_m)) continue;
     const auto [low, high] = std::minmax(segment.a_m.z(), segment.b_m.z());
     const Eigen::Vector2d at = segment.a_m.head<2>();
-    const Eigen::Vector2i cell = ((at - origin_m_) / cell_m).cast<int>();
-    cells_[static_cast<std::size_t>(cell.y()) * columns_ + cell.x()].push_back(
-        static_cast<int>(uprights_.size()));
+    close_.add(at, static_cast<int>(uprights_.size()));
+    wide_.add(at, static_cast<int>(uprights_.size()));
     uprights_.push_back({at, low, high});
   }
+  segments_ = BoxTree(std::move(boxes));
 }
 
 bool AliasFinder::has_upright(const Eigen::Vector2d& at_m, double low_m, double high_m) const {
-  const Eigen::Vector2d cell = (at_m - origin_m_) / cell_m;
-  for (int y = static_cast<int>(std::floor(cell.y() - 0.2));
-       y <= static_cast<int>(std::floor(cell.y() + 0.2)); ++y) {
-    for (int x = static_cast<int>(std::floor(cell.x() - 0.2));
-         x <= static_cast<int>(std::floor(cell.x() + 0.2)); ++x) {
-      if (x < 0 || y < 0 || x >= columns_ || y >= rows_) continue;
-      for (const int i : cells_[static_cast<std::size_t>(y) * columns_ + x]) {
-        const Upright& u = uprights_[i];
-        if (u.low_m < low_m + tolerance_m && u.high_m > high_m - tolerance_m &&
-            (u.at_m - at_m).squaredNorm() < tolerance_m * tolerance_m) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
+  return close_.any_near(at_m, tolerance_m, [&](int i) {
+    const Upright& u = uprights_[i];
+    return u.low_m < low_m + tolerance_m && u.high_m > high_m - tolerance_m &&
+           (u.at_m - at_m).squaredNorm() < tolerance_m * tolerance_m;
+  });
 }
 
 std::vector<AliasFinder::ViewEdge> AliasFinder::view_from(const Pose2D& pose) const {
@@ -128,11 +119,15 @@ std::vector<Pose2D> AliasFinder::hypotheses(const std::vector<ViewEdge>& view) c
   const auto can_be = [](const Upright& world, const Upright& edge) {
     return world.low_m < edge.low_m + tolerance_m && world.high_m > edge.high_m - tolerance_m;
   };
+  constexpr double slack_m = 0.01;
+  std::vector<int> at_distance;
   for (const Upright& a : uprights_) {
     if (!can_be(a, p)) continue;
-    for (const Upright& b : uprights_) {
+    wide_.find_in_ring(a.at_m, farthest - 2 * slack_m, farthest + 2 * slack_m, at_distance);
+    for (const int i : at_distance) {
+      const Upright& b = uprights_[i];
       const Eigen::Vector2d across = b.at_m - a.at_m;
-      if (std::abs(across.norm() - farthest) > 0.01 || !can_be(b, q)) continue;
+      if (std::abs(across.norm() - farthest) > slack_m || !can_be(b, q)) continue;
       const double turn = std::atan2(across.y(), across.x()) - std::atan2(between.y(), between.x());
       const Eigen::Vector3d moved = to_world({0, 0, turn}, {p.at_m.x(), p.at_m.y(), 0});
       poses.push_back({a.at_m.x() - moved.x(), a.at_m.y() - moved.y(), turn});
@@ -150,10 +145,15 @@ bool AliasFinder::on_wire_frame(const std::vector<ViewEdge>& view, const Pose2D&
   if (!mostly(view, upright_fits)) return false;
   const auto fits = [&](const ViewEdge& edge) {
     const Eigen::Vector3d a = to_world(pose, edge.a_m), b = to_world(pose, edge.b_m);
-    const auto& segments = visibility_.world().segments;
-    return std::any_of(segments.begin(), segments.end(), [&](const WorldSegment& segment) {
-      return lies_on(a, segment.a_m, segment.b_m) && lies_on(b, segment.a_m, segment.b_m);
-    });
+    bool found = false;
+    segments_.visit(
+        [&](const Eigen::AlignedBox3d& box) { return box.contains(a) && box.contains(b); },
+        [&](int i) {
+          const WorldSegment& segment = visibility_.world().segments[i];
+          found = lies_on(a, segment.a_m, segment.b_m) && lies_on(b, segment.a_m, segment.b_m);
+          return found;
+        });
+    return found;
   };
   return mostly(view, fits);
 }
@@ -162,9 +162,12 @@ Aliases AliasFinder::aliases(const Pose2D& pose) const {
   Aliases result;
   std::vector<ViewEdge> view = view_from(pose);
   std::vector<Pose2D> found;
+  FloorGrid found_at(same_place_m);
   for (const Pose2D& other : hypotheses(view)) {
-    const auto same = [&](const Pose2D& known) { return distance_m(known, other) < 0.5; };
-    if (distance_m(other, pose) <= 1 || std::any_of(found.begin(), found.end(), same)) continue;
+    if (found.size() == most_aliases) break;
+    const auto same = [&](int i) { return distance_m(found[i], other) < same_place_m; };
+    const Eigen::Vector2d at(other.x_m, other.y_m);
+    if (distance_m(other, pose) <= 1 || found_at.any_near(at, same_place_m, same)) continue;
     if (!on_wire_frame(view, other)) continue;
     const auto in = [](const std::vector<ViewEdge>& edges) {
       return [&edges](const ViewEdge& edge) {
@@ -175,6 +178,7 @@ Aliases AliasFinder::aliases(const Pose2D& pose) const {
     };
     const std::vector<ViewEdge> there = view_from(other);
     if (!mostly(there, in(view)) || !mostly(view, in(there))) continue;
+    found_at.add(at, static_cast<int>(found.size()));
     found.push_back(other);
   }
   result.elsewhere = static_cast<int>(found.size());

@@ -7,13 +7,16 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
+#include "sim/study/floor_grid.h"
 #include "sim/visibility.h"
+#include "sim/visibility/box_tree.h"
 
 namespace vernier::sim::internal {
 
 /// Poses that cannot be distinguished from a given one.
 struct Aliases {
-  int elsewhere = 0;  ///< number of poses more than 1 m away with the same noise-free view
+  /// Number of poses more than 1 m away with the same noise-free view; the search ends at 1000.
+  int elsewhere = 0;
   std::vector<localise::Pose2D> examples;  ///< some of them
   /// Success rate of the best guess among indistinguishable poses.
   double ceiling() const { return 1.0 / (1 + elsewhere); }
@@ -54,9 +57,8 @@ class AliasFinder {
   Rig rig_;
   NoiseFreeViewOptions options_;
   std::vector<Upright> uprights_;
-  Eigen::Vector2d origin_m_;
-  int columns_ = 0, rows_ = 0;
-  std::vector<std::vector<int>> cells_;  // uprights by a grid on the floor
+  FloorGrid close_{0.1}, wide_{1};  // numbers of uprights, for two ranges of distance
+  BoxTree segments_;
 };
 
 }  // namespace vernier::sim::internal

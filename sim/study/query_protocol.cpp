@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
@@ -35,7 +36,7 @@ QueryProtocol query_protocol(std::string_view name_of) {
        {QueryProtocol::near_path, QueryProtocol::path, QueryProtocol::anywhere}) {
     if (name(protocol) == name_of) return protocol;
   }
-  throw Error("protocol \"" + std::string(name_of) + "\"", "unknown protocol",
+  throw Error("protocol " + vernier::internal::in_quotes(name_of), "unknown protocol",
               "use near_path, path or anywhere");
 }
 

@@ -15,6 +15,7 @@
 
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/study/floor_grid.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 
@@ -97,18 +98,22 @@ class WayToRoute {
  public:
   WayToRoute(const Visibility& visibility, double height_m)
       : visibility_(visibility), box_(standing_box(visibility.world())), height_m_(height_m) {
-    const std::vector<RouteLeg>& route = visibility.world().route;
-    const double length = route_length_m(route);
-    for (double s = 0; s < length; s += step_m) {
-      const Pose2D at = route_point(route, s).pose;
-      on_route_.emplace_back(at.x_m, at.y_m, height_m);
+    double passed = 0, next = 0;  // along the route
+    for (const RouteLeg& leg : visibility.world().route) {
+      for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
+        const Eigen::Vector2d &a = leg.points_m[i - 1], &b = leg.points_m[i];
+        const double length = (b - a).norm();
+        for (; next < passed + length; next += step_m) {
+          add_route_point(a + (next - passed) / length * (b - a));
+        }
+        passed += length;
+      }
     }
   }
 
   bool leads_from(const Eigen::Vector2d& start_m) const {
-    if (on_route_.empty() || meets_route(start_m, std::numeric_limits<double>::infinity())) {
-      return true;
-    }
+    const auto meets = [&](const Eigen::Vector2d& q) { return sees(q, start_m); };
+    if (on_route_.empty() || std::any_of(on_route_.begin(), on_route_.end(), meets)) return true;
     std::set<std::pair<int, int>> reached{{0, 0}};
     std::vector<std::pair<int, int>> open{{0, 0}};
     const auto at = [&](const std::pair<int, int>& cell) {
@@ -118,7 +123,7 @@ class WayToRoute {
       const std::pair<int, int> cell = open.back();
       open.pop_back();
       const Eigen::Vector2d here = at(cell);
-      if (meets_route(here, 1.5 * step_m)) return true;
+      if (meets_route(here) || reached.size() > most_cells) return true;
       for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
         const std::pair<int, int> next{cell.first + dx, cell.second + dy};
         if (!in_box(at(next)) || reached.count(next) > 0 || !steps(here, at(next))) continue;
@@ -131,6 +136,8 @@ class WayToRoute {
 
  private:
   static constexpr double step_m = 0.25;
+  /// Of 15,000 m²: a larger space is not the inside of anything.
+  static constexpr std::size_t most_cells = 240'000;
 
   bool in_box(const Eigen::Vector2d& p) const {
     return (p.array() >= box_.low_m.head<2>().array()).all() &&
@@ -144,16 +151,22 @@ class WayToRoute {
     constexpr double beyond = 0.04;
     return sees(from, to + beyond * (to - from));
   }
-  bool meets_route(const Eigen::Vector2d& p, double within_m) const {
-    return std::any_of(on_route_.begin(), on_route_.end(), [&](const Eigen::Vector3d& q) {
-      return (q.head<2>() - p).norm() <= within_m && sees(q.head<2>(), p);
+  bool meets_route(const Eigen::Vector2d& p) const {
+    constexpr double within_m = 1.5 * step_m;
+    return route_grid_.any_near(p, within_m, [&](int i) {
+      return (on_route_[i] - p).norm() <= within_m && sees(on_route_[i], p);
     });
+  }
+  void add_route_point(const Eigen::Vector2d& at_m) {
+    route_grid_.add(at_m, static_cast<int>(on_route_.size()));
+    on_route_.push_back(at_m);
   }
 
   const Visibility& visibility_;
   WorldExtent box_;
   double height_m_;
-  std::vector<Eigen::Vector3d> on_route_;
+  std::vector<Eigen::Vector2d> on_route_;
+  FloorGrid route_grid_{2 * step_m};
 };
 
 }  // namespace

@@ -17,19 +17,21 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <set>
+#include <stop_token>
 #include <utility>
 
-#include "calib/base/text_lines.h"
+#include "calib/base/instruction_set.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/ceiling.h"
+#include "sim/study/stored_results.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
-#include "sim/study/told_rig.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -37,92 +39,6 @@ namespace vernier::sim::internal {
 using namespace vernier::internal;
 
 namespace {
-
-/// Incremented when the meaning of stored results changes.
-constexpr int results_version = 1;
-
-/// Block size that is not part of a cell's key: all stores had it before sizes could differ.
-constexpr int usual_block = 50;
-
-/// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
-/// of another size use other maps per trial and are therefore stored under another key.
-std::string cell_key(const Study& study, const StudyCell& cell) {
-  nlohmann::ordered_json key{{"results", results_version},
-                             {"world", study.world_fingerprint},
-                             {"rig", study.rig_fingerprint}};
-  for (const auto& [name, value] : cell.settings) {
-    if (name != "localiser.knows_endpoint_sigma") key[name] = value;
-  }
-  // Older stores had no such setting and this value; their results remain valid.
-  const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
-  if (const double told = told_endpoint_sigma_px(cell.experiment); told != once_told) {
-    key["localiser.told_endpoint_sigma_px"] = told;
-  }
-  if (study.file.trials_per_block != usual_block) {
-    key["study.trials_per_block"] = study.file.trials_per_block;
-  }
-  return key.dump();
-}
-
-/// Everything that the noise-free views of the map depend on.
-std::string looks_key(const ExperimentSettings& s) {
-  return fmt::format("{} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
-                     s.map_headings);
-}
-
-/// The ceiling is the mean over this many of a cell's queries.
-int ceiling_queries(const Study& study) { return std::min(study.file.trials, 200); }
-
-std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
-  return fmt::format("ceiling {} {} {} {} {} {} {}", study.world_fingerprint, study.rig_fingerprint,
-                     name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed,
-                     ceiling_queries(study));
-}
-
-/// One query's share of a ceiling whose queries are shared among shards.
-std::string query_key(const std::string& ceiling, int query) {
-  return fmt::format("{} query {}", ceiling, query);
-}
-
-using Notes = std::map<std::string, std::string>;
-
-/// The notes of all stores of the folder.
-Notes notes_of(const std::filesystem::path& folder) {
-  Notes notes;
-  for (const auto& file : store_files(folder)) {
-    for (const auto& [key, value] : StudyStore(file).notes()) notes[key] = value;
-  }
-  return notes;
-}
-
-/// A number of the notes, not a number where they have none.
-double noted(const Notes& notes, const std::string& key) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto found = notes.find(key);
-  return found == notes.end() ? nan : vernier::internal::to_real(found->second).value_or(nan);
-}
-
-/// What the notes have of a ceiling's queries, not a number for the others.
-std::vector<double> noted_queries(const Study& study, const Notes& notes, const std::string& key) {
-  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
-  for (std::size_t i = 0; i < of_query.size(); ++i) {
-    of_query[i] = noted(notes, query_key(key, static_cast<int>(i)));
-  }
-  return of_query;
-}
-
-/// The sum is in the order of the queries, whichever was done first.
-double mean(const std::vector<double>& of_query) {
-  double sum = 0;
-  for (const double ceiling : of_query) sum += ceiling;
-  return sum / static_cast<double>(of_query.size());
-}
-
-/// Not a number where the notes lack it or one of its queries.
-double noted_ceiling(const Study& study, const Notes& notes, const std::string& key) {
-  const double whole = noted(notes, key);
-  return std::isnan(whole) ? mean(noted_queries(study, notes, key)) : whole;
-}
 
 struct Job {
   const StudyCell* cell;
@@ -143,20 +59,18 @@ std::vector<Job> all_jobs(const Study& study) {
 }
 
 /// Jobs of the shard that are in no store of the folder yet.
-std::vector<Job> missing_jobs(const Study& study, const StudyRun& run) {
-  std::map<std::pair<std::string, int>, std::size_t> sizes;
-  for (const auto& file : store_files(run.folder)) {
-    for (const StoredBlock& block : StudyStore(file).blocks()) {
-      auto& size = sizes[{block.cell, block.block}];
-      size = std::max(size, block.trials.size());
-    }
-  }
+std::vector<Job> missing_jobs(const Study& study,
+                              const StudyRun& run,
+                              const StoredResults& stored) {
   std::vector<Job> missing;
   const std::vector<Job> jobs = all_jobs(study);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (static_cast<int>(i) % run.shard.count != run.shard.index) continue;
-    const auto found = sizes.find({jobs[i].key, jobs[i].block});
-    if (found == sizes.end() || static_cast<int>(found->second) < jobs[i].count) {
+    if (static_cast<int>(i % static_cast<std::size_t>(run.shard.count)) != run.shard.index) {
+      continue;
+    }
+    const auto found = stored.blocks.find({jobs[i].key, jobs[i].block});
+    if (found == stored.blocks.end() ||
+        static_cast<int>(found->second.trials.size()) < jobs[i].count) {
       missing.push_back(jobs[i]);
     }
   }
@@ -202,17 +116,19 @@ struct MissingCeiling {
   std::vector<int> mine;         ///< the queries to compute
 };
 
-/// Computes this shard's queries of a ceiling; calls `one_done` after each of them.
+/// Computes this shard's queries of a ceiling until asked to stop; calls `one_done` after each.
 void compute_queries(const Study& study,
                      const Visibility& visibility,
                      MissingCeiling& ceiling,
                      tbb::task_arena& arena,
+                     const std::stop_token& stop,
                      const std::function<void()>& one_done) {
   const ExperimentSettings& settings = *ceiling.settings;
   NoiseFreeViewOptions options;
   options.mount = settings.mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
   in_parallel(arena, static_cast<int>(ceiling.mine.size()), [&](int i) {
+    if (stop.stop_requested()) return;
     const int query = ceiling.mine[i];
     ceiling.of_query[query] =
         finder
@@ -223,16 +139,11 @@ void compute_queries(const Study& study,
   });
 }
 
-/// Computes the ceilings that no store of the folder has, and stores each as soon as it is known.
 /// With other shards, this one computes one of every shard.count queries.
-void add_ceilings(const Study& study,
-                  const Visibility& visibility,
-                  const StudyRun& run,
-                  tbb::task_arena& arena,
-                  StudyStore& store) {
-  const Notes notes = notes_of(run.folder);
+std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
+                                                       const StudyRun& run,
+                                                       const StoreNotes& notes) {
   std::map<std::string, MissingCeiling> missing;
-  int total = 0;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = ceiling_key(study, cell.experiment);
     if (missing.count(key) > 0 || !std::isnan(noted_ceiling(study, notes, key))) continue;
@@ -240,10 +151,21 @@ void add_ceilings(const Study& study,
     for (int i = run.shard.index; i < ceiling_queries(study); i += run.shard.count) {
       if (std::isnan(ceiling.of_query[i])) ceiling.mine.push_back(i);
     }
-    total += static_cast<int>(ceiling.mine.size());
     if (!ceiling.mine.empty()) missing.emplace(key, std::move(ceiling));
   }
+  return missing;
+}
+
+/// Computes ceilings and stores each as soon as it is known.
+void add_ceilings(const Study& study,
+                  const Visibility& visibility,
+                  const StudyRun& run,
+                  std::map<std::string, MissingCeiling> missing,
+                  tbb::task_arena& arena,
+                  StudyStore& store) {
   if (missing.empty()) return;
+  int total = 0;
+  for (const auto& [key, ceiling] : missing) total += static_cast<int>(ceiling.mine.size());
   std::mutex mutex;
   int done = 0;
   if (run.ceiling_progress) run.ceiling_progress(0, total);
@@ -253,56 +175,57 @@ void add_ceilings(const Study& study,
     if (run.ceiling_progress) run.ceiling_progress(done, total);
   };
   for (auto& [key, ceiling] : missing) {
-    compute_queries(study, visibility, ceiling, arena, one_done);
-    const double whole = mean(ceiling.of_query);
+    compute_queries(study, visibility, ceiling, arena, run.stop, one_done);
+    const double whole = mean_of_queries(ceiling.of_query);
     if (!std::isnan(whole)) {
-      store.set_metadata(key, fmt::format("{}", whole));
+      store.set_note(key, fmt::format("{}", whole));
       continue;
     }
     for (const int query : ceiling.mine) {
-      store.set_metadata(query_key(key, query), fmt::format("{}", ceiling.of_query[query]));
+      if (std::isnan(ceiling.of_query[query])) continue;  // stopped before it
+      store.set_note(query_key(key, query), fmt::format("{}", ceiling.of_query[query]));
     }
   }
 }
 
-std::string store_name(const Shard& shard) {
-  return shard.count == 1 ? "results.sqlite"
-                          : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count);
+/// Throws Error if the folder's results are of another kind of processor than this one.
+void check_processor(const StoredResults& stored, const std::filesystem::path& folder) {
+  const auto there = stored.notes.find("instruction_set");
+  if (there == stored.notes.end() || there->second == instruction_set()) return;
+  throw Error(folder.string(),
+              fmt::format("written with instruction set {}, this processor has {}: results would "
+                          "not be identical",
+                          shortened(there->second), instruction_set()),
+              "continue in another folder");
 }
 
-}  // namespace
-
-std::string command_key(const std::string& command) { return "command " + command; }
-
-void run_study(const Study& study, const StudyRun& run) {
-  if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
-    throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
-                "not a valid index/count", "use 0 <= index < count");
+/// Throws Error if a cell cannot be run, before anything is written.
+void check_cells(const Study& study, const Visibility& visibility) {
+  for (const StudyCell& cell : study.file.cells) {
+    const LocalisationExperiment tried(visibility, study.rig, nullptr, cell.experiment);
   }
-  std::filesystem::create_directories(run.folder);
-  const Visibility visibility(study.world);
-  const std::vector<Job> jobs = missing_jobs(study, run);
-  StudyStore store(run.folder / store_name(run.shard));
-  if (!run.command.empty() && !jobs.empty())
-    store.set_metadata(command_key(run.command), run.command);
+}
 
-  const RaisedThreadLimit raised(run.threads);
-  tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  add_ceilings(study, visibility, run, arena, store);
-
+/// Runs the blocks and stores each as soon as it is done.
+void run_jobs(const Study& study,
+              const Visibility& visibility,
+              const StudyRun& run,
+              const std::vector<Job>& jobs,
+              tbb::task_arena& arena,
+              StudyStore& store) {
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
   for (const StudyCell& cell : study.file.cells) {
     auto& shared = looks[looks_key(cell.experiment)];
-    if (!shared && !jobs.empty()) {
+    if (!shared && !jobs.empty() && !run.stop.stop_requested()) {
       shared = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, cell.experiment));
     }
   }
-
   std::mutex mutex;
   int done = 0;
   const auto total = static_cast<int>(jobs.size());
   if (run.progress) run.progress(0, total);
   const auto do_job = [&](int i) {
+    if (run.stop.stop_requested()) return;
     const Job& job = jobs[i];
     const LocalisationExperiment experiment(
         visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment);
@@ -317,20 +240,50 @@ void run_study(const Study& study, const StudyRun& run) {
   in_parallel(arena, total, do_job);
 }
 
+}  // namespace
+
+std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard) {
+  return folder / (shard.count == 1
+                       ? "results.sqlite"
+                       : fmt::format("results-{}-of-{}.sqlite", shard.index, shard.count));
+}
+
+void run_study(const Study& study, const StudyRun& run) {
+  if (run.shard.count < 1 || run.shard.index < 0 || run.shard.index >= run.shard.count) {
+    throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
+                "not a valid index/count", "use 0 <= index < count");
+  }
+  StoredResults stored = stored_results(run.folder);
+  if (missing_jobs(study, run, stored).empty() &&
+      missing_ceilings(study, run, stored.notes).empty()) {
+    if (run.progress) run.progress(0, 0);
+    return;
+  }
+  check_processor(stored, run.folder);
+  const Visibility visibility(study.world);
+  check_cells(study, visibility);
+
+  std::filesystem::create_directories(run.folder);
+  const std::filesystem::path file = store_file(run.folder, run.shard);
+  StudyStore store(file);
+  if (run.on_start) run.on_start();
+  stored.add(store.content(), file);  // it may have been written meanwhile
+  const std::vector<Job> jobs = missing_jobs(study, run, stored);
+  if (!run.command.empty() && !jobs.empty()) store.set_note(command_key(run.command), run.command);
+
+  const RaisedThreadLimit raised(run.threads);
+  tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
+  add_ceilings(study, visibility, run, missing_ceilings(study, run, stored.notes), arena, store);
+  run_jobs(study, visibility, run, jobs, arena, store);
+}
+
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
-  std::map<std::pair<std::string, int>, StoredBlock> blocks;
-  Notes notes;
+  const StoredResults stored = stored_results(folder);
+  stored.require_all_read();
+  const auto& [blocks, notes, none] = stored;
   std::set<std::string> commands;
-  for (const auto& file : store_files(folder)) {
-    const StudyStore store(file);
-    for (StoredBlock& block : store.blocks()) {
-      auto& kept = blocks[{block.cell, block.block}];
-      kept = longer_block(std::move(block), std::move(kept), file.string());
-    }
-    for (const auto& [key, value] : store.notes()) {
-      notes[key] = value;
-      if (key == command_key(value)) commands.insert(value);
-    }
+  for (const auto& [key, value] : notes) {
+    if (key == command_key(value)) commands.insert(value);
   }
   StudyResults results;
   results.commands.assign(commands.begin(), commands.end());
@@ -346,6 +299,10 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     const auto found = blocks.find({job.key, job.block});
     if (found == blocks.end() || static_cast<int>(found->second.trials.size()) < job.count) {
       continue;
+    }
+    if (found->second.trials[0].trial != static_cast<std::uint32_t>(job.first)) {
+      throw Error(folder.string(), fmt::format("block {} holds other trials", job.block),
+                  "delete the stores of the folder and run the study again");
     }
     ++results.blocks_done;
     CellResult& cell = results.cells[job.cell - study.file.cells.data()];

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -37,13 +38,19 @@ struct StudyRun {
   std::function<void(int done, int total)> progress;
   /// The same for the queries of the world ceilings, which are computed before the first block.
   std::function<void(int done, int total)> ceiling_progress;
+  /// Called when this process has become the writer of its store, before anything is computed; not
+  /// if nothing is missing.
+  std::function<void()> on_start = {};
+  /// Once it asks to stop, no further block or query is begun; those done are stored.
+  std::stop_token stop = {};
 };
 
-/// Runs the missing blocks of this shard. Blocks run in parallel, each on one thread, as do the
-/// queries of a ceiling, so results do not depend on the number of threads; an interrupted run can
-/// be resumed. Shards share the queries of a ceiling. The caller's own parallel work is not
-/// limited: TBB's limit for the process is raised during the run if more threads are asked for,
-/// never lowered, and a limit that the caller holds stays.
+/// Runs the missing blocks of this shard. Writes its own store only, and nothing if no block and no
+/// ceiling is missing. Throws Error if another process writes the store. Blocks run in parallel,
+/// each on one thread, as do the queries of a ceiling, so results do not depend on the number of
+/// threads; an interrupted run can be resumed. Shards share the queries of a ceiling. The caller's
+/// own parallel work is not limited: TBB's limit for the process is raised during the run if more
+/// threads are asked for, never lowered, and a limit that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
 /// Results of a cell.
@@ -62,10 +69,13 @@ struct StudyResults {
   std::vector<std::string> commands;  ///< that produced them, ascending; none for old results
 };
 
+/// The store that a shard writes.
+std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard);
+
 /// Key of a command in a store's notes.
 std::string command_key(const std::string& command);
 
-/// Reads all stores of the folder. Throws Error if two shards disagree on a block.
+/// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace vernier::sim::internal

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
@@ -28,6 +29,9 @@ using namespace vernier::internal;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
+
+constexpr std::size_t most_cells = 10'000;
+constexpr std::int64_t most_trials = 10'000'000;  ///< of all cells together
 
 std::string text_of(const toml::node& node) {
   if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
@@ -79,6 +83,7 @@ class StudyReader : private TomlReader {
   void read_sources(const toml::table& table, SourceSettings& sources) const;
   void read_map(const toml::table& table, ExperimentSettings& settings) const;
   void read_sweep(const toml::table& root, StudyFile& study) const;
+  void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
 
   SourceSettings sources_;  // initial values of the study's [sources]
@@ -102,8 +107,9 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
   if (const auto* trials = section.get("trials")) {
     const std::int64_t wanted = integer(*trials, "study.trials");
     study.trials = static_cast<int>(wanted);
-    if (wanted < 1 || wanted > 10'000'000) {
-      fail(*trials, fmt::format("study.trials = {} is out of range", wanted), "use 1 to 10000000");
+    if (wanted < 1 || wanted > most_trials) {
+      fail(*trials, fmt::format("study.trials = {} is out of range", wanted),
+           fmt::format("use 1 to {}", most_trials));
     }
   }
   study.trials_per_block = block_size(study.trials);
@@ -159,7 +165,7 @@ void StudyReader::read_sources(const toml::table& table, SourceSettings& sources
   if (const auto* node = table.get("lateral_shift_mode")) {
     const std::string mode = text(*node, "sources.lateral_shift_mode");
     if (mode != "common" && mode != "independent") {
-      fail(*node, fmt::format("lateral_shift_mode is \"{}\"", mode), "use common or independent");
+      fail(*node, "lateral_shift_mode is " + in_quotes(mode), "use common or independent");
     }
     sources.lateral_shift_mode = mode == "common" ? ShiftMode::common : ShiftMode::independent;
   }
@@ -191,7 +197,7 @@ void StudyReader::read_map(const toml::table& table, ExperimentSettings& setting
   if (const auto* node = table.get("rig")) {
     const std::string which = text(*node, "map.rig");
     if (which != "recalibrated" && which != "same") {
-      fail(*node, fmt::format("map.rig is \"{}\"", which), "use recalibrated or same");
+      fail(*node, "map.rig is " + in_quotes(which), "use recalibrated or same");
     }
     settings.map_rig = which == "same" ? MapRig::same : MapRig::recalibrated;
   }
@@ -228,8 +234,7 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
       settings.method = text(*method, "localiser.method");
       const std::vector<std::string> known = localiser_names();
       if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
-        fail(*method, fmt::format("unknown localiser \"{}\"", settings.method),
-             "use pgh or pgh_baseline");
+        fail(*method, "unknown localiser " + in_quotes(settings.method), "use pgh or pgh_baseline");
       }
     }
     if (const auto* knows = localiser->get("knows_endpoint_sigma")) {
@@ -266,15 +271,20 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
         (std::find(sections.begin(), sections.end(), head) == sections.end() ||
          key == "study.trials" || key == "sources.file")) {
       fail(
-          node, "'" + key + "' cannot be swept",
+          node, "'" + shortened(key) + "' cannot be swept",
           "sweep a key of [sources], [camera], [map] or [localiser], study.protocol or study.seed");
     }
     if (key.find('.') == std::string::npos || node.is_table()) {
-      fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", key),
+      fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),
            "write \"sources.calibration\" = [0.1, 1, 10]");
     }
     std::vector<std::string> values;
-    for (const toml::node& value : list(node, "sweep." + key)) {
+    const toml::array& listed = list(node, "sweep." + key);
+    if (listed.size() > most_cells) {
+      fail(node, fmt::format("the sweep of {} has {} values", key, listed.size()),
+           fmt::format("list at most {}", most_cells));
+    }
+    for (const toml::node& value : listed) {
       values.push_back(text_of(value));
       toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
@@ -282,7 +292,8 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
       reader.sources_ = sources_;
       reader.read_experiment(changed);
     }
-    if (values.empty()) fail(node, "the sweep of " + key + " is empty", "list at least one value");
+    if (values.empty())
+      fail(node, "the sweep of " + shortened(key) + " is empty", "list at least one value");
     study.sweep_keys.push_back(key);
     study.sweep_values.push_back(std::move(values));
   }
@@ -306,6 +317,26 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   all["study.protocol"] = name(s.protocol);
   all["study.seed"] = fmt::format("{}", s.seed);
   return all;
+}
+
+/// Of the product of all lists, before anything is made of it.
+void StudyReader::check_sweep_size(const toml::table& root, const StudyFile& study) const {
+  const toml::node* sweep = root.get("sweep");
+  if (!sweep) return;
+  std::size_t cells = 1;
+  for (const auto& values : study.sweep_values) {
+    cells *= values.size();
+    if (cells <= most_cells) continue;
+    fail(*sweep,
+         fmt::format("the sweep has more than {} cells, combinations of its values", most_cells),
+         "sweep fewer values, or in several studies");
+  }
+  const std::int64_t trials = static_cast<std::int64_t>(cells) * study.trials;
+  if (trials <= most_trials) return;
+  fail(*sweep,
+       fmt::format("{} cells of {} trials are {} trials, more than {}", cells, study.trials, trials,
+                   most_trials),
+       "sweep fewer values, or reduce study.trials");
 }
 
 void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
@@ -341,6 +372,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   study.sources = read_sources_file(root, sources);
   read_experiment(root);  // the file's own values first, with their own lines
   read_sweep(root, study);
+  check_sweep_size(root, study);
   add_cells(root, study);
   return study;
 }

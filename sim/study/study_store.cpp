@@ -2,156 +2,132 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/study_store.h"
 
-#include <sqlite3.h>
+#include <sys/stat.h>
 
+#include <sqlite3.h>
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <fstream>
+#include <thread>
 #include <utility>
 
 #include "calib/base/instruction_set.h"
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
-#include "localise/localiser.h"
-#include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/study/store_database.h"
+#include "sim/study/store_lock.h"
+#include "sim/study/store_rows.h"
+#include "sim/study/store_schema.h"
 
 namespace vernier::sim::internal {
 
-using namespace localise;
 using namespace vernier::internal;
 
 namespace {
 
-using Json = nlohmann::json;
+namespace fs = std::filesystem;
 
-constexpr const char* schema_version = "1";
+/// What changes in a file when another process writes it.
+struct FileState {
+  bool exists = false;
+  std::int64_t size = 0, inode = 0, modified_s = 0, modified_ns = 0;
+  bool operator==(const FileState&) const = default;
+};
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+FileState state_of(const fs::path& file) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0) return {};
+  return {true, found.st_size, static_cast<std::int64_t>(found.st_ino), found.st_mtim.tv_sec,
+          found.st_mtim.tv_nsec};
 }
 
-Json pose_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, pose.heading_rad}; }
-Pose2D pose_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+fs::path beside(const fs::path& store, const char* ending) { return store.string() + ending; }
+
+/// Of a file that does not change: neither locks nor a log are looked at.
+constexpr const char* unlocked = "immutable=1";
+
+std::array<FileState, 2> state_of_store(const fs::path& file) {
+  return {state_of(file), state_of(beside(file, "-wal"))};
 }
 
-std::string trials_text(const std::vector<TrialResult>& trials) {
-  Json rows = Json::array();
-  for (const TrialResult& t : trials) {
-    rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
-                    pose_json(t.node), number(t.error_m), number(t.node_error_m),
-                    number(t.heading_error_rad), t.lines, t.score, t.runner_up, t.corners,
-                    t.corner_mismatches, t.cpu_ms, t.wall_ms});
+/// Whether the file's head says that changes go to a log beside it (WAL).
+bool has_write_ahead_head(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    throw Error(file.string(), "cannot be read", "check that it exists, and its permissions");
   }
-  return rows.dump();
+  std::array<char, 20> head{};
+  in.read(head.data(), head.size());
+  return in && head[18] == 2 && head[19] == 2;
 }
 
-std::vector<TrialResult> parse_trials(const std::string& text) {
-  std::vector<TrialResult> trials;
-  for (const Json& row : Json::parse(text)) {
-    TrialResult t;
-    t.trial = row.at(0).get<std::uint32_t>();
-    t.status = static_cast<LocalisationStatus>(row.at(1).get<int>());
-    t.truth = pose_of(row.at(2));
-    t.answer = pose_of(row.at(3));
-    t.node = pose_of(row.at(4));
-    t.error_m = number(row.at(5));
-    t.node_error_m = number(row.at(6));
-    t.heading_error_rad = number(row.at(7));
-    t.lines = row.at(8).get<int>();
-    t.score = row.at(9).get<double>();
-    t.runner_up = row.at(10).get<double>();
-    t.corners = row.at(11).get<int>();
-    t.corner_mismatches = row.at(12).get<int>();
-    t.cpu_ms = row.at(13).get<double>();
-    t.wall_ms = row.at(14).get<double>();
-    trials.push_back(t);
+/// SQLite's options for reading a store that has a log without making or changing a file: a log
+/// that holds changes is read with its index, which is not written; one that holds none, or is not
+/// there, is left out, which is right as long as neither file changes.
+std::string reading_options(const fs::path& file) {
+  const FileState log = state_of(beside(file, "-wal"));
+  if (log.exists && log.size > 0) {
+    if (!state_of(beside(file, "-shm")).exists) {
+      throw Error(file.string(),
+                  "was interrupted, and the file " + file.string() + "-shm is missing",
+                  "run its part of the study again, which completes it");
+    }
+    return "readonly_shm=1";
   }
-  return trials;
+  return has_write_ahead_head(file) ? unlocked : "";
+}
+
+/// Whether a killed writer left what only the next writer can mend: a change to undo, or a log's
+/// index that is not complete, which a reader that may not write it waits for in vain.
+bool needs_a_writer(int code) {
+  return code == SQLITE_READONLY_ROLLBACK || code == SQLITE_READONLY_RECOVERY ||
+         code == SQLITE_READONLY_CANTINIT || code == SQLITE_PROTOCOL;
+}
+
+StoreContent read_once(const fs::path& file, const std::string& options) {
+  const Database database = Database::to_read(file, options);
+  try {
+    database.run("BEGIN");
+    return stored_content(database);
+  } catch (const Error&) {
+    if (needs_a_writer(database.code())) return {{}, {}, true};
+    throw;
+  }
 }
 
 }  // namespace
 
-struct StudyStore::Connection {
-  std::string place;
-  sqlite3* db = nullptr;
+Journal journal_for(const fs::path& file) {
+  return on_local_disk(file) ? Journal::write_ahead : Journal::roll_back;
+}
 
-  ~Connection() { sqlite3_close(db); }
-
-  [[noreturn]] void fail() const {
-    throw Error(place, std::string("study store: ") + sqlite3_errmsg(db),
-                "check that the file is a study store, and the disk");
-  }
-  void run(const char* sql) const {
-    if (sqlite3_exec(db, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
-  }
-
-  /// A prepared statement that is finalised on destruction.
-  class Statement {
-   public:
-    Statement(const Connection& connection, const char* sql) : connection_(connection) {
-      if (sqlite3_prepare_v2(connection.db, sql, -1, &statement_, nullptr) != SQLITE_OK) {
-        connection.fail();
-      }
-    }
-    ~Statement() { sqlite3_finalize(statement_); }
-    Statement(const Statement&) = delete;
-    Statement& operator=(const Statement&) = delete;
-
-    Statement& bind(int index, const std::string& value) {
-      sqlite3_bind_text(statement_, index, value.data(), static_cast<int>(value.size()),
-                        SQLITE_TRANSIENT);
-      return *this;
-    }
-    Statement& bind(int index, int value) {
-      sqlite3_bind_int(statement_, index, value);
-      return *this;
-    }
-    bool step() {
-      const int status = sqlite3_step(statement_);
-      if (status != SQLITE_ROW && status != SQLITE_DONE) connection_.fail();
-      return status == SQLITE_ROW;
-    }
-    std::string text(int column) const {
-      const auto* bytes = sqlite3_column_text(statement_, column);
-      return bytes ? reinterpret_cast<const char*>(bytes) : "";
-    }
-    int integer(int column) const { return sqlite3_column_int(statement_, column); }
-
-   private:
-    const Connection& connection_;
-    sqlite3_stmt* statement_ = nullptr;
-  };
+struct StudyStore::Open {
+  StoreLock lock;  // dropped after the file is closed
+  Database database;
 };
 
-StudyStore::StudyStore(const std::filesystem::path& file)
-    : connection_(std::make_unique<Connection>()) {
-  connection_->place = file.string();
-  if (sqlite3_open(file.c_str(), &connection_->db) != SQLITE_OK) connection_->fail();
-  sqlite3_busy_timeout(connection_->db, 10'000);
-  connection_->run(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"
-      "CREATE TABLE IF NOT EXISTS note (key TEXT PRIMARY KEY, value TEXT);"
-      "CREATE TABLE IF NOT EXISTS block (cell TEXT, block INTEGER, trials INTEGER,"
-      " answered INTEGER, successes INTEGER, results TEXT, PRIMARY KEY (cell, block));");
-  const std::string version = note("schema");
-  if (version.empty()) {
-    set_metadata("schema", schema_version);
-  } else if (version != schema_version) {
-    throw Error(file.string(), "study store version " + version + " is not supported; supported: 1",
-                "use another folder");
-  }
-  const std::string here(instruction_set()), there = note("instruction_set");
-  if (there.empty()) {
-    set_metadata("instruction_set", here);
-  } else if (there != here) {
+StudyStore::StudyStore(const fs::path& file) : StudyStore(file, journal_for(file)) {}
+
+StudyStore::StudyStore(const fs::path& file, Journal journal)
+    : open_(new Open{StoreLock(file), Database::to_write(file)}) {
+  const Database& database = open_->database;
+  const int version = store_version(database);  // before anything is changed
+  const bool log = journal == Journal::write_ahead;
+  database.run(log ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL"
+                   : "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL");
+  if (version < 2) make_store(database);
+  const std::string here(instruction_set());
+  Statement row(database, "SELECT value FROM remark WHERE key = 'instruction_set'");
+  if (!row.step()) {
+    set_note("instruction_set", here);
+  } else if (row.text(0) != here) {
     throw Error(file.string(),
-                "written with instruction set " + there + ", this processor has " + here +
-                    ": results would not be identical",
+                "written with instruction set " + shortened(row.text(0)) + ", this processor has " +
+                    here + ": results would not be identical",
                 "continue in another folder");
   }
 }
@@ -159,55 +135,33 @@ StudyStore::StudyStore(const std::filesystem::path& file)
 StudyStore::~StudyStore() = default;
 StudyStore::StudyStore(StudyStore&&) noexcept = default;
 
-void StudyStore::put(const StoredBlock& block) {
-  int answered = 0, successes = 0;
-  for (const TrialResult& trial : block.trials) {
-    answered += trial.answered();
-    successes += trial.success();
-  }
-  Connection::Statement(*connection_, "INSERT OR REPLACE INTO block VALUES (?, ?, ?, ?, ?, ?)")
-      .bind(1, block.cell)
-      .bind(2, block.block)
-      .bind(3, static_cast<int>(block.trials.size()))
-      .bind(4, answered)
-      .bind(5, successes)
-      .bind(6, trials_text(block.trials))
-      .step();
+void StudyStore::put(const StoredBlock& block) { store_block(open_->database, block); }
+
+void StudyStore::set_note(const std::string& key, const std::string& value) {
+  store_note(open_->database, key, value);
 }
 
-std::vector<StoredBlock> StudyStore::blocks() const {
-  Connection::Statement rows(*connection_,
-                             "SELECT cell, block, results FROM block ORDER BY cell, block");
-  std::vector<StoredBlock> blocks;
-  while (rows.step()) {
+StoreContent StudyStore::content() const { return stored_content(open_->database); }
+
+StoreContent read_store(const fs::path& file) {
+  using namespace std::chrono_literals;
+  constexpr int attempts = 20;
+  for (int attempt = 1;; ++attempt) {
+    const auto before = state_of_store(file);
+    if (before[0].exists && before[0].size == 0) return {};  // its writer was killed at the start
     try {
-      blocks.push_back({rows.text(0), rows.integer(1), parse_trials(rows.text(2))});
-    } catch (const Json::exception&) {
-      throw Error(connection_->place, "block " + rows.text(1) + " is damaged",
-                  "delete the store and run its shard again");
+      const std::string options = reading_options(file);
+      StoreContent content = read_once(file, options);
+      if (options != unlocked || state_of(file) == before[0]) return content;
+      if (attempt == attempts) {
+        throw Error(file.string(), "is being changed by another process",
+                    "run the same command again when that has ended");
+      }
+    } catch (const Error&) {
+      if (attempt == attempts || state_of_store(file) == before) throw;
     }
+    std::this_thread::sleep_for(50ms);
   }
-  return blocks;
-}
-
-void StudyStore::set_metadata(const std::string& key, const std::string& value) {
-  Connection::Statement(*connection_, "INSERT OR REPLACE INTO note VALUES (?, ?)")
-      .bind(1, key)
-      .bind(2, value)
-      .step();
-}
-
-std::string StudyStore::note(const std::string& key) const {
-  Connection::Statement row(*connection_, "SELECT value FROM note WHERE key = ?");
-  row.bind(1, key);
-  return row.step() ? row.text(0) : "";
-}
-
-std::vector<std::pair<std::string, std::string>> StudyStore::notes() const {
-  Connection::Statement rows(*connection_, "SELECT key, value FROM note ORDER BY key");
-  std::vector<std::pair<std::string, std::string>> notes;
-  while (rows.step()) notes.emplace_back(rows.text(0), rows.text(1));
-  return notes;
 }
 
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place) {
@@ -225,11 +179,14 @@ StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place)
   return a.trials.size() >= b.trials.size() ? std::move(a) : std::move(b);
 }
 
-std::vector<std::filesystem::path> store_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  if (std::filesystem::is_directory(folder)) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (entry.path().extension() == ".sqlite") files.push_back(entry.path());
+std::vector<fs::path> store_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      std::error_code unknown;
+      if (entry.path().extension() == ".sqlite" && entry.is_regular_file(unknown)) {
+        files.push_back(entry.path());
+      }
     }
   }
   std::sort(files.begin(), files.end());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,29 +20,55 @@ struct StoredBlock {
   std::vector<TrialResult> trials;
 };
 
-/// Completed blocks in an SQLite file, one committed row per block. A killed process loses only the
-/// block in progress. One writer per file.
+/// Texts by key: the processor's instruction set, commands, ceilings.
+using StoreNotes = std::map<std::string, std::string>;
+
+/// All that a store holds.
+struct StoreContent {
+  std::vector<StoredBlock> blocks;  ///< ascending by cell and block
+  StoreNotes notes;
+  /// It cannot be read before its next run, which undoes a change that was cut short; only on disks
+  /// where changes are kept in a journal (DELETE).
+  bool interrupted = false;
+};
+
+/// How SQLite keeps changes that are not complete.
+enum class Journal {
+  write_ahead,  ///< WAL: readers and the writer never wait; needs a local disk
+  roll_back,    ///< DELETE: safe on network disks too
+};
+
+/// WAL on local disks, DELETE on others.
+Journal journal_for(const std::filesystem::path& file);
+
+/// Completed blocks in an SQLite file, open for writing by its only writer: one committed row per
+/// block, with a checksum. A killed process loses only the block in progress.
 class StudyStore {
  public:
-  /// Opens or creates the file. Throws Error if it is not a store of this version, or was written
-  /// on a processor with another instruction set (results would not be comparable to the bit).
+  /// Opens or creates the file. Throws Error if another process writes it, if it is not a store or
+  /// damaged, or was written on a processor with another instruction set (results would not be
+  /// comparable to the bit). A store of version 1, which has no checksums, becomes one of
+  /// version 2.
   explicit StudyStore(const std::filesystem::path& file);
+  StudyStore(const std::filesystem::path& file, Journal journal);
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
 
   /// Adds or replaces a block; committed on return.
   void put(const StoredBlock& block);
-  std::vector<StoredBlock> blocks() const;
-
-  /// Text by key (the study's settings, the ceiling).
-  void set_metadata(const std::string& key, const std::string& value);
-  std::string note(const std::string& key) const;  ///< empty if there is none
-  std::vector<std::pair<std::string, std::string>> notes() const;
+  void set_note(const std::string& key, const std::string& value);
+  /// Reads and checks everything. Throws Error if anything is damaged.
+  StoreContent content() const;
 
  private:
-  struct Connection;
-  std::unique_ptr<Connection> connection_;
+  struct Open;
+  std::unique_ptr<Open> open_;
 };
+
+/// Reads and checks a store of version 1 or 2, also while another process writes it. Needs no
+/// permission to write, changes nothing and leaves no file behind. Throws Error as above. Not for
+/// a store that this process is writing: POSIX locks would be lost; use content().
+StoreContent read_store(const std::filesystem::path& file);
 
 /// The longer of two versions of a block. Throws Error(`place`) if their common trials differ in
 /// more than the timings.

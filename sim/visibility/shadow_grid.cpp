@@ -75,12 +75,13 @@ ShadowGrid::TileRange ShadowGrid::tiles_of(const ImageBox& box) const {
 }
 
 void ShadowGrid::build(const ConvexSurfaces& surfaces,
+                       const std::vector<int>& near,
                        const Pose& T_camera_world,
                        const ViewFrustum& frustum,
                        double gap_m) {
   gap_m_ = gap_m;
   set_raster(frustum.outer());
-  collect(surfaces, T_camera_world, frustum);
+  collect(surfaces, near, T_camera_world, frustum);
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& u, const Candidate& v) {
     return u.inverse_nearest != v.inverse_nearest ? u.inverse_nearest > v.inverse_nearest
                                                   : u.index < v.index;
@@ -99,12 +100,13 @@ void ShadowGrid::build(const ConvexSurfaces& surfaces,
 }
 
 void ShadowGrid::collect(const ConvexSurfaces& surfaces,
+                         const std::vector<int>& near,
                          const Pose& T,
                          const ViewFrustum& frustum) {
   candidates_.clear();
   vertices_.clear();
   const auto sides = pyramid(frustum.outer());
-  for (int i = 0; i < static_cast<int>(surfaces.pieces.size()); ++i) {
+  for (const int i : near) {
     const ConvexSurface& piece = surfaces.pieces[i];
     const Eigen::Vector3d centre = T * piece.centre_m;
     const double r = piece.radius_m + box_slack;

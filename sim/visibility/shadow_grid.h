@@ -24,7 +24,9 @@ namespace vernier::sim::internal {
 /// for every view to reuse its memory.
 class ShadowGrid {
  public:
+  /// `near`: indices of the pieces that can be in the viewing volume, ascending.
   void build(const ConvexSurfaces& surfaces,
+             const std::vector<int>& near,
              const Pose& T_camera_world,
              const ViewFrustum& frustum,
              double gap_m);
@@ -64,7 +66,10 @@ class ShadowGrid {
   };
 
   void set_raster(const ImageBox& outer);
-  void collect(const ConvexSurfaces& surfaces, const Pose& T, const ViewFrustum& frustum);
+  void collect(const ConvexSurfaces& surfaces,
+               const std::vector<int>& near,
+               const Pose& T,
+               const ViewFrustum& frustum);
   void append_candidate(const ConvexSurface& piece,
                         int index,
                         std::span<const Eigen::Vector3d> vertices,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "sim/visibility/shadow.h"
 
 namespace vernier::sim::internal {
@@ -211,6 +213,22 @@ void ViewFrustum::bound_border() {
     const double shrink = std::min(1.0, std::sqrt(outer_radius2_ / corner2));
     inner_ = {shrink * inner_.x0, shrink * inner_.y0, shrink * inner_.x1, shrink * inner_.y1};
   }
+}
+
+Eigen::AlignedBox3d ViewFrustum::box(const Pose& T_camera_world) const {
+  const Pose T_world_camera = T_camera_world.inverse();
+  Eigen::AlignedBox3d box(T_world_camera.t);
+  for (const double x : {outer_.x0, outer_.x1}) {
+    for (const double y : {outer_.y0, outer_.y1}) {
+      box.extend(T_world_camera * (far_m_ * Eigen::Vector3d(x, y, 1)));
+    }
+  }
+  if (!(box.max() - box.min()).allFinite()) {  // far_m is infinite
+    const Eigen::Vector3d all = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    return {-all, all};
+  }
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-3);
+  return {box.min() - margin, box.max() + margin};
 }
 
 bool ViewFrustum::clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stretch& s) const {

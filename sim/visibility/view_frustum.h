@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/pose.h"
 #include "sim/visibility/shadow.h"
 
 namespace vernier::sim::internal {
@@ -45,6 +46,9 @@ class ViewFrustum {
 
   /// Whether the point projects into the image, between near and far.
   bool contains(const Eigen::Vector3d& point) const;
+
+  /// Box (world frame) around the viewing volume and the eye, wider by 1 mm.
+  Eigen::AlignedBox3d box(const Pose& T_camera_world) const;
 
   const ImageBox& outer() const { return outer_; }
   double near_m() const { return near_m_; }

@@ -4,10 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
+#include "sim/visibility/box_tree.h"
 #include "sim/visibility/convex_pieces.h"
 #include "sim/visibility/shadow.h"
 #include "sim/visibility/shadow_grid.h"
@@ -17,6 +20,7 @@
 namespace vernier::sim {
 
 using namespace internal;
+using Eigen::AlignedBox3d;
 
 namespace {
 
@@ -52,18 +56,21 @@ struct Scratch {
   ShadowGrid grid;
   std::vector<OccludedInterval> hidden;
   std::vector<Stretch> unhidden, inside, seen;
+  std::vector<int> near_pieces, near_features;
   std::vector<ShadowSide> sides;
 };
 thread_local Scratch scratch;
 
-/// Visibility of a point x from an eye, with respect to all surfaces.
+/// Visibility of a point x from an eye, with respect to the surfaces `near` the ray.
 PointInShadow classify(const ConvexSurfaces& surfaces,
+                       const std::vector<int>& near,
                        const Eigen::Vector3d& eye,
                        const Eigen::Vector3d& x,
                        double gap,
                        std::vector<Eigen::Vector3d>* touched = nullptr) {
   PointInShadow result = PointInShadow::outside;
-  for (const ConvexSurface& piece : surfaces.pieces) {
+  for (const int i : near) {
+    const ConvexSurface& piece = surfaces.pieces[i];
     double distance = piece.distance_m - piece.normal.dot(eye);
     double beyond = piece.normal.dot(x) - distance;
     const bool flip = distance < 0;
@@ -76,9 +83,9 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
     if ((piece.centre_m - eye).cross(x).squaredNorm() > reach * reach * x.squaredNorm()) continue;
     scratch.sides.clear();
     const Eigen::Vector3d* p = surfaces.vertices_m.data() + piece.first_vertex;
-    for (int i = 0; i < piece.vertex_count; ++i) {
-      const Eigen::Vector3d from = p[i] - eye;
-      const Eigen::Vector3d to = p[i + 1 < piece.vertex_count ? i + 1 : 0] - eye;
+    for (int k = 0; k < piece.vertex_count; ++k) {
+      const Eigen::Vector3d from = p[k] - eye;
+      const Eigen::Vector3d to = p[k + 1 < piece.vertex_count ? k + 1 : 0] - eye;
       scratch.sides.push_back(flip ? shadow_side(to, from) : shadow_side(from, to));
     }
     const Shadow shadow{flip ? -piece.normal : piece.normal, distance, scratch.sides};
@@ -89,14 +96,61 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
   return result;
 }
 
+BoxTree tree_of(const ConvexSurfaces& surfaces) {
+  std::vector<AlignedBox3d> boxes(surfaces.pieces.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const ConvexSurface& piece = surfaces.pieces[i];
+    for (int k = 0; k < piece.vertex_count; ++k) {
+      boxes[i].extend(surfaces.vertices_m[piece.first_vertex + k]);
+    }
+  }
+  return BoxTree(std::move(boxes));
+}
+
+BoxTree tree_of(const std::vector<WorldSegment>& segments) {
+  std::vector<AlignedBox3d> boxes(segments.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    boxes[i].extend(segments[i].a_m);
+    boxes[i].extend(segments[i].b_m);
+  }
+  return BoxTree(std::move(boxes));
+}
+
+BoxTree tree_of(const std::vector<WorldCorner>& corners) {
+  std::vector<AlignedBox3d> boxes;
+  boxes.reserve(corners.size());
+  for (const WorldCorner& corner : corners) boxes.emplace_back(corner.position_m);
+  return BoxTree(std::move(boxes));
+}
+
 }  // namespace
 
 struct Visibility::Index {
+  explicit Index(const World& whole)
+      : world(whole),
+        surfaces(convex_surfaces(whole)),
+        pieces(tree_of(surfaces)),
+        segments(tree_of(whole.segments)),
+        corners(tree_of(whole.corners)) {}
+
+  /// Prepares the shadows of a view, and the features of a tree that can be in it.
+  void prepare(const ViewFrustum& frustum,
+               const Pose& T,
+               const BoxTree& features,
+               double gap) const {
+    const AlignedBox3d box = frustum.box(T);
+    const auto meets = [&](const AlignedBox3d& other) { return box.intersects(other); };
+    pieces.find(meets, scratch.near_pieces);
+    features.find(meets, scratch.near_features);
+    scratch.grid.build(surfaces, scratch.near_pieces, T, frustum, gap);
+  }
+
   const World& world;
   ConvexSurfaces surfaces;
+  BoxTree pieces, segments, corners;
 };
 
-Visibility::Visibility(const World& world) : index_(new Index{world, convex_surfaces(world)}) {}
+Visibility::Visibility(const World& world) : index_(new Index(world)) {}
 Visibility::~Visibility() = default;
 Visibility::Visibility(Visibility&&) noexcept = default;
 
@@ -108,10 +162,10 @@ std::vector<VisibleInterval> Visibility::visible_intervals(const Camera& camera,
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
   Scratch& s = scratch;
-  s.grid.build(index_->surfaces, T_camera_world, frustum, gap_m(options));
+  index_->prepare(frustum, T_camera_world, index_->segments, gap_m(options));
   std::vector<VisibleInterval> runs;
   const std::vector<WorldSegment>& segments = index_->world.segments;
-  for (int i = 0; i < static_cast<int>(segments.size()); ++i) {
+  for (const int i : s.near_features) {
     const Eigen::Vector3d a = T_camera_world * segments[i].a_m;
     const Eigen::Vector3d b = T_camera_world * segments[i].b_m;
     Stretch open;
@@ -134,10 +188,10 @@ std::vector<int> Visibility::visible_corners(const Camera& camera,
                                              const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  scratch.grid.build(index_->surfaces, T_camera_world, frustum, gap_m(options));
+  index_->prepare(frustum, T_camera_world, index_->corners, gap_m(options));
   std::vector<int> visible;
   const std::vector<WorldCorner>& corners = index_->world.corners;
-  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
+  for (const int i : scratch.near_features) {
     const Eigen::Vector3d x = T_camera_world * corners[i].position_m;
     if (frustum.contains(x) && !scratch.grid.hides(x)) visible.push_back(i);
   }
@@ -150,11 +204,18 @@ bool Visibility::sees(const Eigen::Vector3d& eye,
   const Eigen::Vector3d x = point - eye;
   const double gap = gap_m(options);
   std::vector<Eigen::Vector3d> touched;
-  const PointInShadow where = classify(index_->surfaces, eye, x, gap, &touched);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-6);  // larger than any tolerance
+  index_->pieces.find(
+      [&](const AlignedBox3d& box) {
+        return meets_box({box.min() - margin, box.max() + margin}, eye, point);
+      },
+      scratch.near_pieces);
+  const std::vector<int>& near = scratch.near_pieces;
+  const PointInShadow where = classify(index_->surfaces, near, eye, x, gap, &touched);
   if (where != PointInShadow::on_border) return where == PointInShadow::outside;
   const auto around = points_around(x, touched);
   return std::any_of(around.begin(), around.end(), [&](const Eigen::Vector3d& y) {
-    return classify(index_->surfaces, eye, y, gap) == PointInShadow::outside;
+    return classify(index_->surfaces, near, eye, y, gap) == PointInShadow::outside;
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world.h"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,15 +9,34 @@
 
 #include "calib/error.h"
 #include "localise/place.h"
+#include "sim/world.h"
+#include "sim/world/world_limits.h"
 
 namespace vernier::sim {
 
 using namespace localise;
+using namespace internal;
 
 namespace {
 
 double heading_of(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
+}
+
+/// Of one piece of a leg. As a double, since it can be larger than any integer.
+double step_count(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double spacing_m) {
+  const double steps = std::ceil((to - from).norm() / spacing_m - 1e-9);
+  return steps < 1 ? 1 : steps;  // not a number remains it
+}
+
+double view_count(const std::vector<RouteLeg>& route, double spacing_m, int headings) {
+  double steps = 0;
+  for (const RouteLeg& leg : route) {
+    for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
+      steps += step_count(leg.points_m[i - 1], leg.points_m[i], spacing_m);
+    }
+  }
+  return steps * std::max(1, headings);
 }
 
 }  // namespace
@@ -59,11 +78,20 @@ std::vector<Pose2D> map_poses(const std::vector<RouteLeg>& route, double spacing
   if (!(spacing_m > 0) || headings < 0) {
     throw Error("map", "spacing is not above 0 or headings is negative", "use positive values");
   }
+  const double views = view_count(route, spacing_m, headings);
+  if (!(views <= static_cast<double>(most_map_views))) {
+    throw Error("map",
+                fmt::format("its route of {:g} m gives {:g} views at a spacing of {:g} m, more "
+                            "than {}",
+                            route_length_m(route), views, spacing_m, most_map_views),
+                "use a larger spacing, fewer headings or a shorter route");
+  }
   std::vector<Pose2D> places;
+  places.reserve(static_cast<std::size_t>(views));
   for (const RouteLeg& leg : route) {
     for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
       const Eigen::Vector2d &a = leg.points_m[i - 1], &b = leg.points_m[i];
-      const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing_m - 1e-9)));
+      const int steps = static_cast<int>(step_count(a, b, spacing_m));
       for (int k = 0; k < steps; ++k) {
         const Eigen::Vector2d at = a + (b - a) * k / steps;
         if (headings == 0) places.push_back({at.x(), at.y(), heading_of(a, b)});

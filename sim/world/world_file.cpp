@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world_file.h"
 
-#include <algorithm>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -11,7 +10,9 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
+#include "calib/error.h"
 #include "sim/world.h"
 #include "sim/world/world_check.h"
 
@@ -70,6 +71,8 @@ void WorldReader::read_corner(const toml::node& node,
                               FeatureSet& into) const {
   const std::string what = owner + " corner " + std::to_string(into.corners_m.size());
   into.corners_m.push_back(numbers<3>(node, what));
+  const auto fault = point_error(into.corners_m.back());
+  if (fault) fail(node, what + " " + fault->fault, fault->remedy);
 }
 
 void WorldReader::read_features(const toml::table& table,
@@ -112,7 +115,7 @@ WorldTemplate WorldReader::read_template(const toml::table& table, const std::st
   const toml::node& name = required(table, "name", what);
   result.name = text(name, what + " name");
   if (result.name.empty()) fail(name, what + " has an empty name", "add a name");
-  read_features(table, "template '" + result.name + "'", result.features);
+  read_features(table, "template '" + shortened(result.name) + "'", result.features);
   return result;
 }
 
@@ -125,7 +128,8 @@ void WorldReader::read_templates(const toml::table& root, WorldDescription& worl
     const auto [first, is_new] = lines.emplace(name, entry->source().begin.line);
     if (!is_new) {
       fail(*entry,
-           "template '" + name + "' is already defined in line " + std::to_string(first->second),
+           "template '" + shortened(name) + "' is already defined in line " +
+               std::to_string(first->second),
            "rename one of the two");
     }
   }
@@ -144,16 +148,24 @@ WorldInstance WorldReader::read_instance(const toml::table& table, const std::st
 
 void WorldReader::read_instances(const toml::table& root, WorldDescription& world) const {
   std::vector<std::string_view> names;
-  for (const auto& entry : world.templates) names.push_back(entry.name);
-  std::sort(names.begin(), names.end());
+  std::map<std::string_view, double> reaches_m;
+  for (const auto& entry : world.templates) {
+    names.push_back(entry.name);
+    reaches_m[entry.name] = reach_m(entry.features);
+  }
   for (const auto* entry : tables(root, "instance")) {
     const std::string what = "instance " + std::to_string(world.instances.size());
     world.instances.push_back(read_instance(*entry, what));
     const std::string& name = world.instances.back().template_name;
-    if (std::binary_search(names.begin(), names.end(), name)) continue;
-    fail(*entry->get("template"), what + " refers to the unknown template '" + name + "'",
+    if (const auto found = reaches_m.find(name); found != reaches_m.end()) {
+      const auto fault = instance_error(world.instances.back(), found->second);
+      if (fault) fail(*entry, what + " " + fault->fault, fault->remedy);
+      continue;
+    }
+    fail(*entry->get("template"),
+         what + " refers to the unknown template '" + shortened(name) + "'",
          names.empty() ? "define it in a [[template]]"
-                       : "did you mean '" + nearest_word(name, names) + "'?");
+                       : "did you mean '" + shortened(nearest_word(name, names)) + "'?");
   }
 }
 
@@ -200,6 +212,7 @@ WorldDescription WorldReader::read(const toml::table& root) {
   for (const auto* entry : tables(root, "route")) {
     world.route.push_back(read_route(*entry, "route " + std::to_string(world.route.size())));
   }
+  if (const auto fault = size_error(world)) throw Error(place(), fault->fault, fault->remedy);
   return world;
 }
 

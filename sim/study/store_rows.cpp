@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/store_rows.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "calib/base/fingerprint.h"
+#include "calib/error.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+
+namespace vernier::sim::internal {
+
+using namespace localise;
+using namespace vernier::internal;
+
+namespace {
+
+using TrialJson = nlohmann::json;
+
+constexpr std::size_t fields_of_a_trial = 15;
+
+TrialJson number_or_null(double value) {
+  return std::isfinite(value) ? TrialJson(value) : TrialJson(nullptr);
+}
+
+TrialJson pose_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, pose.heading_rad}; }
+
+/// Reads the fields of one trial, in order, each in its range.
+class TrialRow {
+ public:
+  TrialRow(const TrialJson& row, const std::string& place) : row_(row), place_(place) {
+    if (!row.is_array() || row.size() != fields_of_a_trial) fail("a trial is no list of 15 fields");
+  }
+
+  std::int64_t whole(std::int64_t low, std::int64_t high) {
+    const TrialJson& field = next();
+    if (!field.is_number_integer()) fail("a field is no whole number");
+    if (field.is_number_unsigned() && field.get<std::uint64_t>() > INT64_MAX) fail(beyond);
+    const auto value = field.get<std::int64_t>();
+    if (value < low || value > high) fail(beyond);
+    return value;
+  }
+  int count() { return static_cast<int>(whole(0, std::numeric_limits<int>::max())); }
+  double real() { return real(next()); }
+  double time_ms() {
+    const double value = real();
+    if (value < 0) fail(beyond);
+    return value;
+  }
+  /// Null, read as not a number, unless `needed`.
+  double error(bool needed) {
+    const TrialJson& field = next();
+    if (field.is_null() && !needed) return std::numeric_limits<double>::quiet_NaN();
+    return real(field);
+  }
+  Pose2D pose() {
+    const TrialJson& field = next();
+    if (!field.is_array() || field.size() != 3) fail("a pose is no list of 3 numbers");
+    return {real(field[0]), real(field[1]), real(field[2])};
+  }
+
+ private:
+  static constexpr const char* beyond = "a field is out of range";
+
+  const TrialJson& next() { return row_[at_++]; }
+  double real(const TrialJson& field) const {
+    const double value =
+        field.is_number() ? field.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(value)) fail("a field is no number");
+    return value;
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(place_, "is damaged: " + why, "");
+  }
+
+  const TrialJson& row_;
+  const std::string& place_;
+  std::size_t at_ = 0;
+};
+
+TrialResult trial_of(const TrialJson& json, const std::string& place) {
+  TrialRow row(json, place);
+  TrialResult t;
+  t.trial = static_cast<std::uint32_t>(row.whole(0, std::numeric_limits<std::uint32_t>::max()));
+  t.status = static_cast<LocalisationStatus>(
+      row.whole(0, static_cast<std::int64_t>(LocalisationStatus::no_match)));
+  t.truth = row.pose();
+  t.answer = row.pose();
+  t.node = row.pose();
+  t.error_m = row.error(t.answered());
+  t.node_error_m = row.error(t.answered());
+  t.heading_error_rad = row.error(t.answered());
+  t.lines = row.count();
+  t.score = row.real();
+  t.runner_up = row.real();
+  t.corners = row.count();
+  t.corner_mismatches = row.count();
+  t.cpu_ms = row.time_ms();
+  t.wall_ms = row.time_ms();
+  return t;
+}
+
+}  // namespace
+
+std::string trials_text(const std::vector<TrialResult>& trials) {
+  TrialJson rows = TrialJson::array();
+  for (const TrialResult& t : trials) {
+    rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
+                    pose_json(t.node), number_or_null(t.error_m), number_or_null(t.node_error_m),
+                    number_or_null(t.heading_error_rad), t.lines, t.score, t.runner_up, t.corners,
+                    t.corner_mismatches, t.cpu_ms, t.wall_ms});
+  }
+  return rows.dump();
+}
+
+std::vector<TrialResult> parse_trials(const std::string& text, const std::string& place) {
+  TrialJson rows;
+  try {
+    rows = TrialJson::parse(text);
+  } catch (const TrialJson::exception&) {
+    throw Error(place, "is damaged: it is no JSON", "");
+  }
+  if (!rows.is_array() || rows.empty()) throw Error(place, "is damaged: it has no trials", "");
+  std::vector<TrialResult> trials;
+  trials.reserve(rows.size());
+  for (const TrialJson& row : rows) {
+    trials.push_back(trial_of(row, place));
+    if (trials.back().trial != trials.front().trial + (trials.size() - 1)) {
+      throw Error(place, "is damaged: its trials do not follow one another", "");
+    }
+  }
+  return trials;
+}
+
+std::string row_checksum(const std::vector<std::string>& fields) {
+  std::string all;
+  for (const std::string& field : fields) all += std::to_string(field.size()) + ":" + field;
+  return fingerprint(all);
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/study_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/base/text_lines.h"
+#include "sim/experiment.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
+#include "sim/study/told_rig.h"
+
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
+namespace {
+
+/// Incremented when the meaning of stored results changes.
+constexpr int results_version = 1;
+
+/// Block size that is not part of a cell's key: all stores had it before sizes could differ.
+constexpr int usual_block = 50;
+
+/// A ceiling of the notes, not a number where they have none.
+double noted(const StoreNotes& notes, const std::string& key) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto found = notes.find(key);
+  if (found == notes.end()) return nan;
+  const double value = to_real(found->second).value_or(nan);
+  return value > 0 && value <= 1 ? value : nan;
+}
+
+}  // namespace
+
+std::string cell_key(const Study& study, const StudyCell& cell) {
+  nlohmann::ordered_json key{{"results", results_version},
+                             {"world", study.world_fingerprint},
+                             {"rig", study.rig_fingerprint}};
+  for (const auto& [name, value] : cell.settings) {
+    if (name != "localiser.knows_endpoint_sigma") key[name] = value;
+  }
+  // Older stores had no such setting and this value; their results remain valid.
+  const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
+  if (const double told = told_endpoint_sigma_px(cell.experiment); told != once_told) {
+    key["localiser.told_endpoint_sigma_px"] = told;
+  }
+  if (study.file.trials_per_block != usual_block) {
+    key["study.trials_per_block"] = study.file.trials_per_block;
+  }
+  return key.dump();
+}
+
+std::string looks_key(const ExperimentSettings& s) {
+  return fmt::format("{} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
+                     s.map_headings);
+}
+
+int ceiling_queries(const Study& study) { return std::min(study.file.trials, 200); }
+
+std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
+  return fmt::format("ceiling {} {} {} {} {} {} {}", study.world_fingerprint, study.rig_fingerprint,
+                     name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed,
+                     ceiling_queries(study));
+}
+
+std::string query_key(const std::string& ceiling, int query) {
+  return fmt::format("{} query {}", ceiling, query);
+}
+
+std::vector<double> noted_queries(const Study& study,
+                                  const StoreNotes& notes,
+                                  const std::string& key) {
+  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
+  for (std::size_t i = 0; i < of_query.size(); ++i) {
+    of_query[i] = noted(notes, query_key(key, static_cast<int>(i)));
+  }
+  return of_query;
+}
+
+double mean_of_queries(const std::vector<double>& of_query) {
+  double sum = 0;
+  for (const double ceiling : of_query) sum += ceiling;
+  return sum / static_cast<double>(of_query.size());
+}
+
+double noted_ceiling(const Study& study, const StoreNotes& notes, const std::string& key) {
+  const double whole = noted(notes, key);
+  return std::isnan(whole) ? mean_of_queries(noted_queries(study, notes, key)) : whole;
+}
+
+std::string command_key(const std::string& command) { return "command " + command; }
+
+}  // namespace vernier::sim::internal

@@ -4,14 +4,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
+#include <opencv2/core/utils/logger.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "cli/program/ending_signals.h"
+#include "cli/program/memory_end.h"
+#include "cli/program/option_checks.h"
 #include "cli/program/session.h"
+#include "cli/program/streams.h"
 #include "cli/verbs.h"
 
 namespace {
@@ -21,7 +28,7 @@ namespace {
 std::string not_expected(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(true);
   if (words.empty()) return "unexpected argument";
-  std::string text = "unexpected argument \"" + words.front() + "\"";
+  std::string text = "unexpected argument " + vernier::internal::in_quotes(words.front());
   if (words.size() == 1) return text;
   text += fmt::format(" and {} more", words.size() - 1);
   const bool images = std::all_of(words.begin(), words.end(), [](const std::string& word) {
@@ -30,11 +37,46 @@ std::string not_expected(const CLI::App& app) {
   return images ? text + "; quote the pattern, for example 'left*.png'" : text;
 }
 
+/// Parses the command line and does what it says.
+void perform(CLI::App& app, vernier::cli::Session& session, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    vernier::cli::print_result(text.str());
+    return;
+  }
+  if (!session.action) throw CLI::ParseError("no verb given", CLI::ExitCodes::RequiredError);
+  session.action();
+}
+
+/// Ceres' and OpenCV's messages repeat our results and errors.
+void silence_libraries() {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  std::cerr.rdbuf(nullptr);  // nothing of ours writes to it
+}
+
+int bad_input(const std::string& line) {
+  vernier::cli::say(vernier::internal::printable("vernier: " + line) + "\n");
+  return static_cast<int>(vernier::cli::Exit::bad_input);
+}
+
+std::string line_of(const std::filesystem::filesystem_error& error) {
+  const std::string file = (error.path1().empty() ? error.path2() : error.path1()).string();
+  return (file.empty() ? std::string(error.what()) : file + ": " + error.code().message()) +
+         "; check the path and its permissions";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace vernier;
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres' messages repeat our results and errors
+  cli::open_missing_streams();
+  cli::watch_ending_signals();
+  cli::watch_memory();
+  silence_libraries();
   cli::Session session;
   session.command = cli::command_line(argc, argv);
   CLI::App app{
@@ -68,30 +110,20 @@ int main(int argc, char** argv) {
   cli::add_simulate(app, session);
   cli::add_study(app, session);
   cli::add_report(app, session);
+  cli::check_numbers(app);
   try {
-    app.parse(argc, argv);
-    if (!session.action) {
-      fmt::print(stderr, "vernier: no verb given (see vernier --help)\n");
-      return static_cast<int>(cli::Exit::bad_input);
-    }
-    session.action();
-  } catch (const CLI::Success& done) {  // --help, --version
-    return app.exit(done);
+    perform(app, session, argc, argv);
   } catch (const CLI::ExtrasError& error) {
-    fmt::print(stderr, "vernier: {} (see vernier --help)\n", not_expected(app));
-    return static_cast<int>(cli::Exit::bad_input);
+    return bad_input(not_expected(app) + " (see vernier --help)");
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "vernier: {} (see vernier --help)\n", error.what());
-    return static_cast<int>(cli::Exit::bad_input);
+    return bad_input(std::string(error.what()) + " (see vernier --help)");
   } catch (const Error& error) {
-    fmt::print(stderr, "vernier: {}\n", error.what());
-    return static_cast<int>(cli::Exit::bad_input);
+    return bad_input(error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "vernier: {}: {}; check the path and its permissions\n",
-               error.path1().string(), error.code().message());
-    return static_cast<int>(cli::Exit::bad_input);
+    return bad_input(line_of(error));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vernier: internal error: {}\n", error.what());
+    if (cli::is_out_of_memory(error)) return bad_input(cli::out_of_memory);
+    cli::say(internal::printable(std::string("vernier: internal error: ") + error.what()) + "\n");
     return static_cast<int>(cli::Exit::internal_error);
   }
   return static_cast<int>(session.exit_code());

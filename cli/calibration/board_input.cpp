@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "calib/base/shown_text.h"
 #include "calib/board/kalibr_target.h"
 #include "calib/board_detection.h"
 #include "calib/board_observations.h"
@@ -16,6 +17,7 @@
 #include "calib/calibration/observation_checks.h"
 #include "calib/error.h"
 #include "calib/observations_file.h"
+#include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 
@@ -42,6 +44,7 @@ double length(const BoardInput& input, double metres, const std::string& option)
 }
 
 // Options that only apply to one kind of board.
+constexpr int most_corners = 10'000;  ///< of a board
 constexpr std::array charuco_options{"--marker-m", "--dictionary", "--legacy"};
 constexpr std::array tag_options{"--tag-m", "--tag-spacing"};
 constexpr std::array tag_detection_options{"--family", "--border-bits", "--top-row-first"};
@@ -182,7 +185,8 @@ BoardTarget target_of(const BoardInput& input) {
   }
   const auto colon = input.board.find(':');
   const std::string kind = colon == std::string::npos ? "" : input.board.substr(0, colon);
-  const auto [columns, rows] = parse_grid(input.board.substr(colon + 1), "--board");
+  const auto [columns, rows] =
+      parse_limited_grid(input.board.substr(colon + 1), "--board", most_corners);
   if (kind != "charuco") refuse(input, charuco_options, "only valid for a charuco board");
   if (kind != "apriltag") {
     refuse(input, tag_options, "only valid for an AprilTag grid");
@@ -203,7 +207,7 @@ BoardTarget target_of(const BoardInput& input) {
     add_tag_options(input, grid);
     return grid;
   }
-  throw Error("--board", "unknown kind of board \"" + kind + "\"",
+  throw Error("--board", "unknown kind of board " + in_quotes(kind),
               "use 9x6, charuco:8x6 or apriltag:6x6");
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/error_place.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
@@ -106,7 +107,8 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   solved.how.check_input = true;
   const BoardObservations& observations = solved.from_file->evidence->observations;
   check_holdout(options, observations);
-  solved.estimate = calibrate(observations, solved.how);
+  solved.estimate =
+      with_errors_of(options.rig, [&] { return calibrate(observations, solved.how); });
   return solved;
 }
 
@@ -193,10 +195,9 @@ void add_check(CLI::App& app, Session& session) {
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
   verb->add_option("--trials", o->copies.trials, "number of Monte Carlo trials")
-      ->check(CLI::Range(1, 10000000))
+      ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   verb->add_option("--seed", o->copies.seed, "random seed of the Monte Carlo noise")
-      ->check(not_negative)
       ->capture_default_str();
   verb->add_option("--threads", o->copies.threads,
                    "number of threads (0: all); does not affect results")

@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/calibration/information_filter.h"
 #include "calib/covariance.h"
 #include "calib/data_and_prior.h"
@@ -153,9 +153,8 @@ std::string drift_table(const std::vector<MonitoredBatch>& batches,
 }
 
 /// One line per batch and parameter: batch,name,parameter,offset,sigma.
-void write_drift(const std::vector<MonitoredBatch>& batches,
-                 const std::vector<std::string>& names,
-                 const std::string& file) {
+std::string drift_csv(const std::vector<MonitoredBatch>& batches,
+                      const std::vector<std::string>& names) {
   std::string text = "batch,name,parameter,offset,sigma\n";
   for (std::size_t b = 0; b < batches.size(); ++b) {
     std::string name = batches[b].name;
@@ -166,7 +165,7 @@ void write_drift(const std::vector<MonitoredBatch>& batches,
                           batches[b].sigma[k]);
     }
   }
-  write_atomically(file, text);
+  return text;
 }
 
 Json drift_json(const std::vector<MonitoredBatch>& batches) {
@@ -251,10 +250,13 @@ void run(const CombineArguments& options, Session& session) {
   whole["inputs"] = inputs_json(combination);
   whole.update(json);
   whole["output"] = options.output;
+  OutputFiles outputs;
   if (!options.drift.empty()) {
-    write_drift(batches, parameter_names(estimate.rig), options.drift);
+    outputs.add(options.drift, drift_csv(batches, parameter_names(estimate.rig)));
   }
-  write_rig(estimate, options.output, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes);
+  outputs.add(options.output,
+              format_rig(estimate, options.no_evidence ? KeepEvidence::no : KeepEvidence::yes));
+  outputs.commit();
   for (const std::string& warning : estimate.calibration->warnings) session.warn(warning);
   for (const std::string& warning : estimate.calibration->trust_warnings)
     session.add_trust_warning(warning);

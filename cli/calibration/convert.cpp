@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/formats/imported_rig.h"
@@ -115,15 +116,13 @@ void check_no_reconstruction(const NamedContents& files) {
 
 /// Writes all files or none; creates the output folder if the output ends in a slash.
 void write_all(const NamedContents& files, const std::filesystem::path& output) {
-  const std::filesystem::path folder = files[0].first.parent_path();
-  std::error_code error;
-  const bool made = !output.has_filename() && std::filesystem::create_directory(folder, error);
-  try {
-    write_atomically(files);
-  } catch (...) {
-    if (made) std::filesystem::remove(folder, error);
-    throw;
+  const std::filesystem::path folder = output.parent_path(), above = folder.parent_path();
+  OutputFiles outputs;
+  if (!output.has_filename() && (above.empty() || std::filesystem::is_directory(above))) {
+    outputs.add_folder(folder);
   }
+  for (const auto& [file, content] : files) outputs.add(file, content);
+  outputs.commit();
 }
 
 void report_notes(const ReadRig& read,

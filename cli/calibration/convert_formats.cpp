@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -118,7 +119,7 @@ RigFormat rig_format(const std::string& text, const std::string& option) {
   for (const RigFormat format : formats) {
     if (name(format) == text) return format;
   }
-  throw Error(option, "unknown format \"" + text + "\"",
+  throw Error(option, "unknown format " + in_quotes(text),
               std::string("supported: ") + rig_format_names);
 }
 

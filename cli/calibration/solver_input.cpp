@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <sstream>
 
+#include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
@@ -22,7 +23,7 @@ namespace {
 
 double number(const std::string& text, const std::string& option) {
   if (const auto value = to_real(text); value && std::isfinite(*value)) return *value;
-  throw Error(option, fmt::format("\"{}\" is not a finite number", text), "use the form left.ax=1");
+  throw Error(option, in_quotes(text) + " is not a finite number", "use the form left.ax=1");
 }
 
 /// Parses "left.ax=1" or "left.ax".

@@ -3,41 +3,91 @@
 #include "cli/program/option_checks.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <type_traits>
 
+#include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 
 namespace vernier::cli {
 
+namespace {
+
+/// An option's number if it is one and finite.
+std::optional<double> real_option(const std::string& text) {
+  const auto value = to_real(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+template <class Whole>
+std::string whole_number(const std::string& text, const std::string& kind) {
+  const std::string_view digits = std::string_view(text).substr(text.starts_with('-') ? 1 : 0);
+  const bool plain =
+      !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+  if (!plain || (std::is_unsigned_v<Whole> && text[0] == '-')) {
+    return in_quotes(text) + " is not " + kind;
+  }
+  if (digits.size() > 1 && digits[0] == '0') {
+    return in_quotes(text) + " is not a decimal number: leave out the zeros it begins with";
+  }
+  Whole value = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec == std::errc()) return "";
+  return in_quotes(text) + " is out of range; the largest is " +
+         std::to_string(std::numeric_limits<Whole>::max());
+}
+
+}  // namespace
+
 std::string finite_and_not_negative(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return "";
-  return "\"" + text + "\" is not a finite number of 0 or more";
+  const auto value = real_option(text);
+  return value && *value >= 0 ? "" : in_quotes(text) + " is not a finite number of 0 or more";
 }
 
 std::string finite_and_positive(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return "";
-  return "\"" + text + "\" is not a finite number above 0";
+  const auto value = real_option(text);
+  return value && *value > 0 ? "" : in_quotes(text) + " is not a finite number above 0";
 }
 
 std::string finite(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value)) return "";
-  return "\"" + text + "\" is not a finite number";
+  return real_option(text) ? "" : in_quotes(text) + " is not a finite number";
 }
 
 std::string png_name(const std::string& text) {
-  return std::filesystem::path(text).extension() == ".png" ? "" : text + " does not end in .png";
+  return std::filesystem::path(text).extension() == ".png"
+             ? ""
+             : in_quotes(text) + " does not end in .png";
 }
 
 std::string not_empty(const std::string& text) { return text.empty() ? "is empty" : ""; }
 
-std::string not_negative(const std::string& text) {
-  return text.find('-') == std::string::npos
-             ? ""
-             : "\"" + text + "\" is not a whole number of 0 or more";
+void check_numbers(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    // A transform comes before the option's own checks, which could not read the number.
+    if (type.starts_with("UINT")) {
+      const auto whole = [](std::string& text) {
+        return whole_number<std::uint64_t>(text, "a whole number of 0 or more");
+      };
+      option->transform(CLI::Validator(whole, ""));
+    } else if (type.starts_with("INT")) {
+      const auto whole = [](std::string& text) {
+        return whole_number<std::int64_t>(text, "a whole number");
+      };
+      option->transform(CLI::Validator(whole, ""));
+    } else if (type.starts_with("FLOAT")) {
+      option->check(finite);
+    }
+  }
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) check_numbers(*verb);
 }
 
 void refuse_options(const CLI::App& verb,

@@ -22,8 +22,10 @@ std::string png_name(const std::string& text);
 
 std::string not_empty(const std::string& text);
 
-/// Without this check, -1 would wrap around to the largest seed.
-std::string not_negative(const std::string& text);
+/// Makes every numeric option of a program and its verbs take plain decimal numbers only. CLI11
+/// would read 010 as 8, 1e3 as 1 and 18446744073709551616 as the largest seed, wrap -1 around, and
+/// take blanks, quotes, hexadecimal numbers, "nan" and "inf".
+void check_numbers(CLI::App& app);
 
 /// Throws Error for the first of the options given on the command line, because it would have no
 /// effect. `why` is the reason, such as "the rig file already defines it".

@@ -7,8 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
-
 namespace vernier::cli {
 
 cv::Scalar blue_to_red(double share) {
@@ -24,10 +22,6 @@ std::string png_of(const cv::Mat& picture) {
   std::vector<unsigned char> png;
   cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
   return {png.begin(), png.end()};
-}
-
-void write_png(const cv::Mat& picture, const std::filesystem::path& file) {
-  write_atomically(file, png_of(picture));
 }
 
 }  // namespace vernier::cli

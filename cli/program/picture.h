@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -15,8 +14,5 @@ cv::Scalar blue_to_red(double share);
 
 /// Encodes a picture as PNG.
 std::string png_of(const cv::Mat& picture);
-
-/// Writes a picture as PNG, atomically.
-void write_png(const cv::Mat& picture, const std::filesystem::path& file);
 
 }  // namespace vernier::cli

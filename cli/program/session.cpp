@@ -7,38 +7,32 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <utility>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "cli/program/streams.h"
 
 namespace vernier::cli {
 
 namespace {
 
-/// Throws Error if the text cannot be written completely to standard output.
-void print_whole(const std::string& text) {
-  const bool all = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (all && std::fflush(stdout) == 0) return;
-  const std::string why = std::strerror(errno);
-  throw Error("standard output", "cannot be written: " + why,
-              "free space at its destination; the output files have been written");
-}
+// Warnings quote the names of files, and may give several reasons.
+constexpr std::size_t most_line_bytes = 2000;
 
 }  // namespace
 
 void Session::info(const std::string& line) const {
-  if (!quiet) fmt::print(stderr, "{}\n", line);
+  if (!quiet) say(printable(line, most_line_bytes) + "\n");
 }
 
 void Session::add_trust_warning(const std::string& reason) {
   trust_warnings_.push_back(reason);
-  fmt::print(stderr, "vernier: not trustworthy: {}\n", reason);
+  say(printable("vernier: not trustworthy: " + reason, most_line_bytes) + "\n");
 }
 
 void Session::result(const Json& object, const std::string& text) const {
@@ -46,9 +40,9 @@ void Session::result(const Json& object, const std::string& text) const {
     Json out = object;
     if (!trust_warnings_.empty()) out["doubts"] = trust_warnings_;
     // a file name may contain invalid UTF-8
-    print_whole(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    print_result(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   } else {
-    print_whole(text);
+    print_result(text);
   }
 }
 
@@ -59,7 +53,7 @@ Progress::Progress(const Session& session, std::string what)
       start_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
-  if (drawn_) std::fputc('\n', stderr);
+  if (drawn_) say("\n");
 }
 
 void Progress::update(int done, int total) {
@@ -70,22 +64,21 @@ void Progress::update(int done, int total) {
     draw(done, total, elapsed);
     return;
   }
-  const int tenths = 10 * done / total;
+  const int tenths = static_cast<int>(10LL * done / total);
   if (tenths == tenths_reported_) return;
   tenths_reported_ = tenths;
-  fmt::print(stderr, "{}: {} of {}, {:.0f} s\n", what_, done, total, elapsed);
+  say(fmt::format("{}: {} of {}, {:.0f} s\n", what_, done, total, elapsed));
 }
 
 void Progress::draw(int done, int total, double elapsed_s) {
   constexpr int width = 30;
-  const int filled = width * done / total;
+  const int filled = static_cast<int>(1LL * width * done / total);
   std::string left;
   if (done > 0 && done < total) {
     left = fmt::format("{:.0f} s left", elapsed_s * (total - done) / done);
   }
-  fmt::print(stderr, "\r{} [{}{}] {}/{} {:<14}", what_, std::string(filled, '#'),
-             std::string(width - filled, ' '), done, total, left);
-  std::fflush(stderr);
+  say(fmt::format("\r{} [{}{}] {}/{} {:<14}", what_, std::string(filled, '#'),
+                  std::string(width - filled, ' '), done, total, left));
   drawn_ = true;
 }
 
@@ -128,7 +121,7 @@ std::pair<int, int> parse_size(const std::string& text, const std::string& optio
     good = second.ec == std::errc() && second.ptr == end && a > 0 && b > 0;
   }
   if (!good) {
-    throw Error(option, "\"" + text + "\" is not two whole numbers",
+    throw Error(option, in_quotes(text) + " is not two whole numbers",
                 option == "--size" ? "use the form 640x480" : "use the form 9x6");
   }
   return {a, b};
@@ -138,7 +131,7 @@ std::pair<int, int> parse_grid(const std::string& text, const std::string& optio
   constexpr int most = 1000;
   const std::pair<int, int> size = parse_size(text, option);
   if (size.first > most || size.second > most) {
-    throw Error(option, "\"" + text + "\" has a side above 1000", "give a smaller grid");
+    throw Error(option, in_quotes(text) + " has a side above 1000", "give a smaller grid");
   }
   return size;
 }
@@ -151,7 +144,7 @@ std::vector<double> parse_distances(const std::string& text, const std::string& 
     double value = 0;
     const auto parsed = std::from_chars(word, end, value);  // accepts inf
     if (parsed.ec != std::errc() || parsed.ptr != end || !(value > 0)) {
-      throw Error(option, "\"" + text + "\" is not a list of positive distances",
+      throw Error(option, in_quotes(text) + " is not a list of positive distances",
                   "give metres separated by commas, for example 1,5,inf");
     }
     if (std::find(distances.begin(), distances.end(), value) == distances.end()) {
@@ -184,7 +177,7 @@ std::vector<double> parse_numbers(const std::string& text,
   const bool open = !text.empty() && text.back() == ',';
   if (open || at != end || values.size() != n) {
     throw Error(option,
-                "\"" + text + "\" is not " +
+                in_quotes(text) + " is not " +
                     (n == 1 ? std::string("a number") : std::to_string(n) + " numbers"),
                 "separate the numbers by commas");
   }

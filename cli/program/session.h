@@ -42,7 +42,8 @@ class Session {
   void warn(const std::string& line) const { info("warning: " + line); }
   /// Records a reason why the result is not trustworthy and prints it: exit code 3.
   void add_trust_warning(const std::string& reason);
-  /// Prints the result to standard output: the JSON object with --json, otherwise the text.
+  /// Prints the result to standard output: the JSON object with --json, otherwise the text. Throws
+  /// Error if it cannot be written.
   void result(const Json& object, const std::string& text) const;
 
   Exit exit_code() const { return trust_warnings_.empty() ? Exit::done : Exit::untrusted; }

@@ -38,7 +38,7 @@ fs::path find(const std::string& name,
   if (name.find('/') == std::string::npos)
     tried.push_back(shipped_file(kind + "s/" + name + ending));
   for (const fs::path& path : tried) {
-    if (fs::is_regular_file(path)) return path;
+    if (fs::is_regular_file(path) || fs::is_fifo(path)) return path;
   }
   for (const fs::path& path : tried) {
     if (fs::is_directory(path)) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/error_place.h"
 #include "calib/base/instruction_set.h"
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
@@ -147,7 +148,9 @@ void run(const ReportArguments& options, Session& session) {
   data["rigs"] = Json::array();
   if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
   if (!inputs.evaluation.empty()) data["evaluation"] = report_evaluation(inputs.evaluation);
-  for (const NamedRig& rig : rigs) add_rig(rig, session, proof, data);
+  for (const NamedRig& rig : rigs) {
+    with_errors_of(rig.file, [&] { add_rig(rig, session, proof, data); });
+  }
   const std::string page = assemble_page(page_folder, data);
   const bool plots = has_plots(page_folder);
   write_atomically(options.output, page);

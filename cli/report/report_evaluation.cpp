@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calib/base/atomic_file.h"
+#include "calib/base/json_reader.h"
 #include "calib/error.h"
 #include "cli/program/session.h"
 #include "cli/stereo/evaluate_figures.h"
@@ -42,7 +43,7 @@ bool is_scene(const Json& scene) {
 
 Json read(const fs::path& folder) {
   const fs::path file = folder / evaluation_file;
-  Json json = Json::parse(read_whole(file), nullptr, false);
+  Json json = parse_json(read_whole(file), file.string());
   const bool whole = json.is_object() && json.contains("matchers") &&
                      json["matchers"].is_object() && json.contains("scenes") &&
                      json["scenes"].is_array() && !json["scenes"].empty() &&
@@ -87,7 +88,8 @@ Json report_evaluation(const fs::path& folder) {
 
 std::vector<fs::path> evaluation_files(const fs::path& folder) {
   std::vector<fs::path> files{folder / evaluation_file};
-  for (const Json& scene : read(folder)["scenes"]) {
+  const Json json = read(folder);  // must outlive the loop
+  for (const Json& scene : json["scenes"]) {
     for (const std::string& name : pictures_of(scene)) files.push_back(folder / name);
   }
   return files;

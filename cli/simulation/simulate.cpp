@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/base/error_place.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -107,12 +108,15 @@ void run(const SimulateArguments& options, Session& session) {
   ExperimentSettings settings;
   settings.sources = sources;
   settings.seed = options.seed;
-  const Rig estimator_rig = LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
-                                .estimator_rig(options.trial);
+  const Rig estimator_rig = with_errors_of(options.rig, [&] {
+    return LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
+        .estimator_rig(options.trial);
+  });
   NoiseFreeViewOptions looking;
   looking.mount = {options.height_m, options.pitch_deg * degree};
   looking.with_corners = true;
-  const NoiseFreeView seen = look(visibility, rig.estimate.rig, pose, looking);
+  const NoiseFreeView seen = with_errors_of(
+      options.rig, [&] { return look(visibility, rig.estimate.rig, pose, looking); });
   const Sensor sensor(rig.estimate.rig, sources);
   const StereoObservation sighting =
       sensor.sense(seen, {.seed = options.seed, .trial = options.trial});
@@ -151,9 +155,8 @@ void add_simulate(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--source", o->sources,
                    "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
-  verb->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("--trial", o->trial, "number of the random draw for this seed")
-      ->check(not_negative)
       ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

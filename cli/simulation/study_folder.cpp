@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -23,6 +24,7 @@
 #include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "sim/experiment.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
@@ -35,6 +37,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Throws Error for a route without or with too many views, before anything is written.
+void check_maps(const Study& study) {
+  std::set<std::pair<double, int>> checked;
+  for (const StudyCell& cell : study.file.cells) {
+    const ExperimentSettings& settings = cell.experiment;
+    if (!checked.emplace(settings.map_spacing_m, settings.map_headings).second) continue;
+    map_poses(study.world.route, settings.map_spacing_m, settings.map_headings);
+  }
+}
+
 Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Session& session) {
   Study study;
   study.file = std::move(file);
@@ -45,6 +57,7 @@ Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Sessi
   for (const std::string& warning : rig_file.warnings) session.warn(warning);
   study.rig = std::move(rig_file.estimate);
   study.rig_fingerprint = fingerprint(rig_text);
+  check_maps(study);
   for (const StudyCell& cell : study.file.cells) {
     if (cell.experiment.sources.calibration > 0) required_covariance(study.rig, rig.string());
   }
@@ -72,18 +85,6 @@ Study load_study(const fs::path& file, Session& session) {
   return assemble(std::move(study), world, rig, session);
 }
 
-void keep_inputs(const fs::path& study_file, const fs::path& folder) {
-  const StudyFile study = read_study(study_file);
-  fs::create_directories(folder);
-  const auto copy = [&](const fs::path& from, const char* name) {
-    write_atomically(folder / name, read_whole(from));
-  };
-  copy(find_world(study.world, study_file.parent_path()), "world.world.toml");
-  copy(find_rig(study.rig, study_file.parent_path()), "rig.json");
-  if (!study.sources.empty()) copy(study.sources, "sources.toml");
-  copy(study_file, "study.toml");
-}
-
 Study open_folder(const fs::path& folder, Session& session) {
   if (!fs::is_regular_file(folder / "study.toml")) {
     throw Error(folder.string(), "is not a study folder",
@@ -107,28 +108,31 @@ Json cell_json(const CellResult& cell) {
   Json settings;
   for (const auto& [key, value] : cell.cell.settings) settings[key] = value_json(value);
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
+  // A cell without trials has no rates and times.
+  const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
   const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
   const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
           {"trials", s.trials},
-          {"success", s.success},
+          {"success", of_trials(s.success)},
           {"maps", s.maps},
           {"success_interval_95", clustered},
           {"success_interval_95_missing", missing},
-          {"success_interval_binomial_95", pair(s.success_interval_binomial_95)},
-          {"coverage", s.coverage},
-          {"success_when_answered", s.success_when_answered},
-          {"node_success", s.node_success},
-          {"recall_0_5m_5deg", s.recall_05},
-          {"recall_0_25m_2deg", s.recall_025},
+          {"success_interval_binomial_95",
+           s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
+          {"coverage", of_trials(s.coverage)},
+          {"success_when_answered", of_trials(s.success_when_answered)},
+          {"node_success", of_trials(s.node_success)},
+          {"recall_0_5m_5deg", of_trials(s.recall_05)},
+          {"recall_0_25m_2deg", of_trials(s.recall_025)},
           {"median_error_m", json_number(s.median_error_m)},
           {"median_heading_error_deg",
            json_number(s.median_heading_error_rad * 180 / std::numbers::pi)},
-          {"cpu_ms_mean", s.cpu_ms_mean},
+          {"cpu_ms_mean", of_trials(s.cpu_ms_mean)},
           {"cpu_ms_median", json_number(s.cpu_ms_median)},
           {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
-          {"wall_ms_mean", s.wall_ms_mean},
+          {"wall_ms_mean", of_trials(s.wall_ms_mean)},
           {"protocol", name(cell.cell.experiment.protocol)},
           {"world_ceiling", json_number(cell.ceiling)}};
 }
@@ -180,9 +184,10 @@ std::string interval_text(const CellSummary& summary) {
                      100 * summary.success_interval_95->high);
 }
 
-/// Shards have a part of its queries each.
-std::string ceiling_text(const CellResult& cell) {
-  return std::isnan(cell.ceiling) ? "-" : fmt::format("{:.1f} %", 100 * cell.ceiling);
+/// A number with its unit, a dash where there is none: shards have a part of a ceiling's queries
+/// each, and a cell without trials or answers has no times or errors.
+std::string figure(double value, int digits, const char* unit = "") {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}{}", value, digits, unit);
 }
 
 }  // namespace
@@ -196,11 +201,13 @@ std::string study_table(const Study& study, const StudyResults& results) {
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    text +=
-        fmt::format("{:<24} {:>6} {:>6.2f} % {:>15} {:>6.1f} % {:>9} {:>9.3f} {:>9.1f} {:>9.1f}\n",
-                    swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-                    100 * s.success, interval_text(s), 100 * s.coverage, ceiling_text(cell),
-                    s.median_error_m, s.cpu_ms_mean, s.cpu_ms_p95);
+    const double of_trials = s.trials > 0 ? 1 : std::numeric_limits<double>::quiet_NaN();
+    text += fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
+                        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "",
+                        s.trials, figure(of_trials * 100 * s.success, 2, " %"), interval_text(s),
+                        figure(of_trials * 100 * s.coverage, 1, " %"),
+                        figure(100 * cell.ceiling, 1, " %"), figure(s.median_error_m, 3),
+                        figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
@@ -214,6 +221,7 @@ std::string study_table(const Study& study, const StudyResults& results) {
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
+  if (results.blocks_done == 0) text += "no trials are stored yet\n";
   if (results.blocks_done < results.blocks_total) {
     text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
                         results.blocks_done, results.blocks_total);

@@ -14,10 +14,7 @@ namespace vernier::cli {
 /// Loads a study file with its world and rig (shipped, or relative to the study file).
 Study load_study(const std::filesystem::path& file, Session& session);
 
-/// Copies the inputs into the study folder as study.toml, world.world.toml, rig.json and, if
-/// [sources] names a file, sources.toml, so that the folder can be moved and then resumed, merged
-/// or reported.
-void keep_inputs(const std::filesystem::path& study_file, const std::filesystem::path& folder);
+/// The study of a results folder, by its own copies of the inputs, so that it can be moved.
 Study open_folder(const std::filesystem::path& folder, Session& session);
 
 /// A cell's settings and statistics.

@@ -69,7 +69,7 @@ void add_world(CLI::App& app, Session& session) {
   auto o = std::make_shared<MakeOptions>();
   CLI::App* maker = add_verb(*verb, session, "make", "generate a random office floor",
                              "vernier world make --seed 7 --size-m 20,15,2.5 -o my.world.toml");
-  maker->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  maker->add_option("--seed", o->seed, "random seed")->capture_default_str();
   maker->add_option("--size-m", o->size, "length,width,height in metres")->capture_default_str();
   maker->add_option("--name", o->name, "name of the world");
   maker->add_option("-o,--output", o->output, "world file")->required();

@@ -151,9 +151,7 @@ void add_characterise(CLI::App& app, Session& session) {
       ->check(CLI::Range(30, 100000))
       ->capture_default_str();
   verb->add_flag("--repair", o->repair, "correct the vertical misalignment estimated from corners");
-  verb->add_option("--seed", o->seed, "random seed of the bootstrap")
-      ->check(not_negative)
-      ->capture_default_str();
+  verb->add_option("--seed", o->seed, "random seed of the bootstrap")->capture_default_str();
   verb->callback([o, verb, &session] {
     require_scenes(*verb, o->scenes);
     session.action = [=, &session] { run(*o, session); };

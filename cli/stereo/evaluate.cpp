@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -132,15 +132,15 @@ void add_outputs(const EvaluateArguments& options,
                           {"most_px", scene.file.range.max_px}};
 }
 
-void write_outputs(const EvaluateArguments& options, const Json& json, Outputs outputs) {
+void write_outputs(const EvaluateArguments& options, const Json& json, const Outputs& pictures) {
+  OutputFiles outputs;
+  if (!options.output.empty()) outputs.add_folder(options.output);
+  for (const auto& [file, content] : pictures) outputs.add(file, content);
   if (!options.output.empty()) {
-    std::error_code failed;
-    fs::create_directories(options.output, failed);
-    if (failed) throw Error(options.output, failed.message(), "give another folder with -o");
-    outputs.emplace_back(fs::path(options.output) / evaluation_file,
-                         json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    outputs.add(fs::path(options.output) / evaluation_file,
+                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   }
-  write_atomically(outputs);
+  outputs.commit();
 }
 
 /// The collected results of all scenes.
@@ -232,6 +232,11 @@ Json settings_json(const EvaluateArguments& options,
 
 /// Adds trust warnings for a pair on which all matchers perform implausibly.
 void check_plausibility(const Scene& scene, const std::vector<Run>& runs, Session& session) {
+  const std::vector<std::string>& known = session.trust_warnings();
+  const auto of_scene = [&](const std::string& doubt) {
+    return doubt.starts_with(scene.file.name + ": ");
+  };
+  if (std::any_of(known.begin(), known.end(), of_scene)) return;  // it explains what follows
   constexpr double min_density = 0.05, low_density = 0.3, max_bad = 1.0 / 3;
   const auto all = [&](const auto& of) { return std::all_of(runs.begin(), runs.end(), of); };
   if (all([](const Run& run) { return run.score.all.density < min_density; })) {
@@ -282,7 +287,7 @@ void run(const EvaluateArguments& options, Session& session) {
   }
   if (under_error.wanted()) json["calibration_error"] = under_error.json();
   json["doubts"] = session.trust_warnings();
-  write_outputs(options, json, std::move(outputs));
+  write_outputs(options, json, outputs);
   session.result(json, report.text + under_error.text());
 }
 
@@ -305,7 +310,6 @@ void add_error_options(CLI::App* verb, EvaluateArguments& o) {
       ->capture_default_str();
   verb->add_option("--seed", o.draws.seed, "random seed of the samples")
       ->needs(psi_c)
-      ->check(not_negative)
       ->capture_default_str();
   verb->add_option("--threads", o.draws.threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 1024))

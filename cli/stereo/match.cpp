@@ -11,6 +11,8 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/ordered_parallel.h"
+#include "calib/base/output_files.h"
+#include "calib/calibration/pair_sides.h"
 #include "calib/error.h"
 #include "calib/formats/pairs_file.h"
 #include "calib/pair_observations.h"
@@ -79,13 +81,12 @@ Totals totals(const std::vector<ImageMatching>& all) {
 }
 
 /// Matches some image pairs with left and right swapped. Throws Error if that gives many more
-/// matches; warns if it gives nearly as many.
-void check_matches_not_swapped(const std::vector<ImageMatching>& all,
-                               const RigEstimate& prior,
-                               const MatchArguments& options,
-                               std::size_t tried,
-                               Session& session) {
-  if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return;
+/// matches. Returns words if it gives nearly as many, else none.
+std::string check_matches_not_swapped(const std::vector<ImageMatching>& all,
+                                      const RigEstimate& prior,
+                                      const MatchArguments& options,
+                                      std::size_t tried) {
+  if (prior.rig.cameras[0].size_px != prior.rig.cameras[1].size_px) return {};
   std::size_t given = 0, exchanged = 0;
   for (std::size_t i = 0; i < std::min(tried, all.size()); ++i) {
     const ImageFiles& files = all[i].files;
@@ -94,15 +95,12 @@ void check_matches_not_swapped(const std::vector<ImageMatching>& all,
                               options.matching)
                      .matches.size();
   }
-  if (exchanged < min_swapped) return;
-  if (static_cast<double>(exchanged) > ambiguous_ratio * static_cast<double>(given) &&
-      exchanged < swapped_ratio * given) {
-    session.warn(
-        fmt::format("nearly as many corners match with left and right swapped ({} against {}): the "
-                    "prior cannot tell the cameras apart; make sure that --left is the left camera",
-                    exchanged, given));
+  if (exchanged < min_swapped) return {};
+  if (exchanged < swapped_ratio * given) {
+    if (static_cast<double>(exchanged) <= ambiguous_ratio * static_cast<double>(given)) return {};
+    return fmt::format("nearly as many corners match with left and right swapped ({} against {})",
+                       exchanged, given);
   }
-  if (exchanged < swapped_ratio * given) return;
   throw Error(
       all.front().files.left.string(),
       fmt::format(
@@ -123,11 +121,44 @@ void check_two_images(const std::vector<ImageFiles>& files) {
   }
 }
 
-/// Throws Error if nothing matched; adds warnings for doubtful results.
-void check_matches(const std::vector<ImageMatching>& all,
-                   const RigEstimate& prior,
-                   const MatchArguments& options,
-                   Session& session) {
+/// If the sides may be swapped (`suspicion`), judges by a calibration from the matches whether they
+/// are. Throws Error if so; a doubt if nothing tells.
+void check_ambiguous_sides(const std::string& suspicion,
+                           const PairObservations& pairs,
+                           const RigFile& prior,
+                           const MatchArguments& options,
+                           Session& session) {
+  if (suspicion.empty()) return;
+  SideVerdict verdict = SideVerdict::interchangeable;
+  try {
+    verdict = judge_sides(pairs, usable_prior(prior, options.prior));
+  } catch (const Error& error) {
+    session.warn(error.what());
+  }
+  if (verdict == SideVerdict::exchanged) {
+    throw Error(options.left,
+                suspicion +
+                    ", and a calibration from the matches says that left and right are "
+                    "swapped",
+                "swap --left and --right, or the cameras of the prior");
+  }
+  if (verdict == SideVerdict::as_given) return;
+  session.add_trust_warning(
+      suspicion +
+      (verdict == SideVerdict::behind
+           ? ", and a calibration from the matches has them behind the cameras; check which camera "
+             "is the left one, and the prior's baseline"
+           : ", and neither they nor the prior tell the cameras apart; make sure that --left is "
+             "the "
+             "left camera, or use a prior that knows the rotation better"));
+}
+
+/// Throws Error if nothing matched; adds warnings for doubtful results. Returns what suggests that
+/// left and right are swapped, if anything does.
+std::string check_matches(const std::vector<ImageMatching>& all,
+                          const RigEstimate& prior,
+                          const MatchArguments& options,
+                          Session& session) {
   const Totals sum = totals(all);
   for (const ImageMatching& m : all) {
     if (m.corners_left > 0 && m.corners_right > 0) continue;
@@ -137,9 +168,9 @@ void check_matches(const std::vector<ImageMatching>& all,
     session.warn(blank.string() + ": " + fault + "; pair skipped");
   }
   const double share = static_cast<double>(sum.matches) / static_cast<double>(sum.corners);
-  check_matches_not_swapped(all, prior, options, share < suspicious ? probed : 1, session);
-  if (share >= suspicious) return;
-  if (share >= min_matched) return;
+  std::string suspicion =
+      check_matches_not_swapped(all, prior, options, share < suspicious ? probed : 1);
+  if (share >= min_matched) return suspicion;
   const std::string fault =
       fmt::format("{} of {} left corners were matched", sum.matches, sum.corners);
   const std::string remedy =
@@ -147,6 +178,7 @@ void check_matches(const std::vector<ImageMatching>& all,
       "the images are simultaneous, and that the scene is farther than --nearest-m";
   if (sum.matches == 0) throw Error("match", fault, remedy);
   session.add_trust_warning(fault + "; " + remedy);
+  return suspicion;
 }
 
 std::vector<std::filesystem::path> inputs(const std::filesystem::path& prior,
@@ -168,14 +200,10 @@ Json matching_json(const ImageMatching& m) {
 void write_both(const PairObservations& pairs,
                 const ImageMatching& first,
                 const MatchArguments& options) {
-  if (!options.picture.empty()) write_match_picture(first, options.picture);
-  try {
-    write_pairs(pairs, options.output);
-  } catch (const Error&) {
-    std::error_code ignored;
-    if (!options.picture.empty()) std::filesystem::remove(options.picture, ignored);
-    throw;
-  }
+  OutputFiles outputs;
+  if (!options.picture.empty()) outputs.add(options.picture, match_picture(first));
+  outputs.add(options.output, format_pairs(pairs));
+  outputs.commit();
 }
 
 void run(const MatchArguments& options, Session& session) {
@@ -192,7 +220,7 @@ void run(const MatchArguments& options, Session& session) {
   }
   check_two_images(files);
   const auto all = match_all(files, prior.estimate, options, session);
-  check_matches(all, prior.estimate, options, session);
+  const std::string suspicion = check_matches(all, prior.estimate, options, session);
 
   PairObservations pairs;
   Json images = Json::array();
@@ -209,6 +237,7 @@ void run(const MatchArguments& options, Session& session) {
                     m.matches.empty() ? "-" : fmt::format("{:.3f}", median_sigma(m.matches)),
                     m.files.left.string());
   }
+  check_ambiguous_sides(suspicion, pairs, prior, options, session);
   write_both(pairs, all.front(), options);
   text += fmt::format("{} matches of {} image pairs written to {}\n", pairs.size(),
                       pairs.image_pairs.size(), options.output);

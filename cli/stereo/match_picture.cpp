@@ -24,7 +24,7 @@ cv::Point fixed_point(const Eigen::Vector2d& p, int down) {
 
 }  // namespace
 
-void write_match_picture(const ImageMatching& matching, const std::filesystem::path& file) {
+std::string match_picture(const ImageMatching& matching) {
   const cv::Mat left = read_grey_image(matching.files.left);
   const cv::Mat right = read_grey_image(matching.files.right);
   cv::Mat both(left.rows + right.rows, std::max(left.cols, right.cols), CV_8U, cv::Scalar(0)),
@@ -43,7 +43,7 @@ void write_match_picture(const ImageMatching& matching, const std::filesystem::p
     cv::circle(drawn, from, 2 << subpixel_bits, c, 1, cv::LINE_AA, subpixel_bits);
     cv::circle(drawn, below, 2 << subpixel_bits, c, 1, cv::LINE_AA, subpixel_bits);
   }
-  write_png(drawn, file);
+  return png_of(drawn);
 }
 
 }  // namespace vernier::cli

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
+#include <string>
 
 #include "stereo/corners/match_images.h"
 
@@ -12,7 +12,7 @@ namespace vernier::cli {
 
 /// Draws both images of a pair, the right one below the left, with a dot at each matched
 /// corner and a line from the left corner to the position of the right image's pixel in the left
-/// one, coloured from red (shortest) to blue (longest). Writes a PNG.
-void write_match_picture(const ImageMatching& matching, const std::filesystem::path& file);
+/// one, coloured from red (shortest) to blue (longest). The content of a PNG file.
+std::string match_picture(const ImageMatching& matching);
 
 }  // namespace vernier::cli

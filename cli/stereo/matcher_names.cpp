@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <sstream>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
 #include "stereo/edge_matcher.h"
@@ -23,7 +24,7 @@ Matcher matcher_named(const std::string& name) {
   if (name == "stretch") return stretch_matcher();
   if (name == "bm") return bm();
   if (name == "sgbm") return sgbm();
-  throw Error("--matcher", "unknown matcher \"" + name + "\"",
+  throw Error("--matcher", "unknown matcher " + in_quotes(name),
               "supported: edge, stretch, bm, sgbm, or a name defined by --command NAME=…");
 }
 

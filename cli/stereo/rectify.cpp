@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/error_place.h"
+#include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -91,11 +92,12 @@ struct Rectified {
 };
 
 Rectified rectify(const Rig& rig,
+                  const RectifiedGeometry& geometry,
                   const GreyLevels& left,
                   const GreyLevels& right,
                   const RectifyArguments& options) {
   Rectified r;
-  r.geometry = rectified_geometry(rig, options.geometry);
+  r.geometry = geometry;
   r.images = rectified_images(rig, r.geometry, left, right, options.threads);
   const int most = options.max_disparity_px > 0 ? options.max_disparity_px
                                                 : r.geometry.size_px[0] / width_by_disparity;
@@ -115,8 +117,11 @@ void check_alignment(const Rectified& rectified,
   const double blank = std::max(rectified.images.left_valid.blank_share(),
                                 rectified.images.right_valid.blank_share());
   if (blank > nearly_all) {
-    session.add_trust_warning(fmt::format(
-        "{:.0f} % of a rectified image is blank; check --f-px and --size", 100 * blank));
+    const std::string words = fmt::format("{:.0f} % of a rectified image is blank", 100 * blank);
+    if (options.size.empty() && !(options.geometry.f_px > 0)) {
+      throw Error(options.rig, words, "check its cameras' poses: they do not look the same way");
+    }
+    session.add_trust_warning(words + "; check --f-px and --size");
     return;
   }
   if (!field.unrectified && !field.known) {
@@ -130,7 +135,7 @@ void check_alignment(const Rectified& rectified,
   }
   if (!field.unrectified) return;
   if (!field.known && rig.cameras[0].size_px == rig.cameras[1].size_px) {
-    const VerticalField exchanged = rectify(rig, right, left, options).field;
+    const VerticalField exchanged = rectify(rig, rectified.geometry, right, left, options).field;
     if (exchanged.known && !exchanged.unrectified) {
       session.add_trust_warning(
           fmt::format("left and right appear to be swapped: {} corners match as given, {} after "
@@ -249,9 +254,11 @@ void run(RectifyArguments options, Session& session) {
   const RigFile file = read_rig(rig_file);
   for (const std::string& warning : file.warnings) session.warn(warning);
   const Rig& rig = file.estimate.rig;
+  const RectifiedGeometry wanted =
+      with_errors_of(options.rig, [&] { return rectified_geometry(rig, options.geometry); });
   const auto [left, right] =
       read_camera_images(rig, options.rig, options.left, options.right, session);
-  Rectified rectified = rectify(rig, left, right, options);
+  Rectified rectified = rectify(rig, wanted, left, right, options);
   check_alignment(rectified, rig, left, right, options, session);
   auto& [geometry, images, field] = rectified;
   const bool repaired = options.repair && field.significant;
@@ -264,8 +271,10 @@ void run(RectifyArguments options, Session& session) {
     check_output_is_not_input({rig_file, options.left, options.right}, name);
   }
   const auto d = deviations(file.estimate, geometry, options.at_m);
-  std::filesystem::create_directories(options.output);
-  write_atomically(files);
+  OutputFiles outputs;
+  outputs.add_folder(options.output);
+  for (const auto& [name, content] : files) outputs.add(name, content);
+  outputs.commit();
   session.result(
       result_json(geometry, images, d, vertical_field_json(field, repaired), files, session),
       result_text(geometry, images, d, words, options, files.size()));

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
@@ -142,8 +142,7 @@ void check_result(const StereoArguments& options,
         (options.input.rectified ? "; rectify the pair first (give --rig and leave out --rectified)"
                                  : "; check that the rig matches the current cameras and that the "
                                    "images are simultaneous"));
-  }
-  if (edges.share() < min_density) {
+  } else if (edges.share() < min_density) {
     session.add_trust_warning(fmt::format(
         "too few matches: {} of {} edges; check that both images show the same scene at the same "
         "time, that rows are aligned and that disparities are between {} and {} px",
@@ -151,6 +150,7 @@ void check_result(const StereoArguments& options,
   }
   if (!input.geometry) return;
   if (depth.placed == 0) {
+    if (!session.trust_warnings().empty()) return;  // for the reason given above
     session.add_trust_warning(
         "no segment could be reconstructed; segments.json gives the reason for each");
   } else if (depth.linear < (1 - max_uncertain) * depth.placed) {
@@ -269,12 +269,14 @@ void run(const StereoArguments& options, Session& session) {
   Json names = Json::array();
   for (const auto& [name, content] : files) names.push_back(name.string());
   if (!options.picture.empty()) names.push_back(options.picture);
-  std::filesystem::create_directories(folder);
   if (!options.picture.empty()) {
     files.emplace_back(options.picture,
                        disparity_picture(input.pair.left, result.edges, result.found, input.range));
   }
-  write_atomically(files);
+  OutputFiles outputs;
+  outputs.add_folder(folder);
+  for (const auto& [name, content] : files) outputs.add(name, content);
+  outputs.commit();
   Json json = result_json(options, input, result, edges, depth);
   json["doubts"] = session.trust_warnings();
   json["files"] = names;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/error_place.h"
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
@@ -22,7 +23,8 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int default_range = 4;  // width divided by the largest disparity
+constexpr double nearly_all = 0.9;  // of an image
+constexpr int default_range = 4;    // width divided by the largest disparity
 
 void check(const StereoInputOptions& o) {
   if (o.rig.empty() && !o.rectified) {
@@ -51,10 +53,15 @@ RigEstimate read_estimate(const StereoInputOptions& o, Session& session) {
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
   input.estimate = read_estimate(o, session);
   const Rig& rig = input.estimate->rig;
+  const RectifiedGeometry geometry = with_errors_of(o.rig, [&] { return rectified_geometry(rig); });
   const RectifiedPair raw = read_camera_images(rig, o.rig, o.left, o.right, session);
-  const RectifiedGeometry geometry = rectified_geometry(rig);
   RectifiedImages images = rectified_images(rig, geometry, raw.left, raw.right, o.threads);
   input.geometry = geometry;
+  const double blank = std::max(images.left_valid.blank_share(), images.right_valid.blank_share());
+  if (blank > nearly_all) {
+    throw Error(o.rig, fmt::format("{:.0f} % of a rectified image is blank", 100 * blank),
+                "check its cameras' poses: they do not look the same way");
+  }
   check_matcher_input(images.pair, input.range, o.right);
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/base/error_place.h"
 #include "calib/board/board_placement.h"
 #include "calib/board_target.h"
 #include "calib/covariance.h"
@@ -18,12 +19,15 @@
 #include "calib/rig_file.h"
 #include "calib/uncertainty/next_view.h"
 #include "calib/uncertainty/target_quantity.h"
+#include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {
+
+constexpr int most_corners = 10'000;  ///< of a board
 
 struct AdviseArguments {
   std::string rig, reduce = "depth", board, covariance = "mvb";
@@ -50,7 +54,7 @@ std::string find_target(const AdviseArguments& options,
     if (options.board.empty() || !(options.square_m > 0)) {
       throw Error("advise", "--board and --square-m must be given together", "give both");
     }
-    const auto [columns, rows] = parse_grid(options.board, "--board");
+    const auto [columns, rows] = parse_limited_grid(options.board, "--board", most_corners);
     target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }
@@ -168,15 +172,19 @@ void run(const AdviseArguments& options, Session& session) {
   const RigFile file = read_rig(find_rig(options.rig));
   for (const std::string& warning : file.warnings) session.warn(warning);
   const RigEstimate& rig = file.estimate;
-  const TargetQuantity wanted = target_quantity(rig.rig, options.reduce, options.at_m);
-  const Basis basis = find_basis(options, rig, wanted);
+  const TargetQuantity wanted = with_errors_of(
+      options.rig, [&] { return target_quantity(rig.rig, options.reduce, options.at_m); });
+  const Basis basis = with_errors_of(options.rig, [&] { return find_basis(options, rig, wanted); });
   std::vector<Eigen::Vector3d> target_m;
   Eigen::Vector2d warp_m(0, 0);
   const std::string board = find_target(options, rig, target_m, warp_m);
-  const std::vector<CandidateView> candidates =
-      candidate_views(rig.rig, target_m, warp_m, basis.pixel_sigma_px, {.partly = options.partly});
-  const ViewAdvice advice = advise_views(basis.factor, candidates, wanted,
-                                         {.views = options.views, .more = options.more});
+  std::vector<CandidateView> candidates;
+  const ViewAdvice advice = with_errors_of(options.rig, [&] {
+    candidates = candidate_views(rig.rig, target_m, warp_m, basis.pixel_sigma_px,
+                                 {.partly = options.partly});
+    return advise_views(basis.factor, candidates, wanted,
+                        {.views = options.views, .more = options.more});
+  });
 
   Json json{{"reduce", options.reduce},
             {"error", wanted.name},

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/error_place.h"
 #include "calib/covariance.h"
 #include "calib/estimate/projection_difference.h"
 #include "calib/estimate/same_rig.h"
@@ -18,6 +19,7 @@
 #include "calib/rig_difference.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "cli/program/limited_grid.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -27,6 +29,7 @@ namespace {
 
 constexpr double significance = 0.01;  // below this p the rigs differ
 constexpr double too_close = 0.999;
+constexpr int most_cells = 100'000;  // of the grid, in 1 GB
 
 struct DiffArguments {
   std::string a, b, distances = "1,3,10,inf", grid = "20x15", covariance = "honest";
@@ -91,16 +94,20 @@ Comparison compare(const DiffArguments& options) {
   found.covariance_b = chosen_covariance(found.b, choice);
   const bool both = found.covariance_a && found.covariance_b;
   if (both) {
-    found.parameters =
-        rig_difference(found.a.rig, *found.covariance_a, found.b.rig, *found.covariance_b);
+    found.parameters = with_errors_of(options.a + ", " + options.b, [&] {
+      return rig_difference(found.a.rig, *found.covariance_a, found.b.rig, *found.covariance_b);
+    });
   }
-  const auto [columns, rows] = parse_grid(options.grid, "--grid");
-  found.projection = projection_difference(
-      found.a.rig, found.b.rig,
-      {.distances_m = parse_distances(options.distances, "--distances-m"),
-       .grid = {columns, rows},
-       .focus_share = options.focus_share},
-      both ? &*found.covariance_a : nullptr, both ? &*found.covariance_b : nullptr);
+  const auto [columns, rows] = parse_limited_grid(options.grid, "--grid", most_cells);
+  const ProjectionDifferenceOptions how{
+      .distances_m = parse_distances(options.distances, "--distances-m"),
+      .grid = {columns, rows},
+      .focus_share = options.focus_share};
+  found.projection = with_errors_of(options.a + ", " + options.b, [&] {
+    return projection_difference(found.a.rig, found.b.rig, how,
+                                 both ? &*found.covariance_a : nullptr,
+                                 both ? &*found.covariance_b : nullptr);
+  });
   add_warnings(options, found);
   return found;
 }

@@ -11,8 +11,9 @@
 #include "calib/sampler.h"
 #include "cli/program/option_checks.h"
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/file_in_progress.h"
 #include "calib/rig_file.h"
+#include "calib/uncertainty/physical_rig.h"
 #include "cli/program/output_check.h"
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
@@ -21,12 +22,67 @@
 namespace vernier::cli {
 namespace {
 
+constexpr int long_job = 100'000;  ///< samples; progress is said of more
+
 struct SampleArguments {
   std::string rig, output;
   double psi_c = 1;
   int count = 1000;
   std::uint64_t seed = 1;
 };
+
+/// The draws that no cameras can have.
+struct UnphysicalDraws {
+  int count = 0;
+  std::string first;  ///< what is wrong with the first of them
+
+  void add(const Rig& rig) {
+    const std::string fault = unphysical(rig);
+    if (fault.empty()) return;
+    if (count++ == 0) first = fault;
+  }
+
+  /// Says the share; a doubt above the share that Gaussian errors may have.
+  void report(int draws, Session& session) const {
+    if (count == 0) return;
+    const double share = static_cast<double>(count) / draws;
+    const std::string words =
+        fmt::format("{} of {} samples ({:.2g} %) are rigs that no cameras can have (the first: {})",
+                    count, draws, 100 * share, first);
+    if (share <= most_unphysical) {
+      session.warn(words);
+      return;
+    }
+    session.add_trust_warning(fmt::format(
+        "{}: more than {:.1g} %, so a Gaussian with this covariance does not describe the rig's "
+        "errors; give a smaller --psi-c, or a rig that is better determined",
+        words, 100 * most_unphysical));
+  }
+};
+
+/// Writes the samples as they are drawn, so that any number fits in memory.
+UnphysicalDraws write_samples(const SampleArguments& options,
+                              const RigFile& rig,
+                              const RigSampler& sampler,
+                              const Session& session) {
+  UnphysicalDraws unphysical_draws;
+  FileInProgress csv(options.output);
+  std::string row;
+  for (const std::string& name : rig.listed) row += (row.empty() ? "" : ",") + name;
+  csv.append(row + '\n');
+  Progress progress(session, "sample");
+  for (int i = 0; i < options.count; ++i) {
+    const Rig drawn = sampler.sample(options.psi_c, options.seed, static_cast<std::uint32_t>(i));
+    unphysical_draws.add(drawn);
+    const Eigen::VectorXd a = parameters(drawn)(rig.listed_places);
+    row.clear();
+    for (Eigen::Index k = 0; k < a.size(); ++k) row += fmt::format("{}{}", k ? "," : "", a[k]);
+    csv.append(row += '\n');
+    if (i >= long_job && i % long_job == 0) progress.update(i, options.count);
+  }
+  csv.commit();
+  return unphysical_draws;
+}
 
 void run(const SampleArguments& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);
@@ -35,28 +91,22 @@ void run(const SampleArguments& options, Session& session) {
   const RigSampler sampler(rig.estimate, file.string());
   check_output_is_not_input({file}, options.output);
 
-  std::string csv;
-  for (const std::string& name : rig.listed) csv += (csv.empty() ? "" : ",") + name;
-  csv += '\n';
-  for (int i = 0; i < options.count; ++i) {
-    const Eigen::VectorXd a = parameters(sampler.sample(
-        options.psi_c, options.seed, static_cast<std::uint32_t>(i)))(rig.listed_places);
-    for (Eigen::Index k = 0; k < a.size(); ++k) csv += fmt::format("{}{}", k ? "," : "", a[k]);
-    csv += '\n';
-  }
-  write_atomically(options.output, csv);
+  const UnphysicalDraws unphysical_draws = write_samples(options, rig, sampler, session);
+  unphysical_draws.report(options.count, session);
 
   Json directions = Json::array();
   for (const CovarianceDirection& d : sampler.decomposition().directions()) {
     directions.push_back({{"share", d.variance_share}, {"words", d.description}});
   }
   session.result({{"samples", options.count},
+                  {"unphysical", unphysical_draws.count},
                   {"psi_c", options.psi_c},
                   {"seed", options.seed},
                   {"covariance_kind", name(rig.estimate.covariance->kind)},
                   {"raw_condition", sampler.decomposition().raw_condition()},
                   {"scaled_condition", sampler.decomposition().scaled_condition()},
                   {"directions", directions},
+                  {"doubts", session.trust_warnings()},
                   {"output", options.output}},
                  fmt::format("{} rigs at psi_c = {} written to {}\nprincipal directions of the "
                              "scaled covariance ({}):\n",
@@ -79,7 +129,7 @@ void add_sample(CLI::App& app, Session& session) {
   verb->add_option("-n,--count", o->count, "number of samples")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", o->seed, "random seed")->check(not_negative)->capture_default_str();
+  verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("-o,--output", o->output, "CSV file with the parameter names as header")
       ->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/projection_uncertainty.h"
 #include "calib/triangulation_uncertainty.h"
 #include "cli/program/heat_map.h"
@@ -22,20 +22,20 @@
 namespace vernier::cli {
 namespace {
 
-/// The output folder and the names of its files.
+/// The output folder and the names of its files, which appear with commit().
 class Folder {
  public:
-  explicit Folder(std::filesystem::path path) : path_(std::move(path)) {
-    std::filesystem::create_directories(path_);
-  }
+  explicit Folder(std::filesystem::path path) : path_(std::move(path)) { files_.add_folder(path_); }
   void write(const std::string& name, const std::string& content) {
-    write_atomically(path_ / name, content);
+    files_.add(path_ / name, content);
     names_.push_back(name);
   }
+  void commit() { files_.commit(); }
   const std::vector<std::string>& names() const { return names_; }
 
  private:
   std::filesystem::path path_;
+  OutputFiles files_;
   std::vector<std::string> names_;
 };
 
@@ -194,6 +194,7 @@ std::vector<std::string> write_uncertainty(const UncertaintyReport& report,
   folder.write("uncertainty.json", uncertainty_json(report, GridDetail::deviations)
                                            .dump(-1, ' ', false, Json::error_handler_t::replace) +
                                        "\n");
+  folder.commit();
   return folder.names();
 }
 

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/folder_claim.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
+#include "calib/base/shown_text.h"
+#include "calib/error.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/simulation/study_folder.h"
+#include "sim/study/study.h"
+#include "sim/study/study_difference.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
+
+namespace vernier::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *study_name = "study.toml", *world_name = "world.world.toml",
+                     *rig_name = "rig.json", *sources_name = "sources.toml";
+
+/// The folder and its parents as far as they do not exist, innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code unknown;
+  for (fs::path at = folder; !at.empty() && !fs::exists(at, unknown); at = at.parent_path()) {
+    if (!at.filename().empty()) missing.push_back(at);
+  }
+  return missing;
+}
+
+void write_inputs(const fs::path& folder, const StudyInputs& inputs) {
+  OutputFiles files;
+  files.add_folder(folder);
+  for (const auto& [name, content] : inputs) files.add(folder / name, content);
+  files.commit();
+}
+
+bool holds_results(const StoreContent& content) {
+  return !content.blocks.empty() || content.interrupted ||
+         std::any_of(content.notes.begin(), content.notes.end(),
+                     [](const auto& note) { return note.first.rfind("ceiling", 0) == 0; });
+}
+
+}  // namespace
+
+StudyInputs inputs_of_study(const fs::path& study_file) {
+  const StudyFile study = read_study(study_file);
+  StudyInputs inputs{{world_name, read_whole(find_world(study.world, study_file.parent_path()))},
+                     {rig_name, read_whole(find_rig(study.rig, study_file.parent_path()))}};
+  if (!study.sources.empty()) inputs.emplace_back(sources_name, read_whole(study.sources));
+  inputs.emplace_back(study_name, read_whole(study_file));  // last: it makes the folder a study's
+  return inputs;
+}
+
+StudyInputs inputs_of_folder(const fs::path& folder) {
+  StudyInputs inputs;
+  for (const char* name : {world_name, rig_name, sources_name, study_name}) {
+    std::error_code unknown;
+    if (name == sources_name && !fs::exists(folder / name, unknown)) continue;
+    inputs.emplace_back(name, read_whole(folder / name));
+  }
+  return inputs;
+}
+
+FolderClaim::FolderClaim(const Study& wanted, StudyInputs inputs, fs::path folder)
+    : inputs_(std::move(inputs)),
+      folder_(std::move(folder)),
+      missing_folders_(missing_folders(folder_)),
+      found_(find_study(wanted)) {
+  stores_before_ = store_files(folder_);
+  if (found_ == Found::nothing) write_inputs(folder_, inputs_);
+}
+
+FolderClaim::Found FolderClaim::find_study(const Study& wanted) const {
+  std::error_code unknown;
+  if (!missing_folders_.empty()) return Found::nothing;
+  if (!fs::is_directory(folder_, unknown)) {
+    throw Error(folder_.string(), "exists and is not a folder", "give another -o DIR");
+  }
+  if (!fs::exists(folder_ / study_name, unknown)) {
+    refuse_other_files();
+    return Found::nothing;
+  }
+  Session silent;
+  silent.quiet = true;
+  const Study stored = [&] {
+    try {
+      return open_folder(folder_, silent);
+    } catch (const Error& error) {
+      throw Error(
+          folder_.string(),
+          fmt::format("holds a study that cannot be read ({}: {})", error.place(), error.fault()),
+          "give another -o DIR");
+    }
+  }();
+  if (const std::string why = study_difference(stored, wanted); !why.empty()) {
+    throw Error(folder_.string(), "holds another study: " + why,
+                "give another -o DIR, or go on with the study file of that folder");
+  }
+  return study_difference(wanted, stored).empty() ? Found::same : Found::less;
+}
+
+/// Inputs that another shard has just written, or a killed one, are no obstacle; neither are hidden
+/// files.
+void FolderClaim::refuse_other_files() const {
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    const auto is_same = [&](const auto& input) {
+      std::error_code unknown;
+      return input.first == name && entry.is_regular_file(unknown) &&
+             read_whole(entry.path()) == input.second;
+    };
+    if (name[0] == '.' || std::any_of(inputs_.begin(), inputs_.end(), is_same)) continue;
+    throw Error(folder_.string(),
+                fmt::format("holds other files ({}) and no study", in_quotes(name)),
+                "give a new or an empty folder as -o DIR");
+  }
+}
+
+void FolderClaim::extend() const {
+  if (found_ == Found::less) write_inputs(folder_, inputs_);
+}
+
+void FolderClaim::remove_empty_store(const fs::path& store) const {
+  const bool was_there =
+      std::find(stores_before_.begin(), stores_before_.end(), store) != stores_before_.end();
+  if (!was_there && fs::exists(store) && !holds_results(read_store(store))) fs::remove(store);
+}
+
+void FolderClaim::withdraw(const Shard& shard) const noexcept {
+  try {
+    remove_empty_store(store_file(folder_, shard));
+    if (found_ != Found::nothing) return;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const fs::path ending = entry.path().extension();
+      if (ending == ".sqlite" || ending == ".lock") return;  // of other shards
+    }
+    for (const auto& input : inputs_) fs::remove(folder_ / input.first);
+    for (const fs::path& made : missing_folders_) fs::remove(made);
+  } catch (...) {  // what it cannot remove stays, and the reason of the withdrawal is told
+  }
+}
+
+}  // namespace vernier::cli

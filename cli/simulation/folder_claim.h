@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/program/namespaces.h"
+#include "sim/study/study.h"
+
+namespace vernier::cli {
+
+/// What a study's folder keeps beside its stores, each a name and its content: world.world.toml,
+/// rig.json, sources.toml if [sources] names a file, study.toml.
+using StudyInputs = std::vector<std::pair<std::string, std::string>>;
+
+/// The inputs of a study file, and those that a folder has.
+StudyInputs inputs_of_study(const std::filesystem::path& study_file);
+StudyInputs inputs_of_folder(const std::filesystem::path& folder);
+
+/// The folder in which a study is about to run: new or empty, or with the same study, which the
+/// wanted one may extend by trials or cells.
+class FolderClaim {
+ public:
+  /// Makes the folder with the inputs if there is none. Throws Error, and changes nothing, if it
+  /// holds another study (naming a setting that differs) or other files.
+  FolderClaim(const Study& wanted, StudyInputs inputs, std::filesystem::path folder);
+
+  /// Replaces the inputs by those of the wanted study if it extends the one of the folder. Only
+  /// for who may write the store.
+  void extend() const;
+
+  /// Removes what the constructor and a run of the shard made, as long as no result is stored.
+  void withdraw(const Shard& shard) const noexcept;
+
+ private:
+  enum class Found { nothing, same, less };
+
+  Found find_study(const Study& wanted) const;
+  void refuse_other_files() const;
+  void remove_empty_store(const std::filesystem::path& store) const;
+
+  StudyInputs inputs_;
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> missing_folders_;  // innermost first
+  std::vector<std::filesystem::path> stores_before_;
+  Found found_;
+};
+
+}  // namespace vernier::cli

@@ -1,0 +1,33 @@
+# The sources of all fuzz targets and what they need, from the root of the project.
+set(vernier_fuzz_targets
+  cli/report/report_evaluation.cpp
+  fuzz/example_rigs.cpp
+  fuzz/fuzz_target.cpp
+  fuzz/same_values.cpp
+  fuzz/targets/colmap.cpp
+  fuzz/targets/corners_vnl.cpp
+  fuzz/targets/disparity_map.cpp
+  fuzz/targets/evaluation_json.cpp
+  fuzz/targets/image_bytes.cpp
+  fuzz/targets/image_names.cpp
+  fuzz/targets/json.cpp
+  fuzz/targets/kalibr_camchain.cpp
+  fuzz/targets/kalibr_target.cpp
+  fuzz/targets/matcher_command.cpp
+  fuzz/targets/mrcal_cameramodel.cpp
+  fuzz/targets/numpy.cpp
+  fuzz/targets/observations_csv.cpp
+  fuzz/targets/opencv_calibration.cpp
+  fuzz/targets/pairs_csv.cpp
+  fuzz/targets/python_literal.cpp
+  fuzz/targets/rig_json.cpp
+  fuzz/targets/ros_camera_info.cpp
+  fuzz/targets/stereo_scenes.cpp
+  fuzz/targets/study_store.cpp
+  fuzz/targets/study_toml.cpp
+  fuzz/targets/text_numbers.cpp
+  fuzz/targets/toml.cpp
+  fuzz/targets/world_toml.cpp
+  fuzz/targets/yaml.cpp)
+set(vernier_fuzz_libraries vernier::sim nlohmann_json::nlohmann_json fmt::fmt SQLite::SQLite3
+                           tomlplusplus::tomlplusplus)

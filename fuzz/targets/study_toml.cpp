@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fuzz/fuzz_target.h"
+#include "sim/sources.h"
+#include "sim/sources/measured_sources.h"
+#include "sim/sources/sources_file.h"
+#include "sim/study/study_file.h"
+
+namespace vernier::fuzz {
+namespace {
+
+using namespace vernier::sim::internal;
+
+void require_whole_study(const StudyFile& study) {
+  std::size_t cells = 1;
+  for (const auto& values : study.sweep_values) cells *= values.size();
+  require(study.cells.size() == cells && cells > 0, "a study has a cell for every combination");
+  require(study.trials >= 1 && study.trials_per_block >= 1, "a study has trials");
+}
+
+void run_study_toml(std::string_view bytes) {
+  const auto study = accepted([&] { return parse_study(std::string(bytes), "study.toml"); });
+  if (study) require_whole_study(*study);
+}
+
+/// A file of sources that a study refers to.
+void run_sources_toml(std::string_view bytes) {
+  const std::string study = "[study]\n[sources]\nfile = \"sources.toml\"\n";
+  const auto file = input_file(bytes, "sources.toml");
+  const auto read = accepted([&] { return parse_study(study, "study.toml", file); });
+  if (read) require_whole_study(*read);
+}
+
+/// Nothing writes studies: as docs/file-formats.md has them.
+std::vector<std::string> study_toml_seeds() {
+  return {
+      "[study]\ntrials = 900\nseed = 1\nprotocol = \"path\"\n[world]\nfile = \"workshop\"\n"
+      "[rig]\nfile = \"nominal\"\n[sources]\ncalibration = 1.0\n[camera]\nheight_m = 1.2\n"
+      "pitch_deg = 0\n[map]\npath = \"default\"\nspacing_m = 0.5\nheadings = \"path\"\n"
+      "rig = \"recalibrated\"\n[localiser]\nmethod = \"pgh\"\nlooks = 1\n"
+      "[sweep]\n\"sources.calibration\" = [0.1, 1, 10]\n\"map.headings\" = [\"path\", 8]\n",
+      "[study]\ntrials = 12\n[sources]\nlateral_shift_mode = \"independent\"\n"
+      "[localiser]\nknows_endpoint_sigma = true\n"};
+}
+
+std::vector<std::string> sources_toml_seeds() {
+  return {sources_toml(MeasuredSources{}),
+          sources_toml(MeasuredSources{}, sim::ShiftMode::independent),
+          "[sources]\nedge_loss = 0.2\nlateral_shift_px = 1\ncalibration = 2\n"};
+}
+
+const Registered registered_sources_toml{
+    {"sources_toml", 2000, "study", run_sources_toml, sources_toml_seeds}};
+const Registered registered_study_toml{
+    {"study_toml", 2000, "study", run_study_toml, study_toml_seeds}};
+
+}  // namespace
+}  // namespace vernier::fuzz

@@ -864,7 +864,7 @@ class Check(Case):
                 lines = lines[:1] + [line for line in lines[1:] if line.split(',')[1] == '0']
             (self.folder / 'o.csv').write_text('\n'.join(lines))
             self.complains('check', '--observations', self.folder / 'o.csv', '--size', '640x480',
-                           '--trials', '10000000', '--holdout', *more, of=of)
+                           '--trials', '100000', '--holdout', *more, of=of)
         refuses(cameras=1, of='--holdout: needs two cameras and at least six frames; got '
                               '1 camera(s) and 12 frame(s)')
         refuses(frames=5, of='got 2 camera(s) and 5 frame(s)')

@@ -202,7 +202,8 @@ class Evaluate(unittest.TestCase):
             done = subprocess.run([PROGRAM, 'report', 'out', '-o', 'page.html'], cwd=self.folder,
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, broken)
-            self.assertIn('is not an evaluation', done.stderr)
+            self.assertIn('evaluation.json', done.stderr)
+            self.assertRegex(done.stderr, 'is not an evaluation|is not JSON: it ends too early')
         self.assertEqual((self.folder / 'page.html').read_text(), page)
         (self.folder / 'study').mkdir()
         (self.folder / 'study' / 'study.toml').write_text('')

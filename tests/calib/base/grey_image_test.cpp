@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
@@ -11,8 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/base/byte_order.h"
 #include "calib/base/image_file.h"
 #include "calib/error.h"
+#include "tests/support/error_message.h"
 
 namespace vernier {
 
@@ -87,6 +91,67 @@ TEST(ReadGreyImage, IsSilentOfAPngWithAWrongChecksum) {
   testing::internal::CaptureStderr();
   EXPECT_THROW(read_grey_image(file.path()), Error);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+/// A chunk of a PNG file, with its checksum.
+std::string png_chunk(const std::string& of_kind) {
+  std::uint32_t sum = 0xffffffffu;
+  for (const char c : of_kind) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320u : 0);
+  }
+  std::string chunk;
+  append_number(chunk, static_cast<std::uint32_t>(of_kind.size() - 4), true);
+  chunk += of_kind;
+  append_number(chunk, ~sum, true);
+  return chunk;
+}
+
+TEST(ReadGreyImage, IsSilentAndExactOfAPngWithABadProfile) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3}) {
+    cv::Mat pixels(13, 17, type);
+    cv::randu(pixels, cv::Scalar::all(0), cv::Scalar::all(250));
+    std::vector<unsigned char> written;
+    cv::imencode(".png", pixels, written);
+    const std::string clean(written.begin(), written.end());
+    std::string odd = clean;
+    odd.insert(8 + 25, png_chunk(std::string("iCCPx\0\0no profile", 17)));
+    const File file(odd);
+    testing::internal::CaptureStderr();
+    const cv::Mat grey = read_grey_image(file.path());
+    const std::string bytes = read_image_bytes(file.path());
+    for (const int flags : {int{cv::IMREAD_UNCHANGED}, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH}) {
+      EXPECT_TRUE(same(decode_image(bytes, flags, ""), decode_image(clean, flags, ""))) << type;
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    const File other(clean);
+    EXPECT_TRUE(same(grey, read_grey_image(other.path())));
+  }
+}
+
+TEST(ReadGreyImage, SizesAreRefusedBeforeTheyAreDecoded) {
+  std::vector<std::string> large{"P5 20000 20000 255\n", "P2 20000 20000 255\n",
+                                 "P4 20000 20000\n"};
+  for (const char* kind : {".bmp", ".tiff"}) {
+    std::vector<unsigned char> written;
+    cv::imencode(kind, cv::Mat(4, 6, CV_8U, cv::Scalar(7)), written);
+    large.emplace_back(written.begin(), written.end());
+  }
+  for (const std::size_t at : {18, 22}) large[3].replace(at, 4, std::string("\x20\x4e\0\0", 4));
+  const std::size_t tags = number_at<std::uint32_t>(large[4], 4, false);
+  for (const std::size_t tag : {256, 257}) {
+    std::size_t at = tags + 2;
+    while (number_at<std::uint16_t>(large[4], at, false) != tag) at += 12;
+    large[4].replace(at + 8, 2, "\x20\x4e");
+  }
+  for (const std::string& bytes : large) {
+    const File file(bytes);
+    EXPECT_NE(test::error_message([&] {
+                read_grey_image(file.path());
+              }).find("has a header of 20000x20000 pixels, more than can be read"),
+              std::string::npos)
+        << bytes.substr(0, 2) << test::error_message([&] { read_grey_image(file.path()); });
+  }
 }
 
 }  // namespace

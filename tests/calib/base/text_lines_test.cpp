@@ -7,6 +7,7 @@
 #include <clocale>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -79,6 +80,33 @@ TEST(ParseReal, TakesOneSign) {
         test::error_message([&] { parse_real(text, "a.csv:1", "x"); }),
         "a.csv:1: x is \"" + std::string(text) + "\", not a number; correct or remove the line");
   }
+}
+
+TEST(ToReal, TakesNoMoreThanAThousandBytes) {
+  EXPECT_EQ(to_real("1." + std::string(900, '0')), 1);
+  EXPECT_EQ(to_real("1." + std::string(1'000'000, '0')), std::nullopt);
+}
+
+TEST(ParseWhole, RefusesWhatAnIntCannotHold) {
+  EXPECT_EQ(parse_whole(" -2147483648", "a.csv:1", "x"), -2147483648);
+  for (const std::string text : {"2147483648", "4294967297", "1e3", "0x10", "1.0", "+1", ""}) {
+    EXPECT_NE(test::error_message([&] { parse_whole(text, "a.csv:1", "x"); }), "") << text;
+  }
+  const std::string said =
+      test::error_message([&] { parse_whole(std::string(100'000, '9'), "a.csv:1", "x"); });
+  EXPECT_LT(said.size(), 150U);
+}
+
+TEST(TextLines, RefusesALineThatIsTooLong) {
+  const test::Folder folder;
+  const auto file = folder.path() / "a.csv";
+  std::ofstream(file) << "one\n" << std::string(100'000, 'x') << "\n";
+  TextLines lines(file);
+  std::string_view line;
+  EXPECT_TRUE(lines.next(line));
+  EXPECT_NE(
+      test::error_message([&] { lines.next(line); }).find("a.csv:2: the line has 100000 bytes"),
+      std::string::npos);
 }
 
 TEST(ToReal, TakesAllOfTheText) {

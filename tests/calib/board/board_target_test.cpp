@@ -115,7 +115,7 @@ TEST_F(KalibrTarget, FaultsAreNamedWithTheirLine) {
             ":1: target_type is \"hexgrid\"; supported: aprilgrid, checkerboard");
   EXPECT_EQ(error_output("tagCols: 6\n").substr(0, 31), ": the key target_type is missin");
   EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: six\n"),
-            ":2: tagCols is \"six\"; give a whole number above 0");
+            ":2: tagCols is \"six\"; give a whole number of 1 to 1000");
   EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: -0.1\n"),
             ":4: tagSize is \"-0.1\"; give a number above 0");
   EXPECT_EQ(error_output("target_type: aprilgrid\ntagCols: 6\ntagCols: 6\n").substr(0, 3), ":3:");

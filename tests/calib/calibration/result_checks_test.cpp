@@ -25,6 +25,17 @@ Rig folded_rig() {
   return rig;
 }
 
+TEST(NoiseWarning, HasTwoTailsAndDoesNotDependOnTheNumberOfCorners) {
+  for (const double dof : {100.0, 1e4, 1e6}) {
+    EXPECT_TRUE(noise_warning(9.1 * dof, dof, 0.2)) << dof;
+    EXPECT_FALSE(noise_warning(8.9 * dof, dof, 0.2)) << dof;
+    EXPECT_FALSE(noise_warning(dof / 8.9, dof, 0.2)) << dof;
+    EXPECT_TRUE(noise_warning(dof / 9.1, dof, 0.2)) << dof;
+  }
+  EXPECT_FALSE(noise_warning(0.5, 5, 0.2));  // by chance, once in 130 times
+  EXPECT_TRUE(noise_warning(8.6e19, 2714, 1e-9));
+}
+
 TEST(InversionWarnings, NameTheCameraAndTheRegion) {
   const std::vector<std::string> warnings = inversion_warnings(folded_rig());
   ASSERT_EQ(warnings.size(), 1u);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "calib/board_observations.h"
@@ -85,6 +87,39 @@ TEST(RigFile, ComplaintsNameFileAndKey) {
             std::string::npos);
   EXPECT_NE(complaint_of(replaced(text, "\"kind\":\"jackknife\"", "\"kind\":\"best\""))
                 .find("covariance kind \"best\""),
+            std::string::npos);
+}
+
+TEST(RigFile, WhatNoRigHasIsRefusedWithItsKey) {
+  const std::string text = format_rig(estimate(), KeepEvidence::no);
+  for (const auto& [from, to, said] :
+       {std::array<std::string, 3>{"\"version\":1", "\"version\":1,\"version\":1",
+                                   "rig.json:1: the object that ends here has the key \"version\""},
+        {"\"version\":1", "\"version\":4294967297", "rig.json: version: 4294967297 is too large"},
+        {"\"size_px\":[640", "\"size_px\":[4294967936", "rig.json: cameras[0].size_px: is not"},
+        {"\"f_px\":", "\"f_px\":1e300,\"f\":", "has no such parameter"},
+        {"\"f_px\":", "\"f_px\":1", "rig.json: parameters: left.f_px is"},
+        {"\"name\":\"left\"", "\"name\":\"le\\u001bft\"",
+         "rig.json: cameras[0].name: \"le\\x1bft\" is not a camera's name"}}) {
+    const std::string complaint = complaint_of(replaced(text, from, to));
+    EXPECT_NE(complaint.find(said), std::string::npos) << complaint;
+    EXPECT_EQ(complaint.rfind("rig.json", 0), 0U) << complaint;
+  }
+}
+
+TEST(RigFile, ACovarianceThatIsNoneIsRefusedWithTheFile) {
+  RigEstimate e = estimate();
+  e.covariance->matrix(0, 1) += 1;
+  EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
+            "rig.json: covariance.matrix: it is not symmetric; check the rig file");
+  e.covariance->matrix(0, 0) = 1e31;
+  EXPECT_EQ(complaint_of(format_rig(e, KeepEvidence::no)),
+            "rig.json: covariance.matrix: holds a number beyond 1e+30; correct it");
+  e = estimate();
+  e.covariance_mvb->coeffRef(0, 1) = e.covariance_mvb->coeffRef(1, 0) =
+      2 * std::sqrt((*e.covariance_mvb)(0, 0) * (*e.covariance_mvb)(1, 1));
+  EXPECT_NE(complaint_of(format_rig(e, KeepEvidence::no))
+                .find("rig.json: covariance_mvb.matrix: it is not positive semi-definite"),
             std::string::npos);
 }
 

@@ -54,6 +54,11 @@ TEST(ChiSquared, EndsAtOneAndAtZero) {
   EXPECT_EQ(chi_squared_survival(0, 16), 1);
   EXPECT_EQ(chi_squared_survival(-1, 16), 1);
   EXPECT_EQ(chi_squared_survival(std::numeric_limits<double>::infinity(), 16), 0);
+  // residuals of exact data
+  for (const double x : {1e-300, 1e-12, 1.0}) {
+    EXPECT_EQ(chi_squared_cdf(x, 4000), 0) << x;
+    EXPECT_EQ(chi_squared_survival(x, 4000), 1) << x;
+  }
 }
 
 TEST(ChiSquared, RefusesWhatIsNoNumber) {

@@ -3,6 +3,9 @@
 #include "sim/study/ceiling.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cstddef>
 
 #include "localise/place.h"
 #include "sim/visibility.h"
@@ -75,6 +78,40 @@ TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {
   const auto places = map_poses(test::small_office().route, 2);
   for (const Pose2D& place : places) sum += finder.aliases(place).ceiling();
   EXPECT_GT(sum / static_cast<double>(places.size()), 0.9);
+}
+
+TEST(AliasFinder, AWideWorldTakesNoMoreMemoryThanASmallOne) {
+  World world = twin_rooms(true);
+  for (const double x : {-1e4, 1e4}) {
+    world.segments.push_back({{x, x, 0}, {x, x, 2.5}, 0});
+  }
+  const Visibility visibility(world);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  const AliasFinder finder(visibility, test::nominal_rig().rig, {});
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere, 0);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 20'000) << "kB";
+}
+
+TEST(AliasFinder, StopsAtAThousandAliases) {
+  World world = twin_rooms(false);
+  const std::size_t segments = world.segments.size(), surfaces = world.surfaces.size();
+  for (int i = 1; i < 600; ++i) {
+    const Eigen::Vector3d shift(20.0 * i, 0, 0);
+    for (std::size_t k = 0; k < segments; ++k) {
+      const WorldSegment s = world.segments[k];
+      world.segments.push_back({s.a_m + shift, s.b_m + shift, s.object});
+    }
+    for (std::size_t k = 0; k < surfaces; ++k) {
+      WorldSurface surface = world.surfaces[k];
+      for (Eigen::Vector3d& p : surface.polygon_m) p += shift;
+      world.surfaces.push_back(surface);
+    }
+  }
+  const Visibility visibility(world);
+  const AliasFinder finder(visibility, test::nominal_rig().rig, {});
+  EXPECT_EQ(finder.aliases({2, 1, 1.5}).elsewhere, 1000);
 }
 
 }  // namespace

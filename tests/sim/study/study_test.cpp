@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -180,6 +181,32 @@ TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
                 }});
 }
 
+TEST_F(StudyRuns, AskedToStopTheyKeepWhatIsDoneAndGoOn) {
+  Study s = study(24);
+  s.file.trials_per_block = 6;
+  const std::string whole = words(run(s, "whole", 2));
+  // before the first query, among the queries, and after each of two blocks
+  for (const int after : {0, 3}) {
+    std::stop_source stop;
+    StudyRun job{.folder = folder_ / "stopped", .threads = 1, .stop = stop.get_token()};
+    job.ceiling_progress = [&](int done, int) {
+      if (done >= after) stop.request_stop();
+    };
+    run_study(s, job);
+    EXPECT_EQ(study_results(s, folder_ / "stopped").blocks_done, 0);
+  }
+  for (int blocks = 1; blocks <= 2; ++blocks) {
+    std::stop_source stop;
+    StudyRun job{.folder = folder_ / "stopped", .threads = 1, .stop = stop.get_token()};
+    job.progress = [&](int done, int) {
+      if (done == 1) stop.request_stop();
+    };
+    run_study(s, job);
+    EXPECT_EQ(study_results(s, folder_ / "stopped").blocks_done, blocks);
+  }
+  EXPECT_EQ(words(run(s, "stopped", 2)), whole);
+}
+
 // In folders of their own, as on machines that share no disk, and in one.
 TEST_F(StudyRuns, ShardsShareTheCeiling) {
   Study s = study(7);
@@ -230,12 +257,12 @@ TEST_F(StudyRuns, ASharedCeilingIsSummedInTheOrderOfQueries) {
   for (int query = 0; query < 7; ++query) sum += 1.0 / (query + 3);
   {
     StudyStore store(folder_ / "thirds" / "results-1-of-2.sqlite");
-    for (const auto& [key, value] : store.notes()) {
+    for (const auto& [key, value] : store.content().notes) {
       const std::size_t at = key.find(" query 1");
       if (at == std::string::npos) continue;
       for (int query = 0; query < 7; ++query) {
-        store.set_metadata(key.substr(0, at) + " query " + std::to_string(query),
-                           fmt::format("{}", 1.0 / (query + 3)));
+        store.set_note(key.substr(0, at) + " query " + std::to_string(query),
+                       fmt::format("{}", 1.0 / (query + 3)));
       }
     }
   }

@@ -1,0 +1,300 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Impossible sizes: every one ends with a word, at exit code 2, in little time and memory.
+
+    size_limits_test.py PROGRAM
+"""
+import os
+import pathlib
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PRIOR = str(ROOT / 'docs/examples/datasheet.json')
+PROGRAM = ''
+MOST_CPU_S = 60
+MB = 1 << 20
+WORLD = 'format = "vernier/world"\nversion = 1\n'
+
+
+class Done:
+    """One call of the program: exit code, output and peak memory."""
+
+    def __init__(self, *arguments, folder, cpu_s=MOST_CPU_S, virtual_mb=None):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            if virtual_mb:
+                resource.setrlimit(resource.RLIMIT_AS, (virtual_mb * MB, virtual_mb * MB))
+
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            child = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=folder, stdout=out,
+                                     stderr=err, preexec_fn=limit)
+            _, status, used = os.wait4(child.pid, 0)
+            child.returncode = self.code = os.waitstatus_to_exitcode(status)
+            out.seek(0)
+            err.seek(0)
+            self.out = out.read().decode(errors='replace')
+            self.err = err.read().decode(errors='replace')
+        self.peak_mb = used.ru_maxrss / 1024
+
+
+def png(width, height, depth=8, before_pixels=b'', value=0):
+    """A PNG of one grey value: a thousand times smaller than its pixels."""
+    def chunk(kind, data):
+        return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+
+    pack = zlib.compressobj(1)
+    row = b'\0' + bytes([value]) * ((width * depth + 7) // 8)
+    rows = b''.join(pack.compress(row) for _ in range(height)) + pack.flush()
+    head = struct.pack('>IIBBBBB', width, height, depth, 0, 0, 0, 0)
+    profile = chunk(b'iCCP', before_pixels) if before_pixels else b''
+    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', head) + profile + chunk(b'IDAT', rows) +
+            chunk(b'IEND', b''))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def call(self, *arguments, **limits):
+        return Done(*arguments, folder=self.folder, **limits)
+
+    def write(self, name, content):
+        data = content if isinstance(content, bytes) else content.encode()
+        (self.folder / name).write_bytes(data)
+        return name
+
+    def refused(self, *arguments, of, peak_mb=500, **limits):
+        done = self.call(*arguments, **limits)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertEqual(done.err.count('\n'), 1, done.err)
+        self.assertIn(of, done.err)
+        self.assertLess(done.peak_mb, peak_mb)
+        self.assertEqual(done.out, '')
+        return done
+
+
+class Worlds(Case):
+    def test_coordinates(self):
+        for coordinate in ('1e308', '1e6', '100000', '-10001'):
+            self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,0,0,0,0,2],\n'
+                       f'[1,1,0,{coordinate},1,0]]\n[[route]]\npoints_m = [[0,0],[1,0]]\n')
+            self.write('s.toml', '[study]\ntrials = 1\n[world]\nfile = "w.world.toml"\n')
+            for call in (('world', 'info', 'w.world.toml'),
+                         ('simulate', '--world', 'w.world.toml', '--pose', '0,0,0'),
+                         ('study', 's.toml', '-o', 'out')):
+                self.refused(*call, of='w.world.toml:5: loose segment 1 is farther than 10000 m')
+            self.assertFalse((self.folder / 'out').exists())
+
+    def test_a_wide_world_is_cheap(self):
+        text = WORLD + '[loose]\nsegments = [\n'
+        for x in (-9980, 0, 9980):
+            for k in range(20):
+                at = x + 0.7 * k
+                text += f'[{at},{x + 2},0,{at},{x + 2},2.2],[{at},{x + 2},2.2,{x},{x + 3},2.2],\n'
+        self.write('w.world.toml', text + ']\n[[route]]\npoints_m = [[2,0],[8,0]]\n')
+        self.write('s.toml', '[study]\ntrials = 1\n[world]\nfile = "w.world.toml"\n')
+        done = self.call('study', 's.toml', '-o', 'out')
+        self.assertEqual(done.code, 0, done.err)
+        self.assertLess(done.peak_mb, 300)
+        done = self.call('simulate', '--world', 'w.world.toml', '--pose', '5000,5000,0')
+        self.assertIn(done.code, (0, 2), done.err)
+        self.assertLess(done.peak_mb, 300)
+
+    def test_a_long_route_gives_no_map_of_one_place_a_leg(self):
+        segments = '[loose]\nsegments = [[0,0,0,0,0,2]]\n'
+        self.write('s.toml', '[study]\ntrials = 1\n[world]\nfile = "w.world.toml"\n')
+        self.write('w.world.toml', WORLD + segments + '[[route]]\npoints_m = [[0,0],[1e9,0]]\n')
+        self.refused('study', 's.toml', '-o', 'out', of='w.world.toml:6: route 0 is farther')
+        self.write('w.world.toml', WORLD + segments + '[[route]]\npoints_m = [[0,0],[9000,0]]\n')
+        self.write('s.toml', '[study]\ntrials = 1\n[world]\nfile = "w.world.toml"\n'
+                   '[map]\nspacing_m = 0.01\n')
+        self.refused('study', 's.toml', '-o', 'out', of='gives 900000 views')
+        self.assertFalse((self.folder / 'out').exists())
+
+    def test_templates_that_multiply(self):
+        rows = ',\n'.join(f'[0,0,{0.01 * k:.2f},1,0,{0.01 * k:.2f}]' for k in range(1001))
+        text = WORLD + f'[[template]]\nname = "t"\nsegments = [{rows}]\n'
+        text += '[[instance]]\ntemplate = "t"\nat_m = [0,0,0]\n' * 1000
+        self.write('w.world.toml', text)
+        self.refused('world', 'info', 'w.world.toml', of='w.world.toml: has 1001000 segments')
+
+    def test_surfaces_of_many_points(self):
+        self.write('w.world.toml', WORLD + '[[surface]]\npolygon = [' +
+                   '[0,0,0],[1,0,0],[1,1,0],' * 100 + ']\n')
+        self.refused('world', 'info', 'w.world.toml', of='has 300 points, more than 200')
+
+
+class Studies(Case):
+    def test_sweeps_that_multiply(self):
+        values = ', '.join(f'{k / 1000:g}' for k in range(200))
+        self.write('s.toml', f'[study]\ntrials = 20\n[sweep]\n"sources.edge_loss" = [{values}]\n'
+                   f'"sources.calibration" = [{values}]\n')
+        self.refused('study', 's.toml', '-o', 'out', of='s.toml:3: the sweep has more than 10000 cells')
+        self.assertFalse((self.folder / 'out').exists())
+
+    def test_trials(self):
+        for trials in ('1000000000000', '0', '-1', '9223372036854775807'):
+            self.write('s.toml', f'[study]\ntrials = {trials}\n')
+            self.refused('study', 's.toml', '-o', 'out', of='out of range; use 1 to 10000000')
+        self.write('s.toml', '[study]\ntrials = 6000000\n[sweep]\n"study.seed" = [1, 2]\n')
+        self.refused('study', 's.toml', '-o', 'out', of='2 cells of 6000000 trials are 12000000')
+
+
+class Images(Case):
+    def evaluate(self, left, right='r1.png', **how):
+        return self.refused('evaluate', '--left', left, '--right', right, '--truth', 't.pfm', **how)
+
+    def test_pixels_by_the_thousand_a_byte(self):
+        large = png(16000, 16000, 1)
+        self.assertLess(len(large), 200_000)
+        self.write('l1.png', large)
+        self.write('r1.png', large + b'x')
+        word = 'l1.png: has a header of 16000x16000 pixels, more than can be read (134217728)'
+        self.evaluate('l1.png', of=word)
+        self.refused('detect', '--left', 'l1.png', '--board', '9x6', '-o', 'c.vnl', of=word)
+        self.refused('match', '--left', 'l1.png', '--right', 'r1.png', '--prior', PRIOR, '-o',
+                     'p.csv', of=word)
+        self.refused('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png', '-o',
+                     'out', of=word)
+
+    def test_other_heads(self):
+        small = self.write('r1.png', png(64, 48))
+        tiff = struct.pack('<2sHIH', b'II', 42, 8, 2) + b''.join(
+            struct.pack('<HHII', tag, 4, 1, 40000) for tag in (256, 257)) + bytes(4)
+        bmp = b'BM' + bytes(12) + struct.pack('<IiiHH', 40, 40000, -40000, 1, 24) + bytes(24)
+        for name, content in (('l1.tif', tiff), ('l1.bmp', bmp), ('l1.pgm', b'P5 40000 40000 255\n'),
+                              ('l1.ppm', b'P3 40000 40000 255\n')):
+            self.evaluate(self.write(name, content), small,
+                          of='has a header of 40000x40000 pixels')
+
+    def test_maps(self):
+        self.write('l1.png', png(640, 480))
+        self.write('r1.png', png(640, 480, value=85))
+        self.write('t.pfm', b'Pf\n20000 20000\n-1\n')
+        self.evaluate('l1.png', of='t.pfm: has a header of 20000x20000 pixels')
+
+    def test_devices_are_no_files(self):
+        word = '/dev/zero: is a device, not a file'
+        self.write('r1.png', png(64, 48))
+        self.evaluate('/dev/zero', of=word)
+        self.refused('rectify', '--rig', 'nominal', '--left', '/dev/zero', '--right', 'r1.png',
+                     '-o', 'out', of=word)
+        self.refused('calibrate', '--observations', '/dev/zero', '--size', '640x480', '-o',
+                     'q.json', of=word)
+        for call in (('world', 'info', '/dev/zero'), ('sample', '/dev/zero', '-o', 's.csv'),
+                     ('convert', '/dev/zero', '-o', 'x.json'), ('study', '/dev/zero', '-o', 'out'),
+                     ('diff', '/dev/zero', 'nominal')):
+            self.refused(*call, of='/dev/zero')
+
+    def test_files_of_gigabytes(self):
+        with open(self.folder / 'w.world.toml', 'wb') as file:
+            file.truncate((1 << 30) + 1)
+        self.refused('world', 'info', 'w.world.toml', of='is larger than 1073741824 bytes')
+
+    def test_pipes_are_read(self):
+        image = png(64, 48)
+        os.mkfifo(self.folder / 'l1.png')
+        self.write('r1.png', png(64, 48, value=85))
+        self.write('t.pfm', b'Pf\n64 48\n-1\n' + bytes(4 * 64 * 48))
+
+        def feed():
+            with open(self.folder / 'l1.png', 'wb') as pipe:
+                pipe.write(image)
+
+        writer = threading.Thread(target=feed, daemon=True)
+        writer.start()
+        done = self.call('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png',
+                         '-o', 'out')
+        writer.join(10)
+        self.assertFalse(writer.is_alive())
+        self.assertIn('64x48', done.err)  # it was read: the rig is of another size
+
+    def test_libraries_say_nothing_beside_ours(self):
+        self.write('l1.png', png(640, 480, before_pixels=b'x\0\0no profile'))
+        self.write('r1.png', png(640, 480, value=85))
+        done = self.call('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png',
+                         '-o', 'out')
+        self.assertNotIn('libpng', done.err)
+        self.assertNotIn('OpenCV', done.err)
+        self.assertNotIn('iCCP', done.err)
+
+
+class Numbers(Case):
+    def test_samples_are_written_as_they_are_drawn(self):
+        done = self.call('sample', 'nominal', '-n', 400_000, '-o', 's.csv', '-q')
+        self.assertEqual(done.code, 0, done.err)
+        size_mb = (self.folder / 's.csv').stat().st_size / MB
+        self.assertGreater(size_mb, 60)
+        self.assertLess(done.peak_mb, 120)
+
+    def test_options(self):
+        for call, word in (
+                (('sample', 'nominal', '-n', '0', '-o', 's.csv'), 'not in range'),
+                (('sample', 'nominal', '-n', '1e12', '-o', 's.csv'), '1e12'),
+                (('uncertainty', 'nominal', '--grid', '100000x100000'), 'above 1000'),
+                (('uncertainty', 'nominal', '--samples', '10000000'), 'not in range'),
+                (('diff', 'nominal', 'nominal', '--grid', '1000x1000'), 'more than 100000'),
+                (('advise', 'nominal', '--board', '1000x1000', '--square-m', '0.03'),
+                 'more than 10000'),
+                (('rectify', '--rig', 'nominal', '--left', 'l.png', '--right', 'r.png', '--size',
+                  '100000x100000', '-o', 'out'), ''),
+                (('detect', '--left', 'l.png', '--board', '1000x1000', '-o', 'c.vnl'), ''),
+                (('world', 'make', '--size-m', '1e9,1,1', '-o', 'w.toml'), 'at most 200 m')):
+            self.refused(*call, of=word)
+
+
+class Memory(Case):
+    """Under ulimit -v a call ends well or with a word; never with 1, an abort or a fault."""
+
+    def test_every_limit(self):
+        self.write('l1.png', png(640, 480))
+        self.write('r1.png', png(640, 480, value=85))
+        self.write('big1.png', png(8000, 8000))
+        self.write('big2.png', png(8000, 8000, value=85))
+        self.write('s.toml', '[study]\ntrials = 1\n')
+        calls = (('sample', 'nominal', '-n', '10', '-o', 's.csv'),
+                 ('world', 'info', 'workshop'),
+                 ('study', 's.toml', '-o', 'out'),
+                 ('uncertainty', 'nominal', '--grid', '600x600'),
+                 ('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png', '-o', 'r'),
+                 ('stereo', '--rectified', '--f-px', '500', '--baseline-m', '0.1', '--left',
+                  'big1.png', '--right', 'big2.png', '-o', 'st'),
+                 ('detect', '--left', 'big1.png', '--board', '9x6', '-o', 'c.vnl'))
+        least_mb = self.least_virtual_mb()
+        ran_out = 0
+        for more_mb in (10, 40, 120, 400):
+            for call in calls:
+                done = self.call(*call, virtual_mb=least_mb + more_mb)
+                said = f'{call[0]} with {least_mb + more_mb} MB: {done.code} {done.err[-300:]}'
+                self.assertIn(done.code, (0, 2, 3), said)
+                if done.code != 2:
+                    continue
+                self.assertTrue(done.err.splitlines()[-1].startswith('vernier: '), said)
+                ran_out += 'out of memory' in done.err
+        self.assertGreater(ran_out, 3)
+
+    def least_virtual_mb(self):
+        """What the program needs to start at all."""
+        for virtual_mb in range(100, 4000, 20):
+            if self.call('--version', virtual_mb=virtual_mb).code == 0:
+                return virtual_mb
+        self.fail('--version needs more than 4 GB')
+        return None
+
+
+if __name__ == '__main__':
+    PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Standard output and error closed, full or a pipe whose reader has gone: no verb falls over it.
+
+    streams_test.py PROGRAM [unittest's options]
+"""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+import verb_calls
+
+PROGRAM = ''
+
+
+class Streams(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.inputs = pathlib.Path(cls.temporary.name)
+        verb_calls.write_inputs(cls.inputs)
+        cls.reference = {}
+        for call in verb_calls.calls():
+            folder, done = cls.run_in_folder(call, '')
+            assert done.returncode == call.code, (call.name, done.stderr)
+            cls.reference[call.name] = (done, cls.content(folder))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def run_in_folder(cls, call, redirection):
+        """In a folder of its own, with the shell's redirection."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=cls.inputs))
+        for file in cls.inputs.iterdir():
+            if file.is_file():
+                (folder / file.name).symlink_to(file)
+        done = subprocess.run(['sh', '-c', f'exec "$@" {redirection}', 'sh', PROGRAM,
+                               *map(str, call.words)],
+                              cwd=folder, capture_output=True, text=True, timeout=120)
+        return folder, done
+
+    @staticmethod
+    def content(folder):
+        """Names and sizes of the files made; sizes vary with the digits of times."""
+        return {str(file.relative_to(folder)): file.stat().st_size
+                for file in folder.rglob('*') if file.is_file() and not file.is_symlink()}
+
+    def expect_same_files(self, call, folder):
+        expected, found = self.reference[call.name][1], self.content(folder)
+        self.assertEqual(found.keys(), expected.keys())
+        for name, size in expected.items():
+            self.assertLess(abs(found[name] - size), 0.02 * size + 100, name)
+
+    def test_every_verb_is_among_the_calls(self):
+        text = subprocess.run([PROGRAM, '--help'], capture_output=True, text=True).stdout
+        listed = re.findall(r'(?m)^  ([a-z]+)  ', text[text.index('Subcommands:'):])
+        self.assertEqual({call.words[0] for call in verb_calls.calls()}, set(listed))
+
+    def test_a_missing_or_full_standard_error_changes_nothing(self):
+        for call in verb_calls.calls():
+            for redirection in ('2>&-', '2>/dev/full'):
+                with self.subTest(verb=call.name, redirection=redirection):
+                    folder, done = self.run_in_folder(call, redirection)
+                    self.assertEqual(done.returncode, call.code)
+                    self.assertEqual(len(done.stdout.splitlines()),
+                                     len(self.reference[call.name][0].stdout.splitlines()))
+                    self.expect_same_files(call, folder)
+
+    def test_a_missing_or_full_standard_output_is_said_and_leaves_the_files_whole(self):
+        for call in verb_calls.calls():
+            for redirection in ('>&-', '>&- 2>&- <&-', '>/dev/full 2>/dev/full'):
+                with self.subTest(verb=call.name, redirection=redirection):
+                    folder, done = self.run_in_folder(call, redirection)
+                    self.assertEqual(done.returncode, 2)
+                    if '2>' not in redirection:
+                        self.assertIn('vernier: standard output: cannot be written',
+                                      done.stderr.splitlines()[-1])
+                    self.expect_same_files(call, folder)
+
+    def test_help_and_complaints_too(self):
+        for words, redirection, code in ((['--help'], '>&-', 2), (['--version'], '>/dev/full', 2),
+                                         (['study', '--help'], '>&- 2>&-', 2),
+                                         (['sample', '--help'], '2>&-', 0),
+                                         (['nothing'], '2>&-', 2), ([], '2>/dev/full', 2), (['doctor'], '>/dev/full', 2),
+                                         (['sample', 'no such rig'], '>&- 2>&-', 2)):
+            with self.subTest(words=words, redirection=redirection):
+                done = self.run_in_folder(verb_calls.Call('', words, []), redirection)[1]
+                self.assertEqual(done.returncode, code)
+
+    def test_a_reader_that_goes_ends_it_as_any_program(self):
+        read, write = os.pipe()
+        os.close(read)
+        try:
+            done = subprocess.run([PROGRAM, 'diff', 'nominal', 'nominal', '-q'], stdout=write,
+                                  stderr=subprocess.PIPE, text=True)
+            self.assertEqual((done.returncode, done.stderr), (-signal.SIGPIPE, ''))
+            done = subprocess.run([PROGRAM, 'diff', 'nominal', 'nominal', '-q'], stdout=write,
+                                  stderr=subprocess.PIPE, text=True, restore_signals=False)
+            self.assertEqual(done.returncode, 2)  # Python ignores the signal, and so may others
+            self.assertIn('standard output: cannot be written', done.stderr)
+            done = subprocess.run([PROGRAM, 'diff', 'nominal', 'nominal', '-q'], stderr=write,
+                                  stdout=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 0)
+        finally:
+            os.close(write)
+
+    def test_a_standard_output_that_does_not_block_gets_all(self):
+        read, write = os.pipe()
+        os.set_blocking(write, False)
+        with subprocess.Popen([PROGRAM, 'report', '--help'], stdout=write) as process:
+            os.close(write)
+            with os.fdopen(read) as output:
+                text = output.read()
+            self.assertEqual(process.wait(), 0)
+        self.assertIn('Example:', text)
+
+
+if __name__ == '__main__':
+    PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

@@ -1,0 +1,420 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Deep, long, doubled, cut and foreign text for every verb that reads a file: one line that names
+the file, exit code 2, two seconds, 300 MB. And the numbers of the command line.
+
+    text_limits_test.py PROGRAM
+"""
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NOMINAL = (ROOT / 'datasets/rigs/nominal.rig.json').read_text()
+WORLD = (ROOT / 'datasets/worlds/workshop.world.toml').read_text()
+PROGRAM = ''
+
+DEEP = 100_000
+LONG = 4_000_000
+MAX_LINE = 600
+MAX_CPU_S = 2
+MAX_MEMORY_KB = 300_000
+
+
+class Run:
+    """A finished call, with its CPU time and the largest memory it had."""
+
+    def __init__(self, folder, *arguments, limit_s=300):
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            child = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=folder, stdout=out,
+                                     stderr=err, stdin=subprocess.DEVNULL)
+            signal.signal(signal.SIGALRM, lambda *_: child.kill())
+            signal.alarm(limit_s)
+            _, status, usage = os.wait4(child.pid, 0)
+            signal.alarm(0)
+            child.returncode = self.code = os.waitstatus_to_exitcode(status)
+            self.cpu_s = usage.ru_utime + usage.ru_stime
+            self.memory_kb = usage.ru_maxrss
+            out.seek(0)
+            err.seek(0)
+            self.out, self.err = out.read(), err.read()
+
+
+def json_faults(good):
+    """Name and text of faulty files; `good` is one that is read."""
+    value = json.loads(good)
+    first = next(iter(value)) if isinstance(value, dict) else None
+    yield 'deep lists', '[' * DEEP
+    yield 'deep objects', '{"a":' * DEEP + '1' + '}' * DEEP
+    if first:
+        inside = good.rstrip()[:-1]
+        yield 'deep inside', inside + ', "deep": ' + '[' * DEEP + ']' * DEEP + '}'
+        yield 'doubled key', inside + f', {json.dumps(first)}: {json.dumps(value[first])}}}'
+        yield 'long key', inside + ', "' + 'k' * LONG + '": 1}'
+        yield 'not UTF-8', inside + ', "k\udcff": 1}'
+        yield 'many values', inside + ', "more": [' + '{},' * (LONG // 3) + '1,]}'
+        yield 'zero byte', inside + ', "k\0": 1}'
+    number = re.search(r'-?\d+\.\d+(e-?\d+)?', good)
+    if number:
+        begin, end = number.span()
+        yield 'number 1e309', good[:begin] + '1e309' + good[end:]
+        yield 'long number', good[:begin] + '1.' + '1' * LONG + good[end:]
+        yield 'text for a number', good[:begin] + '"' + '\\u001b[31m' * 1000 + '"' + good[end:]
+    yield 'cut', good[:len(good) // 2]
+    yield 'something behind', good + '{}'
+    yield 'control characters', '\x1b[31m' * (LONG // 5)
+    yield 'empty', ''
+
+
+def toml_faults(good):
+    yield 'deep dotted key', good + '\n' + '.'.join(['a'] * 50_000) + ' = 1\n'
+    yield 'deep header', good + '\n[' + '.'.join(['a'] * 50_000) + ']\n'
+    yield 'deep list', good + '\nzz = ' + '[' * DEEP
+    yield 'deep table', good + '\nzz = ' + '{a=' * DEEP
+    header = re.search(r'(?m)^\[[^\[].*$', good)
+    key = re.search(r'(?m)^(\w+ *= *)(\S+)', good)
+    if header:
+        yield 'doubled header', good + '\n' + header.group(0) + '\n'
+    if key:
+        begin, end = key.span()
+        yield 'doubled key', good[:end] + '\n' + key.group(0) + good[end:]
+        yield 'number 1e309', good[:begin] + key.group(1) + '1e309' + good[end:]
+        yield 'whole number too large', (good[:begin] + key.group(1) + '99999999999999999999' +
+                                         good[end:])
+        yield 'long number', good[:begin] + key.group(1) + '1' * LONG + good[end:]
+        yield 'long text', good[:begin] + key.group(1) + '"' + 'x' * LONG + '"' + good[end:]
+        yield 'text of control characters', (good[:begin] + key.group(1) + '"' +
+                                             '\\u001b[31m' * 1000 + '"' + good[end:])
+    yield 'unknown key', 'k' * 200 + ' = 1\n' + good
+    yield 'long key', 'k' * LONG + ' = 1\n' + good
+    yield 'not UTF-8', '# \udcff\n' + good
+    yield 'zero byte', '# \0\n' + good
+    yield 'cut', good[:len(good) // 2].rstrip('\n') + '\n[cu'
+    yield 'header that is none', '[/\n' + good
+    yield 'key that is none', '\U0002f830 = 1\n' + good
+    yield 'control characters', '\x1b[31m' * (LONG // 5)
+
+
+def yaml_faults(good):
+    yield 'deep flow', good + '\nzz: ' + '[' * DEEP
+    yield 'deep maps', good + '\nzz: ' + '{a: ' * DEEP
+    yield 'deep block', '- ' * DEEP
+    key = re.search(r'(?m)^(\w+:).*$', good)
+    yield 'doubled key', good + '\n' + key.group(1) + ' 1\n'
+    yield 'aliases', 'a: &a 1\nb: *a\n' + good
+    yield 'two documents', good + '\n---\na: 1\n'
+    yield 'long list', good + '\nzz: [' + '1, ' * (LONG // 3) + ']]'
+    yield 'long text', good + '\nzz: "' + 'x' * LONG + '"\n'
+    yield 'not UTF-8', good + '\nzz: \udcff\n'
+    yield 'zero byte', good + '\nzz: \0\n'
+    yield 'cut', good + '\nzz: [1, 2'
+    yield 'control characters', '\x1b[31m' * (LONG // 5)
+    yield 'tags', ''.join(f'%TAG !a{i}! b\n' for i in range(50_000)) + '---\n' + good
+
+
+def python_faults(good):
+    yield 'deep', '[' * DEEP
+    yield 'doubled key', good.replace('{', "{ 'lensmodel': 'LENSMODEL_PINHOLE',", 1)
+    yield 'number 1e309', re.sub(r'\d+\.\d+', '1e309', good, count=1)
+    yield 'long number', re.sub(r'\d+\.\d+', '1' * LONG, good, count=1)
+    yield 'many values', good.replace('{', "{ 'more': [" + '1,' * (LONG // 2) + '],', 1)
+    yield 'long word', good.replace('{', '{ ' + 'x' * LONG, 1)
+    yield 'not UTF-8', good.replace('{', "{ 'k\udcff': 1,", 1)
+    yield 'cut', good[:len(good) // 2]
+    yield 'control characters', '\x1b[31m' * (LONG // 5)
+
+
+def table_faults(good):
+    """Of text in lines: CSV, .vnl and COLMAP's."""
+    lines = good.splitlines(keepends=True)
+    last = lines[-1].rstrip('\n')
+    number = re.search(r'\d+\.\d+', last)
+    for name, word in (('number 1e309', '1e309'), ('long number', '1' * 10_000),
+                       ('control characters for a number', '\x1b[31m' * 100), ('nan', 'nan')):
+        yield name, ''.join(lines[:-1]) + last[:number.start()] + word + last[number.end():] + '\n'
+    whole = re.search(r'\d+', last)
+    yield 'whole number too large', (''.join(lines[:-1]) + last[:whole.start()] + '4294967297' +
+                                     last[whole.end():] + '\n') if whole.start() == 0 else 'x'
+    yield 'long line', good + 'x' * LONG + '\n'
+    yield 'many fields', good + '1,' * 5_000 + '\n'
+    yield 'not UTF-8', good + '\udcff\n'
+    yield 'zero byte', good + '\0\n'
+    yield 'cut', good.rstrip('\n')[:-8] + '\n'
+
+
+class TextLimits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        (cls.folder / 'good.json').write_text(NOMINAL)
+        for name in ('left.pgm', 'right.pgm'):
+            (cls.folder / name).write_bytes(b'P5\n64 48\n255\n' + bytes(64 * 48))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def refuses(self, what, file, *arguments):
+        """Runs a verb on a faulty file; `file` is the one that the line must begin with."""
+        done = Run(self.folder, *arguments)
+        said = done.err.decode(errors='surrogateescape')
+        with self.subTest(verb=' '.join(map(str, arguments[:2])), fault=what, said=said[:300]):
+            self.assertEqual(done.code, 2)
+            self.assertEqual(done.out, b'')
+            self.assertEqual(len(said.splitlines()), 1)
+            self.assertLess(len(done.err), MAX_LINE)
+            self.assertTrue(said.startswith(f'vernier: {file}'), f'does not begin with {file}')
+            self.assertEqual(re.findall('[\x00-\x09\x0b-\x1f\x7f]', said), [])
+            self.assertLess(done.cpu_s, MAX_CPU_S * SLOWNESS)
+            self.assertLess(done.memory_kb, MAX_MEMORY_KB)
+
+    def write(self, name, text):
+        (self.folder / name).parent.mkdir(exist_ok=True)
+        (self.folder / name).write_bytes(text.encode('utf-8', 'surrogateescape'))
+
+    def test_rigs(self):
+        verbs = [('sample', 'rig.json', '-n', '2', '-o', 's.csv')]
+        others = [('convert', 'rig.json', '--to', 'kalibr', '-o', 'k.yaml'),
+                  ('diff', 'good.json', 'rig.json'), ('diff', 'rig.json', 'good.json'),
+                  ('report', 'rig.json', '-o', 'r.html'), ('uncertainty', 'rig.json'),
+                  ('advise', 'rig.json'), ('check', 'rig.json'),
+                  ('combine', 'rig.json', 'good.json', '-o', 'c.json'),
+                  ('stereo', '--rig', 'rig.json', '--left', 'left.pgm', '--right', 'right.pgm',
+                   '-o', 'e.csv'),
+                  ('rectify', '--rig', 'rig.json', '--left', 'left.pgm', '--right', 'right.pgm',
+                   '-o', 'out'),
+                  ('match', '--prior', 'rig.json', '--left', 'left*.pgm', '--right', 'right*.pgm',
+                   '-o', 'p.csv'),
+                  ('simulate', '--rig', 'rig.json', '--pose', '5,5,0')]
+        for what, text in json_faults(NOMINAL):
+            self.write('rig.json', text)
+            for verb in verbs:
+                self.refuses(what, 'rig.json', *verb)
+        for what, text in json_faults(NOMINAL):
+            if what not in ('deep inside', 'doubled key', 'number 1e309'):
+                continue
+            self.write('rig.json', text)
+            for verb in others:
+                self.refuses(what, 'rig.json', *verb)
+
+    def changed(self, change):
+        rig = json.loads(NOMINAL)
+        change(rig)
+        return json.dumps(rig)
+
+    def test_values_of_rigs(self):
+        def camera(key, value):
+            def change(rig):
+                rig['cameras'][0][key] = value
+            return change
+
+        def parameter(name, value):
+            def change(rig):
+                rig['cameras'][0]['parameters'][name] = value
+                index = rig['parameter_names'].index('left.' + name)
+                rig['parameters'][index] = value
+            return change
+
+        def variance(row, column, value):
+            def change(rig):
+                rig['covariance']['matrix'][row][column] = value
+            return change
+
+        def indefinite(rig):
+            matrix = rig['covariance']['matrix']
+            matrix[0][1] = matrix[1][0] = 2 * (matrix[0][0] * matrix[1][1]) ** 0.5
+
+        def many_cameras(rig):
+            rig['cameras'] = [dict(rig['cameras'][1], name=f'c{i}') for i in range(1000)]
+
+        changes = {
+            'width beyond int': camera('size_px', [1e300, 480]),
+            'width 2^32 + 1': camera('size_px', [4294967297, 480]),
+            'long name': camera('name', 'n' * 100_000),
+            'name of control characters': camera('name', '\x1b[31mleft'),
+            'long model': camera('model', 'm' * 100_000),
+            'focal length 1e300': parameter('f_px', 1e300),
+            'negative focal length': parameter('f_px', -500),
+            'not symmetric': variance(0, 1, 0.5),
+            'negative variance': variance(0, 0, -1),
+            'variance 1e300': variance(0, 0, 1e300),
+            'not positive semi-definite': indefinite,
+            'many cameras': many_cameras,
+            'version 2^32 + 1': lambda rig: rig.update(version=4294967297),
+            'unknown kind': lambda rig: rig['covariance'].update(kind='k' * 100_000),
+            'long parameter name': lambda rig: rig['parameter_names'].append('p' * 100_000),
+            'other format': lambda rig: rig.update(format='f' * 100_000),
+        }
+        for what, change in changes.items():
+            self.write('rig.json', self.changed(change))
+            self.refuses(what, 'rig.json', 'sample', 'rig.json', '-n', '2', '-o', 's.csv')
+        for what in ('not symmetric', 'not positive semi-definite', 'focal length 1e300'):
+            self.write('rig.json', self.changed(changes[what]))
+            for verb in (('uncertainty', 'rig.json'), ('advise', 'rig.json'),
+                         ('diff', 'rig.json', 'good.json'), ('report', 'rig.json', '-o', 'r.html'),
+                         ('convert', 'rig.json', '--to', 'kalibr', '-o', 'k.yaml'),
+                         ('stereo', '--rig', 'rig.json', '--left', 'left.pgm', '--right',
+                          'right.pgm', '-o', 'e.csv'),
+                         ('rectify', '--rig', 'rig.json', '--left', 'left.pgm', '--right',
+                          'right.pgm', '-o', 'out')):
+                self.refuses(what, 'rig.json', *verb)
+
+    def test_rigs_that_stereo_cannot_use(self):
+        """The rig is blamed, not the images."""
+        def turned(rig):
+            rig['cameras'][1]['from_first']['rotation_rad'] = [0, 3.1, 0]
+            names = [f'right.{w}_rad' for w in ('wx', 'wy', 'wz')]
+            for name, value in zip(names, (0, 3.1, 0)):
+                rig['parameters'][rig['parameter_names'].index(name)] = value
+
+        def near(rig):
+            rig['cameras'][1]['from_first']['translation_m'] = [0, 0, 0]
+            for axis in 'xyz':
+                rig['parameters'][rig['parameter_names'].index(f'right.t{axis}_m')] = 0
+
+        def three(rig):
+            rig['cameras'].append(dict(rig['cameras'][1], name='third'))
+            for key in ('parameter_names', 'parameters', 'covariance'):
+                del rig[key]
+
+        width, height = json.loads(NOMINAL)['cameras'][0]['size_px']
+        for seed, name in enumerate(('l.pgm', 'r.pgm')):
+            (self.folder / name).write_bytes(f'P5\n{width} {height}\n255\n'.encode() +
+                                             random.Random(seed).randbytes(width * height))
+        for what, change in (('turned', turned), ('near', near), ('three', three)):
+            self.write('rig.json', self.changed(change))
+            for verb in (('stereo', '-o', 'e.csv'), ('rectify', '-o', 'out')):
+                self.refuses(what, 'rig.json: ', verb[0], '--rig', 'rig.json', '--left', 'l.pgm',
+                             '--right', 'r.pgm', *verb[1:])
+
+    def test_studies_worlds_and_sources(self):
+        study = '[study]\ntrials = 2\nseed = 1\n[world]\nfile = "workshop"\n[rig]\nfile = "nominal"\n'
+        for what, text in toml_faults(study):
+            self.write('s.toml', text)
+            self.refuses(what, 's.toml', 'study', 's.toml', '-o', 'study')
+        self.assertFalse((self.folder / 'study').exists())
+        for what, text in toml_faults(WORLD):
+            self.write('w.toml', text)
+            self.refuses(what, 'w.toml', 'world', 'info', 'w.toml')
+        self.refuses(what, 'w.toml', 'simulate', '--world', 'w.toml', '--pose', '5,5,0')
+        for what, text in toml_faults('[sources]\nedge_loss = 0.1\n'):
+            self.write('sources.toml', text)
+            self.write('s.toml', study + '[sources]\nfile = "sources.toml"\n')
+            self.refuses(what, 'sources.toml', 'study', 's.toml', '-o', 'study')
+        self.assertFalse((self.folder / 'study').exists())
+
+    def test_scenes(self):
+        scenes = '[[scene]]\nname = "a"\nleft = "left.pgm"\nright = "right.pgm"\n'
+        for what, text in toml_faults(scenes):
+            self.write('scenes.toml', text)
+            self.refuses(what, 'scenes.toml', 'evaluate', '--scenes', 'scenes.toml')
+        self.refuses(what, 'scenes.toml', 'characterise', '--scenes', 'scenes.toml', '-o', 'c.toml')
+
+    def test_evaluations(self):
+        good = '{"matchers": {"edge": {"rms": 0.5}}, "scenes": [{"name": "a", "matchers": {}}]}'
+        for what, text in json_faults(good):
+            if what == 'text for a number':
+                continue
+            self.write('evaluation/evaluation.json', text)
+            self.refuses(what, 'evaluation/evaluation.json', 'report', 'evaluation', '-o', 'r.html')
+
+    def test_yaml_of_other_tools(self):
+        for kind, name in (('kalibr', 'camchain.yaml'), ('ros', 'left.yaml'), ('opencv', 'cv.yml')):
+            folder = self.folder / kind
+            folder.mkdir(exist_ok=True)
+            made = Run(folder, 'convert', ROOT / 'datasets/rigs/nominal.rig.json', '--to', kind,
+                       '-o', folder if kind == 'ros' else folder / name)
+            self.assertEqual(made.code, 0, made.err)
+            good = (folder / name).read_text()
+            for what, text in yaml_faults(good):
+                self.write(f'{kind}/faulty.yaml', text)
+                self.refuses(what, f'{kind}/faulty.yaml', 'convert', f'{kind}/faulty.yaml',
+                             '--from', kind, '-o', 'rig2.json')
+        target = 'target_type: aprilgrid\ntagCols: 6\ntagRows: 6\ntagSize: 0.1\ntagSpacing: 0.3\n'
+        for what, text in yaml_faults(target):
+            self.write('target.yaml', text)
+            self.refuses(what, 'target.yaml', 'detect', '--left', 'left*.pgm', '--target',
+                         'target.yaml', '-o', 'c.vnl')
+
+    def test_mrcal_and_colmap(self):
+        made = Run(self.folder, 'convert', 'good.json', '--to', 'mrcal', '-o', 'mrcal/')
+        self.assertEqual(made.code, 0, made.err)
+        good = (self.folder / 'mrcal/left.cameramodel').read_text()
+        for what, text in python_faults(good):
+            self.write('mrcal/left.cameramodel', text)
+            self.refuses(what, 'mrcal/left.cameramodel', 'convert', 'mrcal/left.cameramodel',
+                         'mrcal/right.cameramodel', '-o', 'rig2.json')
+        made = Run(self.folder, 'convert', 'good.json', '--to', 'colmap', '-o', 'colmap/')
+        self.assertEqual(made.code, 0, made.err)
+        config = self.folder / 'colmap/rig_config.json'
+        config_text = config.read_text()
+        (self.folder / 'colmap/rigs.txt').unlink(missing_ok=True)
+        for what, text in json_faults(config_text):
+            self.write('colmap/rig_config.json', text)
+            self.refuses(what, 'colmap/rig_config.json', 'convert', 'colmap', '-o', 'rig2.json')
+        config.write_text(config_text)
+        cameras = (self.folder / 'colmap/cameras.txt').read_text()
+        for what, text in table_faults(cameras):
+            self.write('colmap/cameras.txt', text)
+            self.refuses(what, 'colmap/cameras.txt', 'convert', 'colmap', '-o', 'rig2.json')
+
+    def test_tables(self):
+        rows = ''.join(f'0,{camera},{r},{c},{c / 10},{r / 10},0.0,{50 + 10 * c}.5,{60 + 10 * r}.5\n'
+                       for camera in (0, 1) for r in range(3) for c in range(4))
+        header = 'frame,camera,row,col,X,Y,Z,qx,qy\n'
+        pairs = ('pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px\n'
+                 '1,100.5,100.5,90.5,100.5,0.2\n')
+        for name, good, arguments in (
+                ('o.csv', header + rows, ('--observations', 'o.csv', '--size', '640x480')),
+                ('p.csv', pairs, ('--pairs', 'p.csv', '--prior', 'good.json'))):
+            for what, text in table_faults(good):
+                self.write(name, text)
+                self.refuses(what, name, 'calibrate', *arguments, '-o', 'rig2.json')
+
+    def test_whole_numbers_of_the_command_line(self):
+        cases = ('18446744073709551616', '010', '1e3', ' 5', '5 ', '+5', '0x10', '1_000', "'5",
+                 '1.5', '-1', '', '9' * 100_000, '\x1b[31m', '5,5')
+        for text in cases:
+            for words in (('sample', 'nominal', '-o', 's.csv', '--seed'),
+                          ('sample', 'nominal', '-o', 's.csv', '-n'),
+                          ('world', 'make', '-o', 'w2.toml', '--seed'),
+                          ('study', 's.toml', '-o', 'study', '--threads')):
+                self.refuses(text[:30], '-', *words[:-1], f'{words[-1]}={text}'
+                             if words[-1].startswith('--') else f'{words[-1]}{text}')
+        seed = Run(self.folder, 'sample', 'nominal', '-n', '1', '-o', 'largest.csv', '--seed',
+                   '18446744073709551615')
+        self.assertEqual(seed.code, 0, seed.err)
+
+    def test_real_numbers_of_the_command_line(self):
+        for text in ('nan', 'inf', '-inf', '1e309', '0x10', '1_000', ' 1', '1 ', '', '1,5',
+                     '9' * 100_000):
+            for words in (('sample', 'nominal', '-o', 's.csv', '--psi-c'),
+                          ('stereo', '--rig', 'nominal', '--left', 'left.pgm', '--right',
+                           'right.pgm', '-o', 'e.csv', '--epipolar-reject-deg'),
+                          ('diff', 'nominal', 'nominal', '--focus')):
+                self.refuses(text[:30], '-', *words[:-1], f'{words[-1]}={text}')
+
+    def test_control_characters_and_long_words_never_reach_the_terminal(self):
+        for words in (('sample', '\x1b[31m.json', '-o', 's.csv'), ('\x1b[31m',),
+                      ('sample', 'good.json', '--\x1b[31m'),
+                      ('convert', 'good.json', '--to', '\x1b[31m', '-o', 'k'),
+                      ('sample', 'good.json', 'a\x1b[31m', '-o', 's.csv'),
+                      ('sample', 'x' * 100_000, '-o', 's.csv'), ('x' * 100_000,),
+                      ('convert', 'good.json', '--to', 'x' * 100_000, '-o', 'k'),
+                      ('advise', 'good.json', '--covariance', 'x' * 100_000)):
+            self.refuses(words[-1][:20], '', *words)
+
+
+SLOWNESS = 1
+if __name__ == '__main__':
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""One quick call of every verb, for tests that disturb the program: streams_test.py, faults_test.py
+and scripts/fault_trials.py."""
+import dataclasses
+import json
+import pathlib
+import random
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import characterise_test
+import evaluate_test
+import stereo_test
+from cli_test import IMAGES, board_lines
+
+
+@dataclasses.dataclass
+class Call:
+    name: str
+    words: list       # of the command line, without the program
+    outputs: list     # the files or folders it writes, in its folder
+    code: int = 0     # its exit code
+
+
+WORLD = '''format = "vernier/world"
+version = 1
+name = "posts"
+
+[[template]]
+name = "post"
+segments = [[0, 0, 0, 0, 0, 2], [0.3, 0, 0, 0.3, 0, 2], [0, 0, 2, 0.3, 0, 2]]
+surfaces = [[[0, 0, 0], [0.3, 0, 0], [0.3, 0, 2], [0, 0, 2]]]
+corners = [[0, 0, 2], [0.3, 0, 2]]
+
+[[route]]
+points_m = [[2, 2], [5, 2]]
+''' + ''.join(f'''
+[[instance]]
+template = "post"
+at_m = [{0.7 * (i % 10) + 0.2 * (i % 3):.1f}, {4 + 0.4 * (i % 4):.1f}, 0]
+yaw_deg = {20 * (i % 5)}
+''' for i in range(20))
+
+STUDY = ('[study]\ntrials = 120\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
+         '[world]\nfile = "posts.world.toml"\n[rig]\nfile = "nominal"\n[sweep]\n"sources.calibration" = [0, 1]\n')
+
+
+def matched_pairs():
+    """A pairs file of the rig of stereo_test."""
+    chance = random.Random(3)
+    lines = ['pair,u_left_px,v_left_px,u_right_px,v_right_px,sigma_px']
+    for image in range(2):
+        for _ in range(60):
+            u, v, z = chance.uniform(40, 180), chance.uniform(10, 110), chance.uniform(1, 4)
+            right = u - stereo_test.F_PX * stereo_test.BASELINE_M / z
+            noise = [chance.gauss(0, 0.1) for _ in range(4)]
+            lines.append(f'{image},{u + noise[0]},{v + noise[1]},{right + noise[2]},{v + noise[3]},0.1')
+    return '\n'.join(lines) + '\n'
+
+
+def write_inputs(folder):
+    """What the calls read, made without the program."""
+    folder = pathlib.Path(folder)
+    for name, rows in zip(('left', 'right', 'truth'), evaluate_test.pair()):
+        evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
+    for name, rows in zip(('big_left', 'big_right', 'big_truth'), characterise_test.pair()):
+        evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
+    (folder / 'rig.json').write_text(json.dumps(stereo_test.pinholes()))
+    (folder / 'corners.csv').write_text('\n'.join(board_lines()))
+    (folder / 'pairs.csv').write_text(matched_pairs())
+    (folder / 'posts.world.toml').write_text(WORLD)
+    (folder / 'study.toml').write_text(STUDY)
+
+
+def calls():
+    pair = ['--left', 'left.pgm', '--right', 'right.pgm']
+    board = ['--observations', 'corners.csv', '--size', '640x480']
+    truth = [*pair, '--truth', 'truth.pgm', '--truth-scale', '4', '--max-disparity', '20']
+    return [
+        Call('doctor', ['doctor'], []),
+        Call('detect', ['detect', '--left', IMAGES / 'left01.jpg', '--right', IMAGES / 'right01.jpg',
+                        '--board', '9x6', '-o', 'out.vnl'], ['out.vnl']),
+        Call('match', ['match', *pair, '--prior', 'rig.json', '--picture', 'out.png', '-o', 'out.csv'],
+             ['out.png', 'out.csv']),
+        Call('calibrate', ['calibrate', *board, '--no-model-check', '-o', 'out.json'], ['out.json']),
+        Call('combine', ['combine', '--prior', 'rig.json', 'pairs.csv', '--monitor', '--drift',
+                         'drift.csv', '-o', 'out.json'], ['out.json', 'drift.csv']),
+        Call('check', ['check', *board, '--trials', '40'], []),
+        Call('uncertainty', ['uncertainty', 'rig.json', '--distances-m', '1,inf', '--grid', '6x4',
+                             '-o', 'out'], ['out']),
+        Call('sample', ['sample', 'nominal', '-n', '2000', '-o', 'out.csv'], ['out.csv']),
+        Call('convert', ['convert', 'rig.json', '--to', 'mrcal', '-o', 'models/'], ['models']),
+        Call('diff', ['diff', 'nominal', 'nominal'], []),
+        Call('advise', ['advise', 'nominal', '--reduce', 'depth', '--at-m', '5'], []),
+        Call('rectify', ['rectify', '--rig', 'rig.json', *pair, '-o', 'out'], ['out']),
+        Call('stereo', ['stereo', '--rig', 'rig.json', *pair, '--max-disparity', '20', '--picture',
+                        'out.png', '-o', 'out'], ['out', 'out.png']),
+        Call('evaluate', ['evaluate', *truth, '--matcher', 'edge', '-o', 'out'], ['out']),
+        Call('characterise', ['characterise', '--left', 'big_left.pgm', '--right', 'big_right.pgm',
+                              '--truth', 'big_truth.pgm', '--truth-scale', '4', '--max-disparity',
+                              '20', '-o', 'out.toml'], ['out.toml']),
+        Call('world', ['world', 'make', '--seed', '7', '-o', 'out.toml'], ['out.toml']),
+        Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0'],
+             []),
+        Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        Call('report', ['report', 'nominal', '-o', 'out.html'], ['out.html']),
+    ]

@@ -6,10 +6,11 @@ set -euo pipefail
 
 usage() {
   cat <<'USAGE'
-usage: scripts/install_packages.sh [--demo | --test]
+usage: scripts/install_packages.sh [--demo | --test | --fuzz]
   --demo   without the packages for tests, benchmarks and the check against mrcal
   --test   with the additional packages of the test script: clang-format, clang-tidy, git,
            Python, Chromium, mrcal, COLMAP
+  --fuzz   with clang and libFuzzer, for scripts/fuzz.sh
 USAGE
 }
 
@@ -20,6 +21,7 @@ case "${1:-}" in
   "") ;;
   --demo) scope=demo ;;
   --test) scope="test" ;;
+  --fuzz) scope=fuzz ;;
   -h | --help)
     usage
     exit 0
@@ -34,12 +36,13 @@ packages=(
   g++ cmake ninja-build ccache
   libceres-dev libopencv-dev libopencv-contrib-dev libeigen3-dev libtbb-dev librandom123-dev
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
-  libhwy-dev libyaml-cpp-dev libboost-dev libjpeg-dev libpng-dev esbuild
+  libhwy-dev libyaml-dev libboost-dev libjpeg-dev libpng-dev esbuild
 )
 if [[ $scope != demo ]]; then packages+=(libgtest-dev libbenchmark-dev libmrcal-dev); fi
 if [[ $scope == test ]]; then
   packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap locales)
 fi
+if [[ $scope == fuzz ]]; then packages+=(clang-14 libclang-rt-14-dev); fi
 
 sample_images=usr/share/doc/opencv-doc/examples/data
 has_sample_images() { [[ -f /$sample_images/left01.jpg || -f build/opencv-doc/$sample_images/left01.jpg ]]; }

@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Kills every verb that writes at random moments and looks at what it leaves.
+
+    fault_trials.py PROGRAM [--kills 1000] [--seed 1] [--jobs 1] [--verb NAME ...]
+
+Each trial starts a verb in a folder of its own, with or without old outputs there, and sends SIGKILL:
+half of them after a random part of the time that the verb takes, half within 0.1 s of the first file
+that it makes. Then
+- every output file is the old one, or the new one complete, or absent where there was no old one;
+- what else is there has a name that docs/robustness.md lists (.vernier-*.tmp, SQLite's companions);
+- the same call again gives the result of an undisturbed one.
+Exit code 1 if a trial fails. Times in results are not compared.
+"""
+import argparse
+import collections
+import concurrent.futures
+import fnmatch
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / 'tests/cli'))
+sys.dont_write_bytecode = True
+import verb_calls
+
+OLD = b'an old file\n'
+LEFTOVERS = ('.vernier-*.tmp', 'results*.sqlite-wal', 'results*.sqlite-shm',
+             'results*.sqlite-journal', 'results*.sqlite', '*.lock')
+
+
+class Trials:
+    def __init__(self, program, folder):
+        self.program = str(pathlib.Path(program).resolve())
+        self.folder = folder
+        self.inputs = folder / 'inputs'
+        self.inputs.mkdir()
+        verb_calls.write_inputs(self.inputs)
+        self.reference, self.seconds = {}, {}
+
+    def place(self, name):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix=name + '-', dir=self.folder))
+        for file in self.inputs.iterdir():
+            (folder / file.name).symlink_to(file)
+        (folder / 'tmp').mkdir()
+        return folder
+
+    def start(self, call, folder):
+        return subprocess.Popen([self.program, *map(str, call.words)], cwd=folder,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                env=dict(os.environ, TMPDIR=str(folder / 'tmp')))
+
+    def finish(self, call, folder):
+        """The undisturbed call. What is wrong with it, or an empty string."""
+        with self.start(call, folder) as process:
+            said = process.communicate(timeout=300)[1]
+        return '' if process.returncode == call.code else f'exit {process.returncode}: {said[-300:]}'
+
+    def files(self, folder):
+        """Content by name of what is neither input nor temporary folder, times left out."""
+        found = {}
+        for file in sorted(folder.rglob('*')):
+            name = str(file.relative_to(folder))
+            if file.is_dir() or file.is_symlink() or name.startswith('tmp/'):
+                continue
+            content = file.read_bytes()
+            if file.suffix == '.json':
+                content = re.sub(rb'"[a-z_0-9]*_ms[a-z_0-9]*": ?[-+.e0-9]+', b'', content)
+            found[name] = content
+        return found
+
+    def outcome(self, call, folder):
+        """What a complete run leaves: its files, a store by what the program reads of it."""
+        found = {name: content for name, content in self.files(folder).items()
+                 if not name.endswith(('.sqlite', '-wal', '-shm', '.lock'))
+                 and not fnmatch.fnmatch(pathlib.Path(name).name, '.vernier-*.tmp')}
+        if call.name == 'study':
+            done = subprocess.run([self.program, 'study', 'status', 'out', '--json'], cwd=folder,
+                                  capture_output=True, text=True)
+            status = json.loads(done.stdout) if done.stdout else {'failed': done.stderr}
+            for cell in status.get('cells', []):
+                for key in [key for key in cell if '_ms' in key]:
+                    del cell[key]
+            found['status'] = json.dumps(status, sort_keys=True)
+        return found
+
+    def learn(self, call):
+        """An undisturbed run: its outcome, and the time it takes."""
+        folder = self.place(call.name)
+        start = time.monotonic()
+        wrong = self.finish(call, folder)
+        self.seconds[call.name] = time.monotonic() - start
+        if wrong:
+            raise RuntimeError(f'{call.name} undisturbed: {wrong}')
+        self.reference[call.name] = self.outcome(call, folder)
+        shutil.rmtree(folder)
+
+    def put_old_files(self, call, folder):
+        for name in self.reference[call.name]:
+            if name != 'status':
+                (folder / name).parent.mkdir(exist_ok=True)
+                (folder / name).write_bytes(OLD)
+
+    def faults_after_kill(self, call, folder, had_old):
+        """A list of faults, and how many of the outputs are new."""
+        faults, new = [], 0
+        found, reference = self.files(folder), self.reference[call.name]
+        for name, content in found.items():
+            if name in reference:
+                if content == reference[name]:
+                    new += 1
+                elif not (had_old and content == OLD):
+                    faults.append(f'{name} is incomplete: {len(content)} bytes')
+            elif not any(fnmatch.fnmatch(pathlib.Path(name).name, mask) for mask in LEFTOVERS):
+                faults.append(f'{name} was left behind')
+        faults += [f'{name} is gone' for name in reference
+                   if had_old and name != 'status' and name not in found]
+        return faults, new
+
+    @staticmethod
+    def wait_for_writing(process, folder):
+        """Until the first new name appears beside the inputs."""
+        def names():
+            return {name for at in (folder, folder / 'out', folder / 'models') if at.is_dir()
+                    for name in os.listdir(at)}
+        before = names()
+        while process.poll() is None and names() <= before:
+            pass
+
+    def trial(self, call, chance):
+        """One kill. Returns (state when killed, faults)."""
+        folder = self.place(call.name)
+        had_old = call.name != 'study' and chance.random() < 0.5
+        if had_old:
+            self.put_old_files(call, folder)
+        aimed = chance.random() < 0.5
+        with self.start(call, folder) as process:
+            if aimed:
+                self.wait_for_writing(process, folder)
+                time.sleep(0.1 * 10 ** chance.uniform(-4, 0))
+            else:
+                time.sleep(chance.random() * 1.1 * self.seconds[call.name])
+            ended = process.poll() is not None
+            try:
+                os.killpg(process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+            process.communicate()
+        faults, new = self.faults_after_kill(call, folder, had_old)
+        every = sum(name != 'status' for name in self.reference[call.name])
+        if ended or new == every:
+            state = 'ended before' if ended else 'all new'
+        else:
+            state = 'some new' if new else 'none new'
+        wrong = self.finish(call, folder)
+        if wrong:
+            faults.append('again: ' + wrong)
+        elif self.outcome(call, folder) != self.reference[call.name]:
+            faults.append('again: another result')
+        shutil.rmtree(folder)
+        return state, faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('program')
+    parser.add_argument('--kills', type=int, default=1000)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--jobs', type=int, default=1)
+    parser.add_argument('--verb', action='append')
+    options = parser.parse_args()
+    calls = [call for call in verb_calls.calls()
+             if call.outputs and (not options.verb or call.name in options.verb)]
+    failed, tally = 0, collections.defaultdict(collections.Counter)
+    with tempfile.TemporaryDirectory() as folder:
+        trials = Trials(options.program, pathlib.Path(folder))
+        for call in calls:
+            trials.learn(call)
+
+        def one(number):
+            call = calls[number % len(calls)]
+            return call, trials.trial(call, random.Random(f'{options.seed} {number}'))
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            for number, (call, (state, faults)) in enumerate(pool.map(one, range(options.kills))):
+                tally[call.name][state] += 1
+                for fault in faults:
+                    print(f'trial {number}, {call.name}: {fault}')
+                failed += bool(faults)
+    states = ('none new', 'some new', 'all new', 'ended before')
+    print('{:<14}'.format('verb') + ''.join(f'{state:>14}' for state in states))
+    for name, counts in tally.items():
+        print(f'{name:<14}' + ''.join(f'{counts[state]:>14}' for state in states))
+    print(f'{options.kills} kills, {failed} trials failed')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

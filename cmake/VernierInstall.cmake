@@ -17,7 +17,7 @@ function(vernier_dependencies module result)
   list(FILTER needs EXCLUDE REGEX "^vernier::")  # brought by the component itself
   set(lines "")
   foreach(package IN ITEMS "Eigen3::|Eigen3 3.4" "Ceres::|Ceres 2.1" "fmt::|fmt"
-                           "Highway::|Highway" "yaml-cpp|yaml-cpp" "TBB::|TBB" "SQLite::|SQLite3"
+                           "Highway::|Highway" "LibYAML::|LibYAML" "TBB::|TBB" "SQLite::|SQLite3"
                            "JPEG::|JPEG" "PNG::|PNG")
     string(REPLACE "|" ";" package "${package}")
     list(GET package 0 namespace)
@@ -66,6 +66,7 @@ configure_package_config_file(cmake/vernier-config.cmake.in vernier-config.cmake
 write_basic_package_version_file(vernier-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake
               ${PROJECT_BINARY_DIR}/vernier-config-version.cmake cmake/FindHighway.cmake
+              cmake/FindLibYAML.cmake
         DESTINATION ${vernier_package_dir})
 
 # The program finds these beside itself, in ../share/vernier; cli/page adds the report's page.

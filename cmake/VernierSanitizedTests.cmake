@@ -44,7 +44,8 @@ function(vernier_sanitized_test name)
     $<TARGET_OBJECTS:calib_sanitized> $<TARGET_OBJECTS:stereo_sanitized>
     $<TARGET_OBJECTS:localise_sanitized> $<TARGET_OBJECTS:sim_sanitized> $<TARGET_OBJECTS:${name}>)
   target_link_libraries(${program} PRIVATE $<TARGET_PROPERTY:${name},LINK_LIBRARIES> vernier::sim)
-  target_link_options(${program} PRIVATE ${sanitizer_checks})
+  # The sanitized objects come first and win over members of the libraries that a symbol pulls in.
+  target_link_options(${program} PRIVATE ${sanitizer_checks} -Wl,--allow-multiple-definition)
   set_target_properties(${program} PROPERTIES LINKER_LANGUAGE CXX)
   add_dependencies(${program} ${name})
   add_dependencies(sanitized_tests ${program})

@@ -99,8 +99,10 @@ std::optional<std::string> ill_conditioning_warning(const Covariance& bound, con
 
 std::optional<std::string> noise_warning(double chi2, double dof, double pixel_sigma_px) {
   constexpr double most = 9, chance = 1e-4, no_chance_dof = 60;
+  constexpr double exact_px = 1e-3;  // computed corners; no detector is as good
   const double ratio = chi2 / dof;
   const bool too_small = !(ratio <= most);
+  if (pixel_sigma_px * std::sqrt(ratio) < exact_px && !too_small) return {};
   if (!too_small && ratio >= 1 / most) return {};
   if (dof < no_chance_dof && chi2 < 1e3) {  // with more, neither limit is reached by chance
     const double p = too_small ? chi_squared_survival(chi2, dof) : chi_squared_cdf(chi2, dof);

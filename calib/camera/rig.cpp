@@ -112,6 +112,11 @@ Rig rig_of(std::vector<PlacedCamera> cameras) {
     rig.T_camera_first.push_back(rig.cameras.empty() ? Pose{}
                                                      : c.T_camera_reference *
                                                            cameras[0].T_camera_reference.inverse());
+    if (!(rig.T_camera_first.back().t.cwiseAbs().maxCoeff() <= internal::most_value)) {
+      throw Error("camera " + internal::in_quotes(c.camera.name),
+                  fmt::format("it is further than {:g} m from the first", internal::most_value),
+                  "correct its position, or the unit of length");
+    }
     rig.cameras.push_back(std::move(c.camera));
   }
   return rig;

@@ -18,6 +18,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/formats/rig_json.h"
 #include "calib/pose.h"
 
@@ -40,7 +41,7 @@ Pose pose(const Eigen::Vector4d& wxyz, const Eigen::Vector3d& t_m, const std::st
 Pose pose(const Line& line, std::size_t at, double unit_m) {
   Eigen::Matrix<double, 7, 1> v;
   for (std::size_t i = 0; i < 7; ++i) v[static_cast<Eigen::Index>(i)] = line.number(at + i);
-  return pose(v.head<4>(), unit_m * v.tail<3>(), line.place());
+  return pose(v.head<4>(), translation(v.tail<3>(), unit_m, line.place()), line.place());
 }
 
 /// The cameras of cameras.txt and the unit of length.
@@ -96,8 +97,9 @@ PlacedId from_entry(const Node& camera, int id, double unit_m) {
   const Node rotation = camera.at("cam_from_rig_rotation");
   const Eigen::VectorXd q = rotation.vector();
   if (q.size() != 4) throw Error(rotation.place(), "is not a quaternion of 4 numbers", "");
+  const Node t = camera.at("cam_from_rig_translation");
   placed.T_camera_reference =
-      pose(q, unit_m * camera.at("cam_from_rig_translation").vector3(), rotation.place());
+      pose(q, translation(t.vector3(), unit_m, t.place()), rotation.place());
   return placed;
 }
 

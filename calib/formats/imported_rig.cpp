@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
@@ -37,6 +38,15 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& pl
   if (deviation <= 1e-14) return M;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();
+}
+
+Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::string& place) {
+  const Eigen::Vector3d t_m = unit_m * t;
+  if (!(t_m.cwiseAbs().maxCoeff() <= most_value)) {
+    throw Error(place, fmt::format("a position is beyond {:g} m", most_value),
+                "correct it, or the unit of length");
+  }
+  return t_m;
 }
 
 }  // namespace vernier::internal

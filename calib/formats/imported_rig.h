@@ -41,4 +41,8 @@ const std::string& file_stem(const Camera& camera);
 /// larger deviations, and for a reflection.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& M, const std::string& place);
 
+/// The position of a camera in metres from a file's unit. Throws Error(`place`) beyond
+/// ± `most_value`.
+Eigen::Vector3d translation(const Eigen::Vector3d& t, double unit_m, const std::string& place);
+
 }  // namespace vernier::internal

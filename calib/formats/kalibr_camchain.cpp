@@ -57,7 +57,7 @@ Pose read_step(const YamlNode& node, double unit_m) {
     throw Error(matrix.place(), "its last row is not 0 0 0 1", "correct it");
   }
   return {nearest_rotation(T.topLeftCorner<3, 3>(), matrix.place()),
-          unit_m * T.topRightCorner<3, 1>()};
+          translation(T.topRightCorner<3, 1>(), unit_m, matrix.place())};
 }
 
 std::string camera_text(const Camera& camera, const std::string& others) {

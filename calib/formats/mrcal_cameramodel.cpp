@@ -34,6 +34,7 @@ constexpr LensModel lens_models[] = {{"LENSMODEL_PINHOLE", 0},
                                      {"LENSMODEL_OPENCV5", 5},
                                      {"LENSMODEL_OPENCV8", 8},
                                      {"LENSMODEL_OPENCV12", 12}};
+constexpr double most_angle_rad = 1'000;  ///< of a rotation vector's component
 
 /// The value of the first of these names of a key (mrcal renamed some) that is present.
 const PythonLiteral* find_any(const PythonLiteral& model,
@@ -118,8 +119,15 @@ Pose pose(const PythonLiteral& model, const std::string& file, double unit_m) {
     throw Error(fmt::format("{}:{}: extrinsics", file, older->line), "differs from rt_cam_ref",
                 "leave one of them out");
   }
+  const std::string place = fmt::format("{}:{}: {}", file, value.line, key);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(rt[i]) > most_angle_rad) {
+      throw Error(place, fmt::format("a rotation is beyond {:g} rad", most_angle_rad),
+                  "correct it");
+    }
+  }
   return {rotation_from_vector({rt[0], rt[1], rt[2]}),
-          unit_m * Eigen::Vector3d(rt[3], rt[4], rt[5])};
+          translation({rt[3], rt[4], rt[5]}, unit_m, place)};
 }
 
 }  // namespace

@@ -163,7 +163,8 @@ Pose read_pose(const Keys& keys, std::size_t i, std::size_t count, double unit_m
       keys.at_any(pair ? std::vector<std::string>{"T", "T12"} : std::vector<std::string>{"T1" + n});
   const std::vector<double> t = T.vector();
   if (t.size() != 3) throw Error(T.place(), "is not 3 numbers", "correct it");
-  return {nearest_rotation(R.matrix(3, 3), R.place()), unit_m * Eigen::Vector3d(t[0], t[1], t[2])};
+  return {nearest_rotation(R.matrix(3, 3), R.place()),
+          translation({t[0], t[1], t[2]}, unit_m, T.place())};
 }
 
 std::string matrix_text(const std::string& key, const Eigen::MatrixXd& m) {

@@ -104,7 +104,8 @@ ImportedRig read_ros_camera_info(const std::vector<std::filesystem::path>& files
   for (const std::filesystem::path& file : files) {
     infos.push_back(parse_ros_camera_info(read_whole(file), file.string(), options));
     if (infos.back().camera.name.empty()) infos.back().camera.name = file.stem().string();
-    shifts.push_back(options.unit_m * rectified_shift(infos.back(), file.string()));
+    shifts.push_back(translation(rectified_shift(infos.back(), file.string()), options.unit_m,
+                                 file.string() + ": projection_matrix"));
   }
   std::vector<PlacedCamera> cameras{{infos[0].camera, Pose{}}};
   if (infos.size() == 2) {

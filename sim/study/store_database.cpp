@@ -37,6 +37,23 @@ std::string uri_of(const std::filesystem::path& file, const std::string& options
   return uri + "?" + options;
 }
 
+/// Of this process: the system's files, none of which is ever made. SQLite makes an empty log
+/// beside a store it opens for reading, if the writer has just removed its own.
+const char* files_that_exist() {
+  static sqlite3_vfs* const system = sqlite3_vfs_find(nullptr);
+  static sqlite3_vfs existing = *system;
+  static const int registered = [] {
+    existing.pNext = nullptr;
+    existing.zName = "vernier-existing";
+    existing.xOpen = [](sqlite3_vfs*, sqlite3_filename name, sqlite3_file* file, int flags,
+                        int* given) {
+      return system->xOpen(system, name, file, flags & ~SQLITE_OPEN_CREATE, given);
+    };
+    return sqlite3_vfs_register(&existing, 0);
+  }();
+  return registered == SQLITE_OK ? existing.zName : nullptr;
+}
+
 struct Advice {
   const char *fault, *remedy;
 };
@@ -71,18 +88,18 @@ Advice advice(int code) {
 }  // namespace
 
 Database Database::to_write(const std::filesystem::path& file) {
-  return {file, uri_of(file, "mode=rwc"), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE};
+  return {file, uri_of(file, "mode=rwc"), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr};
 }
 
 Database Database::to_read(const std::filesystem::path& file, const std::string& options) {
   return {file, uri_of(file, "mode=ro" + (options.empty() ? "" : "&" + options)),
-          SQLITE_OPEN_READONLY};
+          SQLITE_OPEN_READONLY, files_that_exist()};
 }
 
-Database::Database(std::filesystem::path file, const std::string& uri, int flags)
+Database::Database(std::filesystem::path file, const std::string& uri, int flags, const char* vfs)
     : file_(std::move(file)) {
   // Not SQLITE_OPEN_NOFOLLOW: a folder of results may be a link.
-  if (sqlite3_open_v2(uri.c_str(), &db_, flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr) !=
+  if (sqlite3_open_v2(uri.c_str(), &db_, flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, vfs) !=
       SQLITE_OK) {
     const Database closed(std::move(*this));  // the destructor of this does not run
     closed.fail();

@@ -14,7 +14,8 @@ class Database {
  public:
   /// Opens or creates a file for writing.
   static Database to_write(const std::filesystem::path& file);
-  /// Opens a file for reading, with options of SQLite's URI names, such as "immutable=1".
+  /// Opens a file for reading, with options of SQLite's URI names, such as "immutable=1". Makes no
+  /// file.
   static Database to_read(const std::filesystem::path& file, const std::string& options);
   ~Database() { sqlite3_close(db_); }
   Database(Database&& other) noexcept;
@@ -32,7 +33,7 @@ class Database {
   std::string place() const { return file_.string(); }
 
  private:
-  Database(std::filesystem::path file, const std::string& uri, int flags);
+  Database(std::filesystem::path file, const std::string& uri, int flags, const char* vfs);
   friend class Statement;
 
   std::filesystem::path file_;

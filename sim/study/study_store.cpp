@@ -132,7 +132,21 @@ StudyStore::StudyStore(const fs::path& file, Journal journal)
   }
 }
 
-StudyStore::~StudyStore() = default;
+/// Leaves one file, without a log, also if another process is reading: SQLite leaves the log to a
+/// reader that may not remove it.
+StudyStore::~StudyStore() {
+  using namespace std::chrono_literals;
+  constexpr int attempts = 100;
+  for (int attempt = 0; open_ && attempt < attempts; ++attempt) {
+    try {
+      open_->database.run("PRAGMA journal_mode = DELETE");
+      return;
+    } catch (...) {  // the log stays where the disk is full, for the next run
+      if (open_->database.code() != SQLITE_BUSY) return;
+    }
+    std::this_thread::sleep_for(50ms);
+  }
+}
 StudyStore::StudyStore(StudyStore&&) noexcept = default;
 
 void StudyStore::put(const StoredBlock& block) { store_block(open_->database, block); }

@@ -34,6 +34,8 @@ TEST(NoiseWarning, HasTwoTailsAndDoesNotDependOnTheNumberOfCorners) {
   }
   EXPECT_FALSE(noise_warning(0.5, 5, 0.2));  // by chance, once in 130 times
   EXPECT_TRUE(noise_warning(8.6e19, 2714, 1e-9));
+  EXPECT_FALSE(noise_warning(1e-20, 2714, 0.2));  // computed corners have no noise to doubt
+  EXPECT_TRUE(noise_warning(2714 * 1e-4, 2714, 0.2));
 }
 
 TEST(InversionWarnings, NameTheCameraAndTheRegion) {

@@ -122,6 +122,32 @@ TEST(ConvertBadFiles, MrcalKeysOfOldAndNewVersions) {
   EXPECT_EQ(notes[0], "m: optimization_inputs is ignored");
 }
 
+// They were read, and the written rig.json was refused.
+TEST(ConvertBadFiles, PosesBeyondAllLimits) {
+  std::vector<std::string> notes;
+  const auto said_of = [&](const std::string& pose) {
+    return error_message([&] {
+      parse_mrcal_cameramodel(
+          "{'lensmodel': 'LENSMODEL_PINHOLE', 'intrinsics': [4, 3, 4, 5],\n"
+          "'imagersize': [110, 400], 'extrinsics': " +
+              pose + "}",
+          "m", {}, notes);
+    });
+  };
+  EXPECT_EQ(said_of("[0, 0, 0, 1e9, 0, -1e9]"), "");
+  EXPECT_EQ(said_of("[0, 0, 0, 1e308, 0, 0]").find("m:2: extrinsics: a position is beyond 1e+09 m"),
+            0u);
+  EXPECT_EQ(said_of("[0, 1e308, 0, 0, 0, 0]").find("m:2: extrinsics: a rotation is beyond 1000"),
+            0u);
+  const Camera camera = one_camera().cameras[0];
+  const Pose far{Eigen::Matrix3d::Identity(), {9e8, 0, 0}};
+  EXPECT_EQ(error_message([&] {
+              rig_of({{camera, far.inverse()}, {camera, far}});
+            }),
+            "camera \"right\": it is further than 1e+09 m from the first; correct its position, or "
+            "the unit of length");
+}
+
 TEST(ConvertBadFiles, OpenCv) {
   const auto read = [](const std::filesystem::path& file) { read_opencv_calibration({file}); };
   const std::string good = opencv_calibration(rig_of_cameras(OpenCv5{}, 2))[0].text;

@@ -24,14 +24,19 @@ namespace {
 
 constexpr std::string_view png_signature{"\x89PNG\r\n\x1a\n", 8};
 
-bool is_netpbm(std::string_view bytes) {
-  return bytes.substr(0, 2) == "P5" || bytes.substr(0, 2) == "P6";
+// These signatures are as strict as those of OpenCV's decoders: bytes that no other one takes go to
+// GDCM and GDAL there, which read many more formats and end the process on some.
+bool is_netpbm(std::string_view bytes, char first_kind, char last_kind) {
+  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= first_kind && bytes[1] <= last_kind &&
+         std::isspace(static_cast<unsigned char>(bytes[2]));
 }
 
+bool is_netpbm(std::string_view bytes) { return is_netpbm(bytes, '5', '6'); }
+
 /// As text, or of bits.
-bool is_rare_netpbm(std::string_view bytes) {
-  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '4';
-}
+bool is_rare_netpbm(std::string_view bytes) { return is_netpbm(bytes, '1', '4'); }
+
+bool is_jpeg(std::string_view bytes) { return bytes.substr(0, 3) == "\xff\xd8\xff"; }
 
 constexpr const char* no_image = "is not an image that can be read";
 
@@ -73,7 +78,7 @@ std::string netpbm_fault(std::string_view bytes) {
 std::string fault_of(std::string_view bytes, bool& warned) {
   if (is_netpbm(bytes) || is_rare_netpbm(bytes)) return netpbm_fault(bytes);
   if (is_png(bytes)) return png_damage(bytes, &warned);
-  if (bytes.substr(0, 2) == "\xff\xd8") return jpeg_damage(bytes, &warned);
+  if (is_jpeg(bytes)) return jpeg_damage(bytes, &warned);
   const std::optional<ImageSize> size = bitmap_size(bytes);
   return size ? size_fault(*size) : no_image;
 }

@@ -62,6 +62,10 @@ std::optional<ImageSize> webp_size(std::string_view bytes) {
     return whole_at<std::uint16_t>(bytes, at, false).value_or(0);
   };
   if (bytes.size() < 30) return std::nullopt;
+  // Without these marks OpenCV tries other formats, of which GDCM's ends the process on some files.
+  if (kind == "VP8 " && bytes.substr(23, 3) != "\x9d\x01\x2a") return std::nullopt;
+  if (kind == "VP8L" && bytes[20] != '\x2f') return std::nullopt;
+  if (bytes.size() >= 132 && bytes.substr(128, 4) == "DICM") return std::nullopt;
   if (kind == "VP8 ") return ImageSize{word(26) & 0x3fff, word(28) & 0x3fff};
   if (kind == "VP8L") {  // 14 bits each
     const std::uint64_t bits = word(21) | word(23) << 16;

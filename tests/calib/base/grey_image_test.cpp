@@ -129,6 +129,19 @@ TEST(ReadGreyImage, IsSilentAndExactOfAPngWithABadProfile) {
   }
 }
 
+// OpenCV gives bytes that none of its common decoders takes to GDCM, which ended the process on a
+// file that names itself DICOM and is none.
+TEST(ReadGreyImage, WhatOnlyLooksLikeAnImageReachesNoOtherDecoder) {
+  const std::string jpeg = "\xff\xd8\x07", netpbm = "P5x1 1 1\n",
+                    webp = std::string("RIFF\x7f\0\0\0WEBPVP8 \x7f\0\0\0", 20);
+  for (const std::string& head : {jpeg, netpbm, webp}) {
+    std::string bytes = head + std::string(128 - head.size(), '\x84') + "DICM{\x88P";
+    const File file(bytes);
+    EXPECT_EQ(test::error_message([&] { read_grey_image(file.path()); }),
+              file.path().string() + ": is not an image that can be read; check the file");
+  }
+}
+
 TEST(ReadGreyImage, SizesAreRefusedBeforeTheyAreDecoded) {
   std::vector<std::string> large{"P5 20000 20000 255\n", "P2 20000 20000 255\n",
                                  "P4 20000 20000\n"};

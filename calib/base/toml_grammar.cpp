@@ -286,11 +286,23 @@ class TomlGrammar {
       return;
     } else if (lines) {
       skip_blanks();
-      if (take_line_end()) return;
+      if (take_line_end()) return joined_line();
     }
     at_ = begin;
     fail("not TOML: a text holds an unknown escape " + in_quotes(text_.substr(at_, 2)),
          "write \\\\ for a backslash");
+  }
+
+  /// What follows a backslash at a line's end: toml++ 3.3 does not know which characters beyond
+  /// ASCII are blank.
+  void joined_line() {
+    do {
+      skip_blanks();
+    } while (take_line_end());
+    if ((static_cast<unsigned char>(peek()) & 0x80U) != 0) {
+      fail("holds a backslash at the end of a line before a character beyond ASCII",
+           "leave the backslash out, or join the lines");
+    }
   }
 
   /// A number, true or false.

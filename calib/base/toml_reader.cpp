@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/base/toml_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -41,6 +43,20 @@ toml::table parse_toml(std::string_view text, const std::string& place) {
     throw Error(place + ":" + std::to_string(error.source().begin.line),
                 "not TOML: " + std::string(error.description()), "correct the syntax");
   }
+}
+
+std::string shown_value(const toml::node& node) {
+  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
+  if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (const auto* text = node.as_string()) return text->get();
+  const toml::array* values = node.as_array();
+  if (!values) return "a table";
+  std::string list;
+  for (const toml::node& value : *values) {
+    list += (list.empty() ? "" : ", ") + shown_value(value);
+  }
+  return "[" + list + "]";
 }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& known) {

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
@@ -32,15 +31,6 @@ constexpr double degree = std::numbers::pi / 180;
 
 constexpr std::size_t most_cells = 10'000;
 constexpr std::int64_t most_trials = 10'000'000;  ///< of all cells together
-
-std::string text_of(const toml::node& node) {
-  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
-  if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
-  if (const auto* text = node.as_string()) return text->get();
-  std::ostringstream out;
-  node.visit([&](const auto& value) { out << value; });
-  return out.str();
-}
 
 /// Sets "section.entry" of a study.
 void set(toml::table& study, const std::string& key, const toml::node& value) {
@@ -285,7 +275,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
            fmt::format("list at most {}", most_cells));
     }
     for (const toml::node& value : listed) {
-      values.push_back(text_of(value));
+      values.push_back(shown_value(value));
       toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
       StudyReader reader(place(), value.source().begin.line);

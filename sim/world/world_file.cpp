@@ -4,7 +4,6 @@
 
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -191,9 +190,8 @@ void WorldReader::check_header(const toml::table& root) const {
   const toml::node* version = root.get("version");
   if (!version) fail(1, "the file has no version", "add version = 1");
   if (!version->is_integer() || version->as_integer()->get() != 1) {
-    std::ostringstream is;
-    version->visit([&](const auto& value) { is << value; });
-    fail(*version, "version " + is.str() + " is not supported", "supported: 1");
+    fail(*version, "version " + shortened(shown_value(*version)) + " is not supported",
+         "supported: 1");
   }
 }
 

@@ -45,6 +45,24 @@ TEST(TomlReader, ReadsAllOfTheLanguageButDates) {
   EXPECT_EQ(root["list"].as_array()->size(), 2U);
 }
 
+// toml++ 3.3 has no defined behaviour for these.
+TEST(TomlReader, RefusesJoinedLinesThatBeginBeyondAscii) {
+  const auto joined = [](const std::string& next) {
+    return complaint("m = \"\"\"a \\ \n \n\t" + next + "\"\"\"");
+  };
+  EXPECT_EQ(joined("e"), "");
+  for (const char* next : {"é", "\u3042", "\xC2\xA0"}) {
+    EXPECT_EQ(joined(next),
+              "a.toml:3: holds a backslash at the end of a line before a character beyond ASCII; "
+              "leave the backslash out, or join the lines");
+  }
+}
+
+TEST(TomlReader, ShowsValues) {
+  const toml::table root = parse_toml("a = [ 1, [-119.5, inf], true, 'x', {} ]", "a.toml");
+  EXPECT_EQ(shown_value(*root.get("a")), "[1, [-119.5, inf], true, x, a table]");
+}
+
 TEST(TomlReader, RefusesDepth) {
   EXPECT_EQ(complaint("a = " + repeated("[", 31) + repeated("]", 31)), "");
   const std::string fault = "a.toml:1: is nested more than 32 levels deep; flatten it";

@@ -14,7 +14,7 @@ namespace vernier::localise::internal {
 /// make_localiser.
 class BaselineLocaliser : public Localiser {
  public:
-  explicit BaselineLocaliser(const TopologicalMap& map);
+  explicit BaselineLocaliser(const TopologicalMap& map, const LocaliserOptions& options = {});
 
   LocalisationAnswer localise(const PlaceView& query) const override;
 

@@ -69,12 +69,12 @@ struct LocaliserStages {
   bool align = true;    ///< votes of vertical lines give each candidate's pose; else its node's
   bool refine = true;   ///< the candidate's lines are compared in the image, and its pose improved
   bool compare = true;  ///< the best are compared with the lines of neighbouring nodes merged
-  bool search = true;   ///< where still unsure, the whole floor is searched
+  bool deepen = true;   ///< where that leaves doubts, more candidates are tried
 };
 
 struct LocaliserOptions {
   std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate
-  int candidates = 16;          ///< of the best-ranked nodes
+  int candidates = 64;          ///< of the best-ranked poses; `lines` tries 16 of them first
   int min_lines = 3;            ///< minimum number of lines in space for an answer
   /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
   double max_error_rate = 0.01;

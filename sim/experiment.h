@@ -13,6 +13,7 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -54,7 +55,7 @@ struct ExperimentSettings {
   MapRig map_rig = MapRig::recalibrated;
   double map_spacing_m = 0.5;
   int map_headings = 0;  ///< per node; 0: along the route
-  std::string method = "lines";
+  std::string method = "pgh";
   localise::LocaliserOptions localiser;
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;
@@ -66,7 +67,7 @@ struct TrialResult {
   localise::Pose2D truth;
   localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
   localise::Pose2D answer;  ///< refined pose
-  localise::Pose2D node;    ///< the map's node
+  localise::Pose2D node;    ///< the map's node, or the answer of a localiser that names none
   /// Distance between answer and truth on the floor; NaN without an answer. An unsure localiser's
   /// best guess counts as an answer here, but not in answered().
   double error_m = 0;
@@ -76,7 +77,7 @@ struct TrialResult {
   int corners = 0;            ///< corner pairs sensed (for corner-based methods)
   int corner_mismatches = 0;  ///< number of them with a wrong partner
   double score = 0, runner_up = 0;
-  double probability = 0;  ///< that the answer is right, as the localiser states it
+  double probability = 0;          ///< that the answer is right, as the localiser states it
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 
   bool answered() const { return status == localise::LocalisationStatus::answered; }

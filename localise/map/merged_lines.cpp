@@ -2,42 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/map/merged_lines.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <vector>
 
+#include "localise/map/known_lines.h"
+#include "localise/map/node_grid.h"
 #include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 
-namespace {
-
-struct Direction {
-  Eigen::Vector3f unit;
-  float length_m;
-};
-
-Direction direction(const SpaceLines& lines, std::size_t i) {
-  const Eigen::Vector3f along = lines.b_m(i) - lines.a_m(i);
-  const float length = along.norm();
-  return {along / std::max(length, 1e-6f), length};
-}
-
-}  // namespace
-
 SpaceLines merged_lines(const TopologicalMap& map, const NodeGrid& grid, int node) {
   constexpr double radius_m = 1.1, turn_rad = 1.05;
-  // A line is the same as one that is known if it is parallel to 10 degrees, lies along it and no
-  // further aside than both are uncertain.
-  constexpr float least_cosine = 0.985f, excess_share = 0.15f, excess_m = 0.1f, aside_m = 0.05f;
   SpaceLines lines;
+  KnownLines known;
+  const auto add = [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, float sigma,
+                       bool counted) {
+    lines.add(a, b, sigma, counted);
+    known.add(a, b, sigma);
+  };
   for (const PlaceLine& line : map.nodes[node].view.lines) {
-    lines.add(line.a_m.cast<float>(), line.b_m.cast<float>(), static_cast<float>(line.sigma_m),
-              true);
+    add(line.a_m.cast<float>(), line.b_m.cast<float>(), static_cast<float>(line.sigma_m), true);
   }
-  std::vector<Direction> directions;
-  for (std::size_t i = 0; i < lines.size; ++i) directions.push_back(direction(lines, i));
   const Pose2D& here = map.nodes[node].pose;
   for (const int neighbour : grid.near(here, radius_m, turn_rad)) {
     if (neighbour == node) continue;
@@ -50,24 +36,9 @@ SpaceLines merged_lines(const TopologicalMap& map, const NodeGrid& grid, int nod
       return Eigen::Vector3f(x + c * q.x() - s * q.y(), y + s * q.x() + c * q.y(), q.z());
     };
     for (const PlaceLine& line : map.nodes[neighbour].view.lines) {
-      const Eigen::Vector3f a = moved(line.a_m), b = moved(line.b_m), middle = 0.5f * (a + b);
-      const float length = (b - a).norm();
-      const Eigen::Vector3f along = (b - a) / std::max(length, 1e-6f);
+      const Eigen::Vector3f a = moved(line.a_m), b = moved(line.b_m);
       const auto sigma = static_cast<float>(line.sigma_m);
-      const float excess = excess_share * length + excess_m;
-      bool is_known = false;
-      for (std::size_t i = 0; i < lines.size && !is_known; ++i) {
-        const Direction& known = directions[i];
-        if (std::abs(known.unit.dot(along)) < least_cosine) continue;
-        const Eigen::Vector3f r = middle - lines.a_m(i);
-        const float at = r.dot(known.unit);
-        if (at - 0.5f * length < -excess || at + 0.5f * length > known.length_m + excess) continue;
-        const float aside = aside_m + 0.25f * (lines.sigma_m[i] + sigma);
-        is_known = (r - at * known.unit).squaredNorm() < aside * aside;
-      }
-      if (is_known) continue;
-      lines.add(a, b, sigma, false);
-      directions.push_back({along, length});
+      if (!known.contain(a, b, sigma)) add(a, b, sigma, false);
     }
   }
   lines.pad();

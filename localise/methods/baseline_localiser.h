@@ -7,6 +7,7 @@
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

@@ -12,7 +12,15 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/map/merged_lines.h"
+#include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
 #include "localise/posterior/pose_posterior.h"
+#include "localise/ranking/node_ranker.h"
+#include "localise/topological_map.h"
+#include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/image_lines.h"
+#include "localise/verification/view_agreement.h"
 
 namespace vernier::localise::internal {
 
@@ -20,8 +28,12 @@ namespace {
 
 /// Views with fewer lines have many rivals: more of them are compared in full.
 constexpr std::size_t sparse_lines = 60;
-constexpr int many_finalists = 20;
-static const int refine_steps = getenv("RS") ? atoi(getenv("RS")) : 1, rough_steps = getenv("CR") ? atoi(getenv("CR")) : 2, fine_steps = getenv("CF") ? atoi(getenv("CF")) : 4, F0 = getenv("F0") ? atoi(getenv("F0")) : 3;
+constexpr int few_finalists = 3, many_finalists = 20;
+constexpr int first_candidates = 16;      ///< the others follow where these leave doubts
+constexpr double sure_error_rate = 0.01;  ///< unless a smaller one is asked for
+/// Gauss-Newton steps of a candidate and, after these, of a finalist.
+constexpr int wide_steps = 1, refine_steps = 1;
+constexpr int rough_steps = 2, fine_steps = 4;
 
 /// The pose of the first look for a pose of another.
 Pose2D first_pose(const Pose2D& pose, double turn_rad) {
@@ -36,14 +48,30 @@ bool same_place(const Pose2D& a, const Pose2D& b) {
   return distance_m(a, b) < same_m && std::abs(heading_difference_rad(a, b)) < same_rad;
 }
 
+/// From the poses of votes to one at which candidates can be told apart.
+ImprovedPose refine(const ComparedView& view,
+                    const SpaceLines& lines,
+                    std::span<const VotePeak> starts,
+                    PredictedLines& room) {
+  ImprovedPose best;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const ImprovedPose wide =
+        improve(view, lines, starts[i].query_in_node, wide_steps, wide_agreement(), room);
+    if (i == 0 || wide.score > best.score) best = wide;
+  }
+  best = improve(view, lines, best.pose, wide_steps, wide_agreement(), room);
+  return improve(view, lines, best.pose, refine_steps, rough_agreement(), room);
+}
+
 bool better(const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; }
 
 }  // namespace
 
 struct LineLocaliser::Query {
   std::vector<Seen> looks;
-  std::vector<Hypothesis> compared;  // of the first look's pose
-  std::map<int, SpaceLines> merged;  // of nodes, as they are needed
+  std::vector<Hypothesis> compared;                  // of the first look's pose
+  std::map<int, SpaceLines> merged;                  // of nodes, as they are needed
+  std::map<int, std::vector<PlanUpright>> uprights;  // of these
   PredictedLines room;
 };
 
@@ -51,15 +79,7 @@ LineLocaliser::LineLocaliser(const TopologicalMap& map, const LocaliserOptions& 
     : map_(map),
       options_(options),
       ranker_(make_ranker(options.ranker, map, options.histograms)),
-      grid_(map),
-      search_(map) {
-  lines_.reserve(map.nodes.size());
-  uprights_.reserve(map.nodes.size());
-  for (const MapNode& node : map.nodes) {
-    lines_.push_back(space_lines(node.view.lines));
-    uprights_.push_back(plan_uprights(node.view.lines));
-  }
-}
+      grid_(map) {}
 
 LocalisationAnswer LineLocaliser::localise(const PlaceView& query) const {
   const Look look{query, 0};
@@ -80,82 +100,85 @@ LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) co
   nothing.status = LocalisationStatus::no_match;
   if (map_.nodes.empty()) return nothing;
 
-  std::vector<Hypothesis> found;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    const auto of_look = candidates(query.looks[i], looks[i].view, query);
-    found.insert(found.end(), of_look.begin(), of_look.end());
-  }
-  if (found.empty()) return nothing;
-  if (!options_.stages.compare) {
-    query.compared = std::move(found);
-    return answer(query);
-  }
-  compare_best(std::move(found), finalists(query), query);
-  LocalisationAnswer result = answer(query);
-  if (options_.stages.search && result.probability < 1 - std::min(options_.max_error_rate, 0.01)) {
-    std::vector<Hypothesis> searched;
-    for (const Seen& look : query.looks) {
-      for (const Pose2D& pose : search_.poses(look.uprights)) {
-        searched.push_back({first_pose(pose, look.turn_rad), -1, 0});
-      }
+  // More candidates as long as the answer is not sure.
+  const double sure = 1 - std::min(options_.max_error_rate, sure_error_rate);
+  LocalisationAnswer result = nothing;
+  std::vector<std::vector<RankedNode>> ranked;
+  for (const Look& look : looks) ranked.push_back(ranker_->rank(look.view, options_.candidates));
+  const int first = std::min(options_.candidates, first_candidates);
+  for (int from = 0, to = first; from < to;
+       from = to, to = options_.stages.deepen ? options_.candidates : to) {
+    std::vector<Hypothesis> found;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      candidates(query.looks[i], ranked[i], from, to, query, found);
     }
-    for (Hypothesis& h : searched) {
-      h.score = 0;
-      for (const Seen& look : query.looks) {
-        const Pose2D pose = turned(h.pose, look.turn_rad);
-        const int node = grid_.nearest(pose);
-        if (node < 0) continue;
-        const ImprovedPose rough =
-            improve(look.view, lines_[node], relative(pose, map_.nodes[node].pose), 1,
-                    rough_agreement(), query.room);
-        h.score += rough.score;
-        if (query.looks.size() == 1) {
-          h.node = node;
-          h.pose = first_pose(compose(map_.nodes[node].pose, rough.pose), look.turn_rad);
-        }
-      }
+    if (found.empty()) break;
+    if (options_.stages.compare) {
+      compare_best(std::move(found), finalists(query), query);
+    } else {
+      query.compared.insert(query.compared.end(), found.begin(), found.end());
     }
-    compare_best(std::move(searched), many_finalists, query);
     result = answer(query);
+    if (result.probability >= sure) return result;
   }
   return result;
 }
 
-std::vector<Hypothesis> LineLocaliser::candidates(const Seen& seen,
-                                                  const PlaceView& view,
-                                                  Query& query) const {
-  std::vector<Hypothesis> found;
-  for (const RankedNode& ranked : ranker_->rank(view, options_.candidates)) {
-    const int node = ranked.node;
-    std::vector<Pose2D> starts;
+void LineLocaliser::candidates(const Seen& seen,
+                               std::span<const RankedNode> ranked,
+                               int from,
+                               int to,
+                               Query& query,
+                               std::vector<Hypothesis>& found) const {
+  const auto end = std::min<std::size_t>(to, ranked.size());
+  for (std::size_t i = from; i < end; ++i) {
+    const Pose2D pose = compose(map_.nodes[ranked[i].node].pose, ranked[i].query_in_node);
     if (options_.stages.align) {
-      for (const VotePeak& peak : vote(seen.uprights, uprights_[node], ranked.turn_rad)) {
-        starts.push_back(peak.query_in_node);
-      }
+      near_pose(pose, seen, query, found);
+    } else {
+      found.push_back({first_pose(pose, seen.turn_rad), ranked[i].node, ranked[i].score});
     }
-    if (starts.empty()) starts.push_back({0, 0, ranked.turn_rad});
-    Hypothesis best{{}, node, ranked.score};
-    Pose2D in_node = starts[0];
-    if (options_.stages.refine) {
-      for (std::size_t i = 0; i < starts.size(); ++i) {
-        const ImprovedPose refined =
-            improve(seen.view, lines_[node], starts[i], refine_steps, rough_agreement(), query.room);
-        if (i == 0 || refined.score > best.score) {
-          best.score = refined.score;
-          in_node = refined.pose;
-        }
-      }
-    }
-    best.pose = first_pose(compose(map_.nodes[node].pose, in_node), seen.turn_rad);
-    found.push_back(best);
   }
-  return found;
+}
+
+/// Adds the best pose around a rough one, by votes and rough comparison with the merged lines of
+/// the nearest node.
+void LineLocaliser::near_pose(const Pose2D& pose,
+                              const Seen& look,
+                              Query& query,
+                              std::vector<Hypothesis>& found) const {
+  const int node = grid_.nearest(pose);
+  if (node < 0) return;
+  const SpaceLines& lines = lines_around(node, query);
+  const Pose2D around = relative(pose, map_.nodes[node].pose);
+  std::vector<VotePeak> peaks = vote(look.uprights, uprights_around(node, query), around);
+  if (peaks.empty()) peaks.push_back({around, 0});
+  ImprovedPose best{peaks[0].query_in_node, peaks[0].votes, {}};
+  if (options_.stages.refine) best = refine(look.view, lines, peaks, query.room);
+  found.push_back(
+      {first_pose(compose(map_.nodes[node].pose, best.pose), look.turn_rad), node, best.score});
+}
+
+const SpaceLines& LineLocaliser::lines_around(int node, Query& query) const {
+  auto merged = query.merged.find(node);
+  if (merged == query.merged.end()) {
+    merged = query.merged.emplace(node, merged_lines(map_, grid_, node)).first;
+  }
+  return merged->second;
+}
+
+const std::vector<PlanUpright>& LineLocaliser::uprights_around(int node, Query& query) const {
+  auto merged = query.uprights.find(node);
+  if (merged == query.uprights.end()) {
+    merged = query.uprights.emplace(node, plan_uprights(lines_around(node, query))).first;
+  }
+  return merged->second;
 }
 
 int LineLocaliser::finalists(const Query& query) const {
   std::size_t lines = 0;
   for (const Seen& look : query.looks) lines = std::max(lines, look.view.lines.size());
-  return lines < sparse_lines ? many_finalists : F0;
+  return lines < sparse_lines ? many_finalists : few_finalists;
 }
 
 void LineLocaliser::compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const {
@@ -203,11 +226,7 @@ LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first
     const SpaceLines* lines = &nothing_known;
     Pose2D in_node;
     if (node >= 0) {
-      auto merged = query.merged.find(node);
-      if (merged == query.merged.end()) {
-        merged = query.merged.emplace(node, merged_lines(map_, grid_, node)).first;
-      }
-      lines = &merged->second;
+      lines = &lines_around(node, query);
       in_node = relative(pose, map_.nodes[node].pose);
     }
     const ViewAgreement here = agreement(look.view, *lines, in_node, options, query.room);
@@ -223,9 +242,11 @@ LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first
   return sum;
 }
 
-LocalisationAnswer LineLocaliser::answer(const Query& query) const {
+LocalisationAnswer LineLocaliser::answer(Query& query) const {
   LocalisationAnswer result;
-  const std::vector<WeightedMode> modes = pose_posterior(query.compared);
+  double observations = 0;
+  for (const Seen& look : query.looks) observations += look.view.observations;
+  const std::vector<WeightedMode> modes = pose_posterior(query.compared, observations);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     result.modes.push_back({m.best.pose, m.best.node, m.probability, m.best.score});
@@ -246,14 +267,41 @@ LocalisationAnswer LineLocaliser::answer(const Query& query) const {
   const bool sure =
       options_.max_error_rate >= 1 || result.probability >= 1 - options_.max_error_rate;
   result.status = sure ? LocalisationStatus::answered : LocalisationStatus::unsure;
-  result.next_turn_rad = telling_turn(result.modes, query);
+  if (!sure) result.next_turn_rad = telling_turn(result.modes, query);
   return result;
 }
 
-double LineLocaliser::telling_turn(std::span<const PoseMode> modes, const Query& query) const {
-  (void)modes;
-  (void)query;
-  return 0;
+/// The turn at which the two best modes would see what explains the other's view least.
+double LineLocaliser::telling_turn(std::span<const PoseMode> modes, Query& query) const {
+  const auto rival = std::find_if(modes.begin(), modes.end(), [&](const PoseMode& mode) {
+    return distance_m(mode.pose, modes[0].pose) > 1;
+  });
+  if (rival == modes.end()) return 0;
+  constexpr double degree = std::numbers::pi / 180;
+  constexpr double known_rad = 15 * degree;  // closer to a look that was taken: nothing new
+  const ViewCamera& camera = query.looks[0].view.camera;
+  double best = 0, least = 0;
+  for (const double turn_deg : {30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180}) {
+    const double turn = turn_deg * degree;
+    const bool taken = std::any_of(query.looks.begin(), query.looks.end(), [&](const Seen& look) {
+      return std::abs(std::remainder(look.turn_rad - turn, 2 * std::numbers::pi)) < known_rad;
+    });
+    const Pose2D here = turned(modes[0].pose, turn), there = turned(rival->pose, turn);
+    const int a = grid_.nearest(here), b = grid_.nearest(there);
+    if (taken || a < 0 || b < 0) continue;
+    const SpaceLines &lines_a = lines_around(a, query), &lines_b = lines_around(b, query);
+    const Pose2D in_a = relative(here, map_.nodes[a].pose);
+    const Pose2D in_b = relative(there, map_.nodes[b].pose);
+    const ComparedView view_a = predicted_view(lines_a, in_a, camera, query.room);
+    const ComparedView view_b = predicted_view(lines_b, in_b, camera, query.room);
+    const double score = agreement(view_a, lines_b, in_b, fine_agreement(), query.room).score +
+                         agreement(view_b, lines_a, in_a, fine_agreement(), query.room).score;
+    if (score < least) {
+      least = score;
+      best = turn;
+    }
+  }
+  return best;
 }
 
 }  // namespace vernier::localise::internal

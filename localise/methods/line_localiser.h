@@ -12,7 +12,7 @@
 #include "localise/place/space_lines.h"
 #include "localise/posterior/pose_posterior.h"
 #include "localise/ranking/node_ranker.h"
-#include "localise/search/floor_search.h"
+#include "localise/topological_map.h"
 #include "localise/verification/floor_plan_votes.h"
 #include "localise/verification/view_agreement.h"
 
@@ -44,23 +44,31 @@ class LineLocaliser : public Localiser {
   /// Memory and intermediate results of one query.
   struct Query;
 
-  std::vector<Hypothesis> candidates(const Seen& seen, const PlaceView& view, Query& query) const;
+  void candidates(const Seen& seen,
+                  std::span<const RankedNode> ranked,
+                  int from,
+                  int to,
+                  Query& query,
+                  std::vector<Hypothesis>& found) const;
+  void near_pose(const Pose2D& pose,
+                 const Seen& look,
+                 Query& query,
+                 std::vector<Hypothesis>& found) const;
+  const SpaceLines& lines_around(int node, Query& query) const;
+  const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
   JointAgreement joint_agreement(const Pose2D& first,
                                  const AgreementOptions& options,
                                  Query& query) const;
   void compare(Hypothesis& hypothesis, Query& query) const;
   void compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const;
   int finalists(const Query& query) const;
-  LocalisationAnswer answer(const Query& query) const;
-  double telling_turn(std::span<const PoseMode> modes, const Query& query) const;
+  LocalisationAnswer answer(Query& query) const;
+  double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 
   const TopologicalMap& map_;
   LocaliserOptions options_;
   std::unique_ptr<NodeRanker> ranker_;
   NodeGrid grid_;
-  FloorSearch search_;
-  std::vector<SpaceLines> lines_;                   // of each node
-  std::vector<std::vector<PlanUpright>> uprights_;  // of each node
 };
 
 }  // namespace vernier::localise::internal

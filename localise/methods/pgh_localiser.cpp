@@ -8,16 +8,19 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/ranking/node_ranker.h"
+#include "localise/topological_map.h"
 #include "localise/verification/alignment.h"
 
 namespace vernier::localise::internal {
 
 LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   LocalisationAnswer answer;
-  constexpr int least_lines = 6;  // of histograms, whatever the option says
+  constexpr int most_candidates = 12;  // alignment is slow
+  constexpr int least_lines = 6;       // of histograms, whatever the option says
   if (static_cast<int>(query.lines.size()) < std::max(options_.min_lines, least_lines))
     return answer;
-  const std::vector<RankedNode> ranked = ranker_.rank(query, options_.candidates);
+  const std::vector<RankedNode> ranked =
+      ranker_.rank(query, std::min(options_.candidates, most_candidates));
 
   struct Candidate {
     int node;

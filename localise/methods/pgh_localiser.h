@@ -5,6 +5,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/ranking/histogram_ranker.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 

@@ -11,6 +11,7 @@
 namespace vernier::localise::internal {
 
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
+                                         double observations,
                                          const PosteriorOptions& options) {
   constexpr std::size_t most_modes = 20;
   constexpr double same_m = 0.3, same_rad = 0.2, success_m = 1;
@@ -27,7 +28,9 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   }
   if (modes.empty()) return modes;
   std::vector<double> weights;
-  double total = std::exp(-options.evidence_share * options.elsewhere_nats);
+  const double elsewhere =
+      -options.elsewhere_nats - options.elsewhere_nats_per_observation * observations;
+  double total = std::exp(options.evidence_share * (elsewhere - modes[0].best.score));
   for (const WeightedMode& m : modes) {
     weights.push_back(std::exp(options.evidence_share * (m.best.score - modes[0].best.score)));
     total += weights.back();

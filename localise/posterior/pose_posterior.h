@@ -17,10 +17,12 @@ struct Hypothesis {
 };
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,
-/// and the true pose may not be among the hypotheses; both are fitted on worlds that judge nothing.
+/// and the true pose may not be among the hypotheses; all three numbers are fitted on worlds that
+/// judge nothing.
 struct PosteriorOptions {
-  double evidence_share = 0.5;  ///< of a difference of scores that counts
-  double elsewhere_nats = 4;    ///< score of a pose that was not tried, below that of the best
+  double evidence_share = 0.17;  ///< of a difference of scores that counts
+  /// A pose that was not tried scores this much below 0 and for each observation of the view.
+  double elsewhere_nats = 10, elsewhere_nats_per_observation = 1.3;
 };
 
 /// A mode: the probability is that of a pose within 1 m, not of this pose alone.
@@ -29,8 +31,10 @@ struct WeightedMode {
   double probability = 0;
 };
 
-/// Modes further than 0.3 m or 0.2 rad apart, best score first, at most 20.
+/// Modes of a view of so many observations, further than 0.3 m or 0.2 rad apart, best score first,
+/// at most 20.
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
+                                         double observations,
                                          const PosteriorOptions& options = {});
 
 }  // namespace vernier::localise::internal

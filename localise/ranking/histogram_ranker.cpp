@@ -7,6 +7,8 @@
 
 #include "localise/histograms/bhattacharyya.h"
 #include "localise/pgh.h"
+#include "localise/place.h"
+#include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
@@ -48,7 +50,7 @@ std::vector<RankedNode> HistogramRanker::rank(const PlaceView& view, int most) c
       const BestMatches best = best_matches(query.rows, node.rows);
       score = 0.5 * (mean(best.of_queries, query.weights) + mean(best.of_stored, node.weights));
     }
-    ranked.push_back({static_cast<int>(i), score, 0});
+    ranked.push_back({static_cast<int>(i), score, {}});
   }
   return best_of(std::move(ranked), most);
 }
@@ -69,7 +71,7 @@ std::vector<RankedNode> AggregateRanker::rank(const PlaceView& view, int most) c
   std::vector<RankedNode> ranked;
   ranked.reserve(static_cast<std::size_t>(scores.size()));
   for (Eigen::Index i = 0; i < scores.size(); ++i) {
-    ranked.push_back({static_cast<int>(i), scores[i], 0});
+    ranked.push_back({static_cast<int>(i), scores[i], {}});
   }
   return best_of(std::move(ranked), most);
 }

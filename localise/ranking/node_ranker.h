@@ -15,8 +15,8 @@ namespace vernier::localise::internal {
 /// Score of a map node for a query.
 struct RankedNode {
   int node = 0;
-  double score = 0;     ///< in [0, 1]
-  double turn_rad = 0;  ///< heading of the query minus that of the node, if the ranker finds it
+  double score = 0;      ///< in [0, 1]
+  Pose2D query_in_node;  ///< roughly, as far as the ranker finds it
 };
 
 /// Orders the nodes of a map by their likeness to a view.

@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "localise/map/node_grid.h"
 #include "localise/place.h"
 #include "localise/ranking/node_ranker.h"
-#include "localise/ranking/view_descriptor.h"
+#include "localise/ranking/panorama.h"
 #include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 
-/// Compares view descriptors at turns up to 20 degrees to either side.
+/// Compares a view's descriptor with panoramas at the map's positions and beside them, at all
+/// headings that are known there.
 class ViewRanker : public NodeRanker {
  public:
   explicit ViewRanker(const TopologicalMap& map);
@@ -20,9 +21,10 @@ class ViewRanker : public NodeRanker {
   std::vector<RankedNode> rank(const PlaceView& query, int most) const override;
 
  private:
-  DescriptorBins bins_;
-  std::vector<std::uint16_t> nodes_;  // one shortened descriptor after the other
-  std::size_t count_ = 0;
+  const TopologicalMap& map_;
+  NodeGrid grid_;
+  int in_view_;
+  std::vector<Panorama> panoramas_;
 };
 
 }  // namespace vernier::localise::internal

@@ -12,6 +12,8 @@
 #include <cstddef>
 
 #include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier::localise::internal {

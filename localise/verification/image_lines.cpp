@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "localise/place.h"
+#include "localise/place/view_camera.h"
 
 namespace vernier::localise::internal {
 
@@ -17,6 +18,8 @@ constexpr float nearest_m = 0.25f;
 constexpr float steep_below = 0.375f;  ///< |dx| of a steep line of the query
 
 }  // namespace
+
+bool is_steep(float dx) { return std::abs(dx) < steep_below; }
 
 std::vector<QueryLine> query_lines(const PlaceView& view, const ViewCamera& camera) {
   std::vector<QueryLine> lines;
@@ -31,7 +34,7 @@ std::vector<QueryLine> query_lines(const PlaceView& view, const ViewCamera& came
     const Eigen::Vector3f middle = 0.5f * (a + b);
     const auto sigma = static_cast<float>(line.sigma_m);
     lines.push_back({middle.x(), middle.y(), middle.z(), d.x() / length, d.y() / length, length,
-                     sigma * sigma, std::abs(d.x()) < steep_below * length});
+                     sigma * sigma, is_steep(d.x() / length)});
   }
   return lines;
 }

@@ -20,6 +20,9 @@ struct QueryLine {
   bool steep = false;     ///< it is compared with steep lines, else with flat ones
 };
 
+/// Whether a line of the query with this direction is compared with steep lines.
+bool is_steep(float dx);
+
 /// The query's lines that are long enough to have a direction.
 std::vector<QueryLine> query_lines(const PlaceView& view, const ViewCamera& camera);
 

@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
+#include "localise/verification/image_lines.h"
 
 namespace vernier::localise::internal {
 
@@ -36,6 +39,16 @@ float missed(const ImageLines& lines) {
 
 }  // namespace
 
+AgreementOptions wide_agreement() {
+  AgreementOptions options;
+  options.tolerance.offset_px = 20;
+  options.tolerance.offset_m = 0.06f;
+  options.tolerance.angle_rad = 0.1f;
+  options.tolerance.disparity_px = 1.5f;
+  options.tolerance.disparity_share = 0.05f;
+  return options;
+}
+
 AgreementOptions rough_agreement() { return {}; }
 
 AgreementOptions fine_agreement() {
@@ -48,9 +61,32 @@ AgreementOptions fine_agreement() {
 }
 
 ComparedView compared_view(const PlaceView& view) {
-  ComparedView compared{view_camera(view), {}};
+  ComparedView compared{view_camera(view), {}, 0};
   compared.lines = query_lines(view, compared.camera);
+  for (const QueryLine& line : compared.lines) {
+    compared.observations += observations(line.length_px);
+  }
   return compared;
+}
+
+ComparedView predicted_view(const SpaceLines& lines,
+                            const Pose2D& pose,
+                            const ViewCamera& camera,
+                            PredictedLines& room) {
+  predict(lines, pose, camera, room);
+  ComparedView view{camera, {}, 0};
+  for (const ImageLines* set : {&room.steep, &room.flat}) {
+    for (int i = 0; i < set->size; ++i) {
+      const bool steep = is_steep(set->dx[i]);
+      if (steep != (set == &room.steep)) continue;  // those of both sets once
+      const float half = 0.5f * set->length_px[i];
+      view.lines.push_back({set->u[i] + half * set->dx[i], set->v[i] + half * set->dy[i],
+                            set->w[i] + 0.5f * set->dw[i], set->dx[i], set->dy[i],
+                            set->length_px[i], set->variance_m2[i], steep});
+      view.observations += observations(set->length_px[i]);
+    }
+  }
+  return view;
 }
 
 ViewAgreement agreement(const ComparedView& view,

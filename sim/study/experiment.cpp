@@ -15,6 +15,7 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/study/told_rig.h"
@@ -135,11 +136,10 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.probability = answer.probability;
   result.error_m = result.node_error_m = result.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
-  const bool guessed = answer.status == LocalisationStatus::unsure;
-  const bool known_node = answer.node >= 0 && answer.node < static_cast<int>(map.nodes.size());
-  if ((result.answered() || guessed) && known_node) {
+  if (result.answered() || answer.status == LocalisationStatus::unsure) {
+    const bool has_node = answer.node >= 0 && answer.node < static_cast<int>(map.nodes.size());
     result.answer = answer.pose;
-    result.node = map.nodes[answer.node].pose;
+    result.node = has_node ? map.nodes[answer.node].pose : answer.pose;
     result.error_m = distance_m(answer.pose, result.truth);
     result.node_error_m = distance_m(result.node, result.truth);
     result.heading_error_rad = heading_difference_rad(answer.pose, result.truth);

@@ -2,73 +2,110 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "localise/pgh.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise {
-
-/// A map node: the pose where it was recorded and the view from there.
-struct MapNode {
-  Pose2D pose;
-  PlaceView view;
-};
-
-/// Views recorded along a route, with the histograms of their lines.
-struct TopologicalMap {
-  std::vector<MapNode> nodes;
-  PghOptions options;           ///< queries must use the same options
-  std::vector<Pgh> histograms;  ///< one per node
-};
-
-/// Computes the spatial histograms of every node.
-TopologicalMap make_map(std::vector<MapNode> nodes, const PghOptions& options = {});
 
 enum class LocalisationStatus {
   answered,
   too_few_lines,  ///< fewer than min_lines lines
   tie,            ///< two positions more than 1 m apart have the same best score
   no_match,       ///< no node of the map matches
+  unsure,  ///< an error is more probable than max_error_rate; the answer holds the best guess
+  failed,  ///< the localiser itself failed, as a program that died
 };
 
 std::string_view name(LocalisationStatus status);
 
+/// A pose at which the views may have been taken.
+struct PoseMode {
+  Pose2D pose;
+  int node = -1;           ///< the map node it was compared with
+  double probability = 0;  ///< that the robot stood within 1 m of it
+  double score = 0;        ///< log-likelihood, up to a constant of the query
+};
+
 struct LocalisationAnswer {
   LocalisationStatus status = LocalisationStatus::too_few_lines;
-  int node = -1;  ///< index of the map node, the memo's answer
-  Pose2D pose;    ///< refined metric pose
-  double score = 0;
-  double runner_up = 0;  ///< score of the best node more than 1 m away
+  int node = -1;         ///< index of the map node, the memo's answer
+  Pose2D pose;           ///< refined metric pose
+  double score = 0;      ///< of the method; `lines`: log-likelihood in nats
+  double runner_up = 0;  ///< score of the best pose more than 1 m away
+  /// That the pose is right within 1 m, as the method states it; 0 for methods that state none.
+  double probability = 0;
+  std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
+  /// The turn of a further look that tells the modes apart best; 0 if there is nothing to tell.
+  double next_turn_rad = 0;
+};
+
+/// One of several views from the same position.
+struct Look {
+  PlaceView view;
+  double turn_rad = 0;  ///< its heading minus that of the first look
 };
 
 /// Estimates where a view was taken. Implementations keep no state between queries.
 class Localiser {
  public:
   virtual ~Localiser() = default;
+  /// The pose of a view.
   virtual LocalisationAnswer localise(const PlaceView& query) const = 0;
+  /// The pose of the first of several views from one position, whose turns are known. Without an
+  /// implementation the first look alone is used. Throws Error without looks.
+  virtual LocalisationAnswer localise_looks(std::span<const Look> looks) const;
+};
+
+/// Which stages of `lines` run; without all of them the best-ranked node is the answer.
+struct LocaliserStages {
+  bool align = true;    ///< votes of vertical lines give each candidate's pose; else its node's
+  bool refine = true;   ///< the candidate's lines are compared in the image, and its pose improved
+  bool compare = true;  ///< the best are compared with the lines of neighbouring nodes merged
+  bool deepen = true;   ///< where that leaves doubts, more candidates are tried
 };
 
 struct LocaliserOptions {
-  int candidates = 12;  ///< number of best-ranked nodes verified by alignment
-  int min_lines = 6;    ///< minimum number of lines in space for an answer
+  std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate
+  int candidates = 64;          ///< of the best-ranked poses; `lines` tries 16 of them first
+  int min_lines = 3;            ///< minimum number of lines in space for an answer
+  /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
+  double max_error_rate = 0.01;
+  LocaliserStages stages;
+  PghOptions histograms;  ///< of `pgh` and the rankers by histograms
 };
 
 /// Creates the localiser named `method` on a map, which must outlive it:
 ///
+///  - `lines`: a view descriptor ranks the nodes; votes of vertical lines give poses; the lines
+///    that the map recorded are compared with the query's in its image; the answer is the best of a
+///    posterior over poses, or unsure;
 ///  - `pgh`: spatial histograms rank the nodes by Bhattacharyya coefficients; rigid alignment of
 ///    the best ones verifies them and gives the metric pose;
 ///  - `pgh_baseline`: image-line histograms compared in a plain loop, and the memo's filter that
-///    eliminates the lowest node until one is left. For comparison only.
+///    eliminates the lowest node until one is left. For comparison only;
+///  - any other that was registered.
 ///
-/// Throws Error for any other name, listing these.
+/// Throws Error for any other name, listing these, and for options out of range.
 std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const TopologicalMap& map,
                                           const LocaliserOptions& options = {});
 
 std::vector<std::string> localiser_names();
+
+/// Creates a localiser on a map that outlives it.
+using LocaliserFactory =
+    std::function<std::unique_ptr<Localiser>(const TopologicalMap&, const LocaliserOptions&)>;
+
+/// Makes a method known to make_localiser, and so to studies of this process. Safe with threads.
+/// Throws Error for a name that is empty or taken.
+void register_localiser(const std::string& method, LocaliserFactory factory);
 
 }  // namespace vernier::localise

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "calib/pose.h"
+#include "calib/rig.h"
 #include "stereo/segment.h"
 
 namespace vernier::localise {
@@ -23,6 +25,8 @@ double distance_m(const Pose2D& a, const Pose2D& b);
 double heading_difference_rad(const Pose2D& a, const Pose2D& b);
 /// Composes `step`, given in the frame of `from`, into the world frame.
 Pose2D compose(const Pose2D& from, const Pose2D& step);
+/// The step that leads from one pose to another, in the frame of `from`: the inverse of compose().
+Pose2D relative(const Pose2D& to, const Pose2D& from);
 
 /// Pose of the left camera on the robot. Robot frame: x forward, y left, z up, origin on the floor
 /// below the camera.
@@ -53,11 +57,14 @@ struct PlaceLineOptions {
 struct PlaceView {
   std::vector<PlaceLine> lines;                   ///< reliable lines only
   std::vector<stereo::ImageSegment> image_lines;  ///< of the left image, all
+  std::shared_ptr<const Rig> rig = nullptr;  ///< the estimated rig, from which lines are computed
+  CameraMount mount = {};
 };
 
 /// Transforms triangulated segments to the robot frame. A line that may be vertical (its image is
 /// nearly so and the depths of its ends are equal within their error) is made exactly vertical at
-/// its mean depth: in buildings such lines are vertical, and the tilt would be noise.
+/// its mean depth: in buildings such lines are vertical, and the tilt would be noise. The view's
+/// rig is left empty.
 PlaceView select_lines(std::span<const stereo::SpaceSegment> segments,
                        std::span<const stereo::StereoSegment> images,
                        const CameraMount& mount,

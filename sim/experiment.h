@@ -13,6 +13,7 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -55,6 +56,7 @@ struct ExperimentSettings {
   double map_spacing_m = 0.5;
   int map_headings = 0;  ///< per node; 0: along the route
   std::string method = "pgh";
+  localise::LocaliserOptions localiser;
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
@@ -65,14 +67,17 @@ struct TrialResult {
   localise::Pose2D truth;
   localise::LocalisationStatus status = localise::LocalisationStatus::too_few_lines;
   localise::Pose2D answer;  ///< refined pose
-  localise::Pose2D node;    ///< the map's node
-  double error_m = 0;  ///< distance between answer and truth on the floor; NaN without an answer
+  localise::Pose2D node;    ///< the map's node, or the answer of a localiser that names none
+  /// Distance between answer and truth on the floor; NaN without an answer. An unsure localiser's
+  /// best guess counts as an answer here, but not in answered().
+  double error_m = 0;
   double node_error_m = 0;
   double heading_error_rad = 0;
   int lines = 0;              ///< in space, as given to the localiser
   int corners = 0;            ///< corner pairs sensed (for corner-based methods)
   int corner_mismatches = 0;  ///< number of them with a wrong partner
   double score = 0, runner_up = 0;
+  double probability = 0;          ///< that the answer is right, as the localiser states it
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 
   bool answered() const { return status == localise::LocalisationStatus::answered; }
@@ -109,6 +114,12 @@ class LocalisationExperiment {
   /// trial) only.
   std::vector<TrialResult> run_block(const TrialBlock& block) const;
 
+  /// One trial with a localiser of one's own or of make_localiser(), whose map record_map() made.
+  TrialResult run_trial(std::uint32_t trial,
+                        const Rig& told,
+                        const localise::TopologicalMap& map,
+                        const localise::Localiser& localiser) const;
+
   /// The map as recorded in a block under the assumption of `rig`.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
@@ -117,9 +128,6 @@ class LocalisationExperiment {
   Rig map_estimator_rig(std::uint32_t block) const;
 
  private:
-  TrialResult run_trial(std::uint32_t trial,
-                        const Rig& told,
-                        const localise::Localiser& localiser) const;
   Rig draw_rig(std::uint32_t trial, bool of_map) const;
 
   const Visibility& visibility_;

@@ -15,6 +15,7 @@
 #include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/study/told_rig.h"
@@ -47,7 +48,10 @@ NoiseFreeViewOptions look_options(const ExperimentSettings& settings) {
 PlaceView interpret(const Rig& told,
                     const StereoObservation& sighting,
                     const ExperimentSettings& settings) {
-  return select_lines(reconstruct(told, sighting, settings), sighting.segments, settings.mount);
+  PlaceView view =
+      select_lines(reconstruct(told, sighting, settings), sighting.segments, settings.mount);
+  view.rig = std::make_shared<const Rig>(told);
+  return view;
 }
 
 }  // namespace
@@ -89,21 +93,22 @@ Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
 }
 
 TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
-  std::vector<MapNode> nodes;
-  nodes.reserve(map_views_->size());
+  TopologicalMap map;
+  map.nodes.reserve(map_views_->size());
   for (std::size_t i = 0; i < map_views_->size(); ++i) {
     const NoiseFreeView& place = (*map_views_)[i];
     const StereoObservation sighting =
         sensor_.sense(place, {.seed = settings_.seed,
                               .trial = map_trial + block,
                               .frame = static_cast<std::uint32_t>(i)});
-    nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
+    map.nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
   }
-  return make_map(std::move(nodes));
+  return map;
 }
 
 TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
                                               const Rig& told,
+                                              const TopologicalMap& map,
                                               const Localiser& localiser) const {
   TrialResult result;
   result.trial = trial;
@@ -128,11 +133,13 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.lines = static_cast<int>(view.lines.size());
   result.score = answer.score;
   result.runner_up = answer.runner_up;
+  result.probability = answer.probability;
   result.error_m = result.node_error_m = result.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
-  if (result.answered()) {
+  if (result.answered() || answer.status == LocalisationStatus::unsure) {
+    const bool has_node = answer.node >= 0 && answer.node < static_cast<int>(map.nodes.size());
     result.answer = answer.pose;
-    result.node = (*map_views_)[answer.node].pose;
+    result.node = has_node ? map.nodes[answer.node].pose : answer.pose;
     result.error_m = distance_m(answer.pose, result.truth);
     result.node_error_m = distance_m(result.node, result.truth);
     result.heading_error_rad = heading_difference_rad(answer.pose, result.truth);
@@ -152,9 +159,9 @@ std::vector<TrialResult> LocalisationExperiment::run_block(const TrialBlock& tri
     if (same || !localiser) {
       localiser.reset();
       map = record_map(block, same ? told : map_estimator_rig(block));
-      localiser = make_localiser(settings_.method, map);
+      localiser = make_localiser(settings_.method, map, settings_.localiser);
     }
-    results.push_back(run_trial(trial, told, *localiser));
+    results.push_back(run_trial(trial, told, map, *localiser));
   }
   return results;
 }

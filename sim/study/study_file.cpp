@@ -219,12 +219,16 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
     }
   }
   if (const auto* localiser = section(root, "localiser")) {
-    check_keys(*localiser, {"method", "looks", "knows_endpoint_sigma"}, "[localiser]");
+    check_keys(
+        *localiser,
+        {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate"},
+        "[localiser]");
     if (const auto* method = localiser->get("method")) {
       settings.method = text(*method, "localiser.method");
       const std::vector<std::string> known = localiser_names();
       if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
-        fail(*method, "unknown localiser " + in_quotes(settings.method), "use pgh or pgh_baseline");
+        fail(*method, "unknown localiser " + in_quotes(settings.method),
+             "use lines, pgh or pgh_baseline");
       }
     }
     if (const auto* knows = localiser->get("knows_endpoint_sigma")) {
@@ -232,6 +236,24 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
         fail(*knows, "localiser.knows_endpoint_sigma is not a boolean", "use true or false");
       }
       settings.knows_endpoint_sigma = knows->as_boolean()->get();
+    }
+    if (const auto* ranker = localiser->get("ranker")) {
+      settings.localiser.ranker = text(*ranker, "localiser.ranker");
+      const Keys known{"view", "pgh", "pgh_aggregate"};
+      if (std::find(known.begin(), known.end(), settings.localiser.ranker) == known.end()) {
+        fail(*ranker, "unknown ranker " + in_quotes(settings.localiser.ranker),
+             "use view, pgh or pgh_aggregate");
+      }
+    }
+    if (const auto* candidates = localiser->get("candidates")) {
+      const std::int64_t count = integer(*candidates, "localiser.candidates");
+      if (count < 1 || count > 10'000) {
+        fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 64");
+      }
+      settings.localiser.candidates = static_cast<int>(count);
+    }
+    if (const auto* rate = localiser->get("max_error_rate")) {
+      settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
     }
     if (const auto* looks = localiser->get("looks")) {
       if (integer(*looks, "localiser.looks") != 1) {
@@ -304,6 +326,11 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   all["map.rig"] = s.map_rig == MapRig::same ? "same" : "recalibrated";
   all["localiser.method"] = s.method;
   all["localiser.knows_endpoint_sigma"] = s.knows_endpoint_sigma ? "true" : "false";
+  if (s.method == "lines") {  // the others do not use these
+    all["localiser.ranker"] = s.localiser.ranker;
+    all["localiser.candidates"] = fmt::format("{}", s.localiser.candidates);
+    all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
+  }
   all["study.protocol"] = name(s.protocol);
   all["study.seed"] = fmt::format("{}", s.seed);
   return all;

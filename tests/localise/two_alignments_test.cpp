@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "localise/alignment.h"
+#include "localise/verification/alignment.h"
 #include "stereo/image/patch_alignment.h"
 
 namespace vernier {

@@ -17,14 +17,18 @@ using namespace vernier::localise;
 /// Answers the map's node whose histograms are most like the query's, and its pose unrefined.
 class MostAlike : public Localiser {
  public:
-  explicit MostAlike(const TopologicalMap& map) : map_(map) {}
+  explicit MostAlike(const TopologicalMap& map) : map_(map) {
+    for (const MapNode& node : map.nodes) {
+      histograms_.push_back(spatial_histograms(node.view.lines));
+    }
+  }
   LocalisationAnswer localise(const PlaceView& query) const override {
     LocalisationAnswer answer;
     if (query.lines.size() < 6) return answer;  // status: too_few_lines
-    const Pgh lines = spatial_histograms(query.lines, map_.options);
+    const Pgh lines = spatial_histograms(query.lines);
     for (std::size_t i = 0; i < map_.nodes.size(); ++i) {
-      if (map_.histograms[i].rows.rows() == 0) continue;
-      const HistogramRows likeness = lines.rows * map_.histograms[i].rows.transpose();
+      if (histograms_[i].rows.rows() == 0) continue;
+      const HistogramRows likeness = lines.rows * histograms_[i].rows.transpose();
       const double score = likeness.rowwise().maxCoeff().mean();
       if (score > answer.score) {
         answer.node = static_cast<int>(i);
@@ -39,6 +43,7 @@ class MostAlike : public Localiser {
 
  private:
   const TopologicalMap& map_;
+  std::vector<Pgh> histograms_;
 };
 }  // namespace
 

@@ -1,24 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/pgh_localiser.h"
+#include "localise/methods/pgh_localiser.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
-#include "localise/alignment.h"
 #include "localise/localiser.h"
-#include "localise/pgh.h"
 #include "localise/place.h"
-#include "localise/rank.h"
+#include "localise/ranking/node_ranker.h"
+#include "localise/topological_map.h"
+#include "localise/verification/alignment.h"
 
 namespace vernier::localise::internal {
 
 LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
   LocalisationAnswer answer;
-  if (static_cast<int>(query.lines.size()) < options_.min_lines) return answer;
-  const Pgh histograms = spatial_histograms(query.lines, map_.options);
-  const std::vector<RankedNode> ranked = rank_nodes(map_, histograms);
+  constexpr int most_candidates = 12;  // alignment is slow
+  constexpr int least_lines = 6;       // of histograms, whatever the option says
+  if (static_cast<int>(query.lines.size()) < std::max(options_.min_lines, least_lines))
+    return answer;
+  const std::vector<RankedNode> ranked =
+      ranker_.rank(query, std::min(options_.candidates, most_candidates));
 
   struct Candidate {
     int node;
@@ -26,12 +28,11 @@ LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
     Pose2D pose;
   };
   std::vector<Candidate> candidates;
-  const std::size_t count = std::min<std::size_t>(options_.candidates, ranked.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const MapNode& node = map_.nodes[ranked[i].node];
+  for (const RankedNode& near : ranked) {
+    const MapNode& node = map_.nodes[near.node];
     const Alignment aligned = align(query, node.view);
-    candidates.push_back({ranked[i].node, ranked[i].score * aligned.score,
-                          compose(node.pose, aligned.query_in_node)});
+    candidates.push_back(
+        {near.node, near.score * aligned.score, compose(node.pose, aligned.query_in_node)});
   }
   if (candidates.empty()) return answer;
   const auto best =

@@ -52,6 +52,12 @@ Pose2D compose(const Pose2D& from, const Pose2D& step) {
           from.heading_rad + step.heading_rad};
 }
 
+Pose2D relative(const Pose2D& to, const Pose2D& from) {
+  const double c = std::cos(from.heading_rad), s = std::sin(from.heading_rad);
+  const double x = to.x_m - from.x_m, y = to.y_m - from.y_m;
+  return {c * x + s * y, -s * x + c * y, heading_difference_rad(to, from)};
+}
+
 Pose T_robot_camera(const CameraMount& mount) {
   Eigen::Matrix3d R_level;  // camera x right, y down, z forward; robot x forward, y left, z up
   R_level << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -69,6 +75,7 @@ PlaceView select_lines(std::span<const SpaceSegment> segments,
   }
   const Pose T = T_robot_camera(mount);
   PlaceView view;
+  view.mount = mount;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     view.image_lines.push_back(images[i].left);
     const SpaceSegment& segment = segments[i];

@@ -7,6 +7,7 @@
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 
@@ -14,7 +15,7 @@ namespace vernier::localise::internal {
 /// make_localiser.
 class BaselineLocaliser : public Localiser {
  public:
-  explicit BaselineLocaliser(const TopologicalMap& map);
+  explicit BaselineLocaliser(const TopologicalMap& map, const LocaliserOptions& options = {});
 
   LocalisationAnswer localise(const PlaceView& query) const override;
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/baseline_localiser.h"
+#include "localise/methods/baseline_localiser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 namespace {
@@ -26,7 +27,7 @@ float coefficient(const HistogramRows& P, Eigen::Index p, const HistogramRows& Q
 
 }  // namespace
 
-BaselineLocaliser::BaselineLocaliser(const TopologicalMap& map)
+BaselineLocaliser::BaselineLocaliser(const TopologicalMap& map, const LocaliserOptions&)
     : map_(map), options_(image_pgh_options()) {
   for (const MapNode& node : map.nodes) {
     histograms_.push_back(image_histograms(node.view.image_lines, options_));

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "localise/histograms/smeared_ramp.h"
 #include "localise/place.h"
-#include "localise/smeared_ramp.h"
 #include "stereo/segment.h"
 
 namespace vernier::localise {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/smeared_ramp.h"
+#include "localise/histograms/smeared_ramp.h"
 
 #include <algorithm>
 #include <array>

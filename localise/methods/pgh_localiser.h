@@ -4,6 +4,8 @@
 
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "localise/ranking/histogram_ranker.h"
+#include "localise/topological_map.h"
 
 namespace vernier::localise::internal {
 
@@ -11,13 +13,14 @@ namespace vernier::localise::internal {
 class PghLocaliser : public Localiser {
  public:
   PghLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
-      : map_(map), options_(options) {}
+      : map_(map), options_(options), ranker_(map, options.histograms) {}
 
   LocalisationAnswer localise(const PlaceView& query) const override;
 
  private:
   const TopologicalMap& map_;
   LocaliserOptions options_;
+  HistogramRanker ranker_;
 };
 
 }  // namespace vernier::localise::internal

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/map/node_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "localise/place.h"
+#include "localise/topological_map.h"
+
+namespace vernier::localise::internal {
+
+std::uint64_t NodeGrid::key(double x_m, double y_m) {
+  const auto cell = [](double m) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(m / cell_m_)));
+  };
+  return static_cast<std::uint64_t>(cell(x_m)) << 32 | cell(y_m);
+}
+
+NodeGrid::NodeGrid(const TopologicalMap& map) : map_(map) {
+  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
+    const Pose2D& pose = map.nodes[i].pose;
+    cells_[key(pose.x_m, pose.y_m)].push_back(static_cast<int>(i));
+  }
+}
+
+void NodeGrid::visit(const Pose2D& pose, const std::function<void(int)>& node) const {
+  for (int dx = -1; dx <= 1; ++dx) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      const auto cell = cells_.find(key(pose.x_m + dx * cell_m_, pose.y_m + dy * cell_m_));
+      if (cell == cells_.end()) continue;
+      for (const int i : cell->second) node(i);
+    }
+  }
+}
+
+std::vector<int> NodeGrid::near(const Pose2D& pose, double radius_m, double turn_rad) const {
+  std::vector<int> nodes;
+  visit(pose, [&](int i) {
+    const Pose2D& at = map_.nodes[i].pose;
+    if (distance_m(at, pose) <= radius_m &&
+        std::abs(heading_difference_rad(at, pose)) <= turn_rad) {
+      nodes.push_back(i);
+    }
+  });
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+int NodeGrid::nearest(const Pose2D& pose) const {
+  constexpr double most_m = 2, most_rad = 0.6, metres_per_rad = 0.5;
+  int best = -1;
+  double least = 0;
+  for (const int i : near(pose, most_m, most_rad)) {
+    const Pose2D& at = map_.nodes[i].pose;
+    const double cost =
+        distance_m(at, pose) + metres_per_rad * std::abs(heading_difference_rad(at, pose));
+    if (best < 0 || cost < least) {
+      best = i;
+      least = cost;
+    }
+  }
+  return best;
+}
+
+}  // namespace vernier::localise::internal

@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/methods/line_localiser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "calib/error.h"
+#include "localise/localiser.h"
+#include "localise/map/merged_lines.h"
+#include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/place/view_camera.h"
+#include "localise/posterior/pose_posterior.h"
+#include "localise/ranking/node_ranker.h"
+#include "localise/topological_map.h"
+#include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/image_lines.h"
+#include "localise/verification/view_agreement.h"
+
+namespace vernier::localise::internal {
+
+namespace {
+
+/// Views with fewer lines have many rivals: more of them are compared in full.
+constexpr std::size_t sparse_lines = 60;
+constexpr int few_finalists = 3, many_finalists = 20;
+constexpr int first_candidates = 16;      ///< the others follow where these leave doubts
+constexpr double sure_error_rate = 0.01;  ///< unless a smaller one is asked for
+/// Gauss-Newton steps of a candidate and, after these, of a finalist.
+constexpr int wide_steps = 1, refine_steps = 1;
+constexpr int rough_steps = 2, fine_steps = 4;
+
+/// The pose of the first look for a pose of another.
+Pose2D first_pose(const Pose2D& pose, double turn_rad) {
+  return {pose.x_m, pose.y_m, pose.heading_rad - turn_rad};
+}
+Pose2D turned(const Pose2D& first, double turn_rad) {
+  return {first.x_m, first.y_m, first.heading_rad + turn_rad};
+}
+
+bool same_place(const Pose2D& a, const Pose2D& b) {
+  constexpr double same_m = 0.15, same_rad = 0.1;
+  return distance_m(a, b) < same_m && std::abs(heading_difference_rad(a, b)) < same_rad;
+}
+
+/// From the poses of votes to one at which candidates can be told apart.
+ImprovedPose refine(const ComparedView& view,
+                    const SpaceLines& lines,
+                    std::span<const VotePeak> starts,
+                    PredictedLines& room) {
+  ImprovedPose best;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const ImprovedPose wide =
+        improve(view, lines, starts[i].query_in_node, wide_steps, wide_agreement(), room);
+    if (i == 0 || wide.score > best.score) best = wide;
+  }
+  best = improve(view, lines, best.pose, wide_steps, wide_agreement(), room);
+  return improve(view, lines, best.pose, refine_steps, rough_agreement(), room);
+}
+
+bool better(const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; }
+
+}  // namespace
+
+struct LineLocaliser::Query {
+  std::vector<Seen> looks;
+  std::vector<Hypothesis> compared;                  // of the first look's pose
+  std::map<int, SpaceLines> merged;                  // of nodes, as they are needed
+  std::map<int, std::vector<PlanUpright>> uprights;  // of these
+  PredictedLines room;
+};
+
+LineLocaliser::LineLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
+    : map_(map),
+      options_(options),
+      ranker_(make_ranker(options.ranker, map, options.histograms)),
+      grid_(map) {}
+
+LocalisationAnswer LineLocaliser::localise(const PlaceView& query) const {
+  const Look look{query, 0};
+  return localise_looks({&look, 1});
+}
+
+LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) const {
+  if (looks.empty()) throw Error("looks", "there are none", "give at least one");
+  Query query;
+  std::size_t lines = 0;
+  for (const Look& look : looks) {
+    query.looks.push_back(
+        {compared_view(look.view), plan_uprights(look.view.lines), look.turn_rad});
+    lines += look.view.lines.size();
+  }
+  LocalisationAnswer nothing;
+  if (static_cast<int>(lines) < options_.min_lines) return nothing;
+  nothing.status = LocalisationStatus::no_match;
+  if (map_.nodes.empty()) return nothing;
+
+  // More candidates as long as the answer is not sure.
+  const double sure = 1 - std::min(options_.max_error_rate, sure_error_rate);
+  LocalisationAnswer result = nothing;
+  std::vector<std::vector<RankedNode>> ranked;
+  for (const Look& look : looks) ranked.push_back(ranker_->rank(look.view, options_.candidates));
+  const int first = std::min(options_.candidates, first_candidates);
+  for (int from = 0, to = first; from < to;
+       from = to, to = options_.stages.deepen ? options_.candidates : to) {
+    std::vector<Hypothesis> found;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      candidates(query.looks[i], ranked[i], from, to, query, found);
+    }
+    if (found.empty()) break;
+    if (options_.stages.compare) {
+      compare_best(std::move(found), finalists(query), query);
+    } else {
+      query.compared.insert(query.compared.end(), found.begin(), found.end());
+    }
+    result = answer(query);
+    if (result.probability >= sure) return result;
+  }
+  return result;
+}
+
+void LineLocaliser::candidates(const Seen& seen,
+                               std::span<const RankedNode> ranked,
+                               int from,
+                               int to,
+                               Query& query,
+                               std::vector<Hypothesis>& found) const {
+  const auto end = std::min<std::size_t>(to, ranked.size());
+  for (std::size_t i = from; i < end; ++i) {
+    const Pose2D pose = compose(map_.nodes[ranked[i].node].pose, ranked[i].query_in_node);
+    if (options_.stages.align) {
+      near_pose(pose, seen, query, found);
+    } else {
+      found.push_back({first_pose(pose, seen.turn_rad), ranked[i].node, ranked[i].score});
+    }
+  }
+}
+
+/// Adds the best pose around a rough one, by votes and rough comparison with the merged lines of
+/// the nearest node.
+void LineLocaliser::near_pose(const Pose2D& pose,
+                              const Seen& look,
+                              Query& query,
+                              std::vector<Hypothesis>& found) const {
+  const int node = grid_.nearest(pose);
+  if (node < 0) return;
+  const SpaceLines& lines = lines_around(node, query);
+  const Pose2D around = relative(pose, map_.nodes[node].pose);
+  std::vector<VotePeak> peaks = vote(look.uprights, uprights_around(node, query), around);
+  if (peaks.empty()) peaks.push_back({around, 0});
+  ImprovedPose best{peaks[0].query_in_node, peaks[0].votes, {}};
+  if (options_.stages.refine) best = refine(look.view, lines, peaks, query.room);
+  found.push_back(
+      {first_pose(compose(map_.nodes[node].pose, best.pose), look.turn_rad), node, best.score});
+}
+
+const SpaceLines& LineLocaliser::lines_around(int node, Query& query) const {
+  auto merged = query.merged.find(node);
+  if (merged == query.merged.end()) {
+    merged = query.merged.emplace(node, merged_lines(map_, grid_, node)).first;
+  }
+  return merged->second;
+}
+
+const std::vector<PlanUpright>& LineLocaliser::uprights_around(int node, Query& query) const {
+  auto merged = query.uprights.find(node);
+  if (merged == query.uprights.end()) {
+    merged = query.uprights.emplace(node, plan_uprights(lines_around(node, query))).first;
+  }
+  return merged->second;
+}
+
+int LineLocaliser::finalists(const Query& query) const {
+  std::size_t lines = 0;
+  for (const Seen& look : query.looks) lines = std::max(lines, look.view.lines.size());
+  return lines < sparse_lines ? many_finalists : few_finalists;
+}
+
+void LineLocaliser::compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const {
+  std::stable_sort(candidates.begin(), candidates.end(), better);
+  std::vector<Hypothesis> chosen;
+  for (const Hypothesis& h : candidates) {
+    if (static_cast<int>(chosen.size()) >= most) break;
+    const auto same = [&](const Hypothesis& c) { return same_place(c.pose, h.pose); };
+    if (std::none_of(chosen.begin(), chosen.end(), same)) chosen.push_back(h);
+  }
+  for (Hypothesis& h : chosen) {
+    compare(h, query);
+    query.compared.push_back(h);
+  }
+}
+
+/// The score of all looks with the merged lines of the nodes nearest to the pose, which is
+/// improved by steps on the sum: rough ones, whose score is not kept, then fine ones.
+void LineLocaliser::compare(Hypothesis& hypothesis, Query& query) const {
+  const AgreementOptions rough = rough_agreement(), fine = fine_agreement();
+  Pose2D at = hypothesis.pose;
+  for (int step = 0; step <= rough_steps + fine_steps; ++step) {
+    const bool is_fine = step >= rough_steps;
+    const JointAgreement here = joint_agreement(at, is_fine ? fine : rough, query);
+    if (step == rough_steps || (is_fine && here.score > hypothesis.score)) {
+      hypothesis = {at, here.node >= 0 ? here.node : hypothesis.node, here.score};
+    } else if (is_fine) {
+      break;
+    }
+    const Eigen::Vector3f move = (here.information + step_damping()).inverse() * here.gradient;
+    if (move.allFinite()) at = compose(at, {move[0], move[1], move[2]});
+  }
+}
+
+/// Scores and derivatives of all looks with respect to the pose of the first.
+LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first,
+                                                             const AgreementOptions& options,
+                                                             Query& query) const {
+  static const SpaceLines nothing_known = space_lines({});
+  JointAgreement sum;
+  for (const Seen& look : query.looks) {
+    const Pose2D pose = turned(first, look.turn_rad);
+    const int node = grid_.nearest(pose);
+    if (&look == query.looks.data()) sum.node = node;
+    const SpaceLines* lines = &nothing_known;
+    Pose2D in_node;
+    if (node >= 0) {
+      lines = &lines_around(node, query);
+      in_node = relative(pose, map_.nodes[node].pose);
+    }
+    const ViewAgreement here = agreement(look.view, *lines, in_node, options, query.room);
+    sum.score += here.score;
+    // A step of the first look in the frame of this one.
+    const auto c = static_cast<float>(std::cos(look.turn_rad));
+    const auto s = static_cast<float>(std::sin(look.turn_rad));
+    Eigen::Matrix3f T = Eigen::Matrix3f::Identity();
+    T.topLeftCorner<2, 2>() << c, s, -s, c;
+    sum.gradient += T.transpose() * here.gradient;
+    sum.information += T.transpose() * here.information * T;
+  }
+  return sum;
+}
+
+LocalisationAnswer LineLocaliser::answer(Query& query) const {
+  LocalisationAnswer result;
+  double observations = 0;
+  for (const Seen& look : query.looks) observations += look.view.observations;
+  const std::vector<WeightedMode> modes = pose_posterior(query.compared, observations);
+  if (modes.empty()) return result;
+  for (const WeightedMode& m : modes) {
+    result.modes.push_back({m.best.pose, m.best.node, m.probability, m.best.score});
+  }
+  const PoseMode& best = result.modes[0];
+  result.node = best.node;
+  result.pose = best.pose;
+  result.score = best.score;
+  result.probability = best.probability;
+  constexpr double no_rival_nats = 100;
+  result.runner_up = best.score - no_rival_nats;
+  for (const PoseMode& mode : result.modes) {
+    if (distance_m(mode.pose, best.pose) > 1) {
+      result.runner_up = std::max(result.runner_up, mode.score);
+      break;
+    }
+  }
+  const bool sure =
+      options_.max_error_rate >= 1 || result.probability >= 1 - options_.max_error_rate;
+  result.status = sure ? LocalisationStatus::answered : LocalisationStatus::unsure;
+  if (!sure) result.next_turn_rad = telling_turn(result.modes, query);
+  return result;
+}
+
+/// The turn at which the two best modes would see what explains the other's view least.
+double LineLocaliser::telling_turn(std::span<const PoseMode> modes, Query& query) const {
+  const auto rival = std::find_if(modes.begin(), modes.end(), [&](const PoseMode& mode) {
+    return distance_m(mode.pose, modes[0].pose) > 1;
+  });
+  if (rival == modes.end()) return 0;
+  constexpr double degree = std::numbers::pi / 180;
+  constexpr double known_rad = 15 * degree;  // closer to a look that was taken: nothing new
+  const ViewCamera& camera = query.looks[0].view.camera;
+  double best = 0, least = 0;
+  for (const double turn_deg : {30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180}) {
+    const double turn = turn_deg * degree;
+    const bool taken = std::any_of(query.looks.begin(), query.looks.end(), [&](const Seen& look) {
+      return std::abs(std::remainder(look.turn_rad - turn, 2 * std::numbers::pi)) < known_rad;
+    });
+    const Pose2D here = turned(modes[0].pose, turn), there = turned(rival->pose, turn);
+    const int a = grid_.nearest(here), b = grid_.nearest(there);
+    if (taken || a < 0 || b < 0) continue;
+    const SpaceLines &lines_a = lines_around(a, query), &lines_b = lines_around(b, query);
+    const Pose2D in_a = relative(here, map_.nodes[a].pose);
+    const Pose2D in_b = relative(there, map_.nodes[b].pose);
+    const ComparedView view_a = predicted_view(lines_a, in_a, camera, query.room);
+    const ComparedView view_b = predicted_view(lines_b, in_b, camera, query.room);
+    const double score = agreement(view_a, lines_b, in_b, fine_agreement(), query.room).score +
+                         agreement(view_b, lines_a, in_a, fine_agreement(), query.room).score;
+    if (score < least) {
+      least = score;
+      best = turn;
+    }
+  }
+  return best;
+}
+
+}  // namespace vernier::localise::internal

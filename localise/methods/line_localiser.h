@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "localise/localiser.h"
+#include "localise/map/node_grid.h"
+#include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/posterior/pose_posterior.h"
+#include "localise/ranking/node_ranker.h"
+#include "localise/topological_map.h"
+#include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/view_agreement.h"
+
+namespace vernier::localise::internal {
+
+/// Ranks nodes, finds poses by votes of vertical lines, compares the recorded lines with the view
+/// in its image, and forms a posterior. See make_localiser.
+class LineLocaliser : public Localiser {
+ public:
+  LineLocaliser(const TopologicalMap& map, const LocaliserOptions& options);
+
+  LocalisationAnswer localise(const PlaceView& query) const override;
+  LocalisationAnswer localise_looks(std::span<const Look> looks) const override;
+
+ private:
+  /// A look as it is compared.
+  struct Seen {
+    ComparedView view;
+    std::vector<PlanUpright> uprights;
+    double turn_rad = 0;
+  };
+  /// Of all looks together.
+  struct JointAgreement {
+    double score = 0;
+    Eigen::Matrix3f information = Eigen::Matrix3f::Zero();
+    Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
+    int node = -1;  ///< with which the first look was compared
+  };
+  /// Memory and intermediate results of one query.
+  struct Query;
+
+  void candidates(const Seen& seen,
+                  std::span<const RankedNode> ranked,
+                  int from,
+                  int to,
+                  Query& query,
+                  std::vector<Hypothesis>& found) const;
+  void near_pose(const Pose2D& pose,
+                 const Seen& look,
+                 Query& query,
+                 std::vector<Hypothesis>& found) const;
+  const SpaceLines& lines_around(int node, Query& query) const;
+  const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
+  JointAgreement joint_agreement(const Pose2D& first,
+                                 const AgreementOptions& options,
+                                 Query& query) const;
+  void compare(Hypothesis& hypothesis, Query& query) const;
+  void compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const;
+  int finalists(const Query& query) const;
+  LocalisationAnswer answer(Query& query) const;
+  double telling_turn(std::span<const PoseMode> modes, Query& query) const;
+
+  const TopologicalMap& map_;
+  LocaliserOptions options_;
+  std::unique_ptr<NodeRanker> ranker_;
+  NodeGrid grid_;
+};
+
+}  // namespace vernier::localise::internal

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/localiser.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "calib/base/shown_text.h"
+#include "calib/error.h"
+#include "localise/methods/baseline_localiser.h"
+#include "localise/methods/line_localiser.h"
+#include "localise/methods/pgh_localiser.h"
+#include "localise/topological_map.h"
+
+namespace vernier::localise {
+
+using namespace internal;
+
+namespace {
+
+void check(const LocaliserOptions& options) {
+  constexpr int most_candidates = 10'000;
+  if (options.candidates < 1 || options.candidates > most_candidates || options.min_lines < 1) {
+    throw Error("localiser options", "candidates or min_lines is out of range",
+                "use 1 to 10000 candidates and at least 1 line");
+  }
+  if (!(options.max_error_rate > 0 && options.max_error_rate <= 1)) {
+    throw Error("localiser options", "max_error_rate is not above 0 and at most 1",
+                "use 1 for an answer to every query");
+  }
+}
+
+template <class Method>
+LocaliserFactory factory() {
+  return [](const TopologicalMap& map, const LocaliserOptions& options) {
+    return std::make_unique<Method>(map, options);
+  };
+}
+
+/// Methods by name, those that ship among them.
+class Registry {
+ public:
+  static Registry& instance() {
+    static Registry registry;
+    return registry;
+  }
+
+  void add(const std::string& method, LocaliserFactory factory) {
+    const std::lock_guard lock(mutex_);
+    if (method.empty() || !factories_.emplace(method, std::move(factory)).second) {
+      throw Error("localiser " + vernier::internal::in_quotes(method),
+                  method.empty() ? "has no name" : "is already registered", "choose another name");
+    }
+  }
+
+  std::vector<std::string> names() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> names;
+    names.reserve(factories_.size());
+    for (const auto& [name, unused] : factories_) names.push_back(name);
+    return names;
+  }
+
+  LocaliserFactory find(std::string_view method) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = factories_.find(std::string(method));
+    return found == factories_.end() ? LocaliserFactory{} : found->second;
+  }
+
+ private:
+  Registry()
+      : factories_{{"lines", factory<LineLocaliser>()},
+                   {"pgh", factory<PghLocaliser>()},
+                   {"pgh_baseline", factory<BaselineLocaliser>()}} {}
+
+  mutable std::mutex mutex_;
+  std::map<std::string, LocaliserFactory> factories_;
+};
+
+}  // namespace
+
+std::string_view name(LocalisationStatus status) {
+  switch (status) {
+    case LocalisationStatus::answered:
+      return "answered";
+    case LocalisationStatus::too_few_lines:
+      return "too_few_lines";
+    case LocalisationStatus::tie:
+      return "tie";
+    case LocalisationStatus::no_match:
+      return "no_match";
+    case LocalisationStatus::unsure:
+      return "unsure";
+    case LocalisationStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+LocalisationAnswer Localiser::localise_looks(std::span<const Look> looks) const {
+  if (looks.empty()) throw Error("looks", "there are none", "give at least one");
+  LocalisationAnswer answer = localise(looks[0].view);
+  answer.pose.heading_rad -= looks[0].turn_rad;
+  return answer;
+}
+
+std::vector<std::string> localiser_names() { return Registry::instance().names(); }
+
+void register_localiser(const std::string& method, LocaliserFactory factory) {
+  Registry::instance().add(method, std::move(factory));
+}
+
+std::unique_ptr<Localiser> make_localiser(std::string_view method,
+                                          const TopologicalMap& map,
+                                          const LocaliserOptions& options) {
+  const LocaliserFactory factory = Registry::instance().find(method);
+  if (!factory) {
+    std::string known;
+    const std::vector<std::string> names = localiser_names();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      known += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+    }
+    throw Error("localiser " + vernier::internal::in_quotes(method), "unknown method",
+                "use " + known);
+  }
+  check(options);
+  return factory(map, options);
+}
+
+}  // namespace vernier::localise

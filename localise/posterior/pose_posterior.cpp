@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/posterior/pose_posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "localise/place.h"
+
+namespace vernier::localise::internal {
+
+std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
+                                         double observations,
+                                         const PosteriorOptions& options) {
+  constexpr std::size_t most_modes = 20;
+  constexpr double same_m = 0.3, same_rad = 0.2, success_m = 1;
+  std::vector<Hypothesis> sorted(hypotheses.begin(), hypotheses.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  std::vector<WeightedMode> modes;
+  for (const Hypothesis& h : sorted) {
+    const bool known = std::any_of(modes.begin(), modes.end(), [&](const WeightedMode& m) {
+      return distance_m(m.best.pose, h.pose) < same_m &&
+             std::abs(heading_difference_rad(m.best.pose, h.pose)) < same_rad;
+    });
+    if (!known && modes.size() < most_modes) modes.push_back({h, 0});
+  }
+  if (modes.empty()) return modes;
+  std::vector<double> weights;
+  const double elsewhere =
+      -options.elsewhere_nats - options.elsewhere_nats_per_observation * observations;
+  double total = std::exp(options.evidence_share * (elsewhere - modes[0].best.score));
+  for (const WeightedMode& m : modes) {
+    weights.push_back(std::exp(options.evidence_share * (m.best.score - modes[0].best.score)));
+    total += weights.back();
+  }
+  for (WeightedMode& m : modes) {
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      if (distance_m(modes[i].best.pose, m.best.pose) <= success_m)
+        m.probability += weights[i] / total;
+    }
+  }
+  return modes;
+}
+
+}  // namespace vernier::localise::internal

@@ -45,6 +45,8 @@ bool is_small(std::string_view number) {
     if (said.starts_with('+')) said.remove_prefix(1);
     const auto read = std::from_chars(said.data(), said.data() + said.size(), exponent);
     if (read.ec != std::errc()) return said.starts_with('-');
+    constexpr long long beyond_all = 1LL << 40;  // more than a text has digits
+    exponent = std::clamp(exponent, -beyond_all, beyond_all);
   }
   const auto first = static_cast<long long>(digits.find_first_of("123456789"));
   const auto point = static_cast<long long>(std::min(digits.find('.'), digits.size()));

@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -96,17 +97,23 @@ class RaisedThreadLimit {
   std::optional<tbb::global_control> control_;
 };
 
-/// Calls work(0) … work(count - 1) on the threads of an arena.
+/// Calls work(0) … work(count - 1) on the threads of an arena. `finished` orders what they did before
+/// what follows, as the end of the loop does: the thread sanitizer does not see into TBB.
 template <class Work>
 void in_parallel(tbb::task_arena& arena, int count, Work work) {
+  std::atomic<int> finished = 0;
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<int>(0, count, 1),
         [&](const tbb::blocked_range<int>& range) {
-          for (int i = range.begin(); i < range.end(); ++i) work(i);
+          for (int i = range.begin(); i < range.end(); ++i) {
+            work(i);
+            finished.fetch_add(1, std::memory_order_release);
+          }
         },
         tbb::simple_partitioner());
   });
+  [[maybe_unused]] const int ended = finished.load(std::memory_order_acquire);
 }
 
 /// A ceiling that no store of the folder has, and this shard's part of it.

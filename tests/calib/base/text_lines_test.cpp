@@ -69,6 +69,8 @@ TEST(ToReal, IsZeroForWhatIsTooSmallAndNothingForWhatIsTooLarge) {
   }
   EXPECT_EQ(to_real("1" + std::string(400, '0')), std::nullopt);
   EXPECT_EQ(to_real("1e-400x"), std::nullopt);
+  EXPECT_EQ(to_real("1e9223372036854775807"), std::nullopt);  // an overflow of its exponent once
+  EXPECT_EQ(to_real("1e-9223372036854775807"), 0);
 }
 
 TEST(ParseReal, TakesOneSign) {

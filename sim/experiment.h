@@ -57,6 +57,9 @@ struct ExperimentSettings {
   int map_headings = 0;  ///< per node; 0: along the route
   std::string method = "pgh";
   localise::LocaliserOptions localiser;
+  /// Views of a query at most, from one position: another one is taken as long as the localiser
+  /// does not answer, turned as it asks for (next_turn_rad), or by a share of the circle.
+  int looks = 1;
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;
 };
@@ -73,7 +76,8 @@ struct TrialResult {
   double error_m = 0;
   double node_error_m = 0;
   double heading_error_rad = 0;
-  int lines = 0;              ///< in space, as given to the localiser
+  int lines = 0;              ///< in space, of the first look, as given to the localiser
+  int looks = 1;              ///< views that were taken
   int corners = 0;            ///< corner pairs sensed (for corner-based methods)
   int corner_mismatches = 0;  ///< number of them with a wrong partner
   double score = 0, runner_up = 0;

@@ -176,9 +176,9 @@ const std::vector<PlanUpright>& LineLocaliser::uprights_around(int node, Query& 
 }
 
 int LineLocaliser::finalists(const Query& query) const {
-  std::size_t lines = 0;
-  for (const Seen& look : query.looks) lines = std::max(lines, look.view.lines.size());
-  return lines < sparse_lines ? many_finalists : few_finalists;
+  // A candidate of one look was not compared with the others yet.
+  const bool is_plain = query.looks.size() == 1 && query.looks[0].view.lines.size() >= sparse_lines;
+  return is_plain ? few_finalists : many_finalists;
 }
 
 void LineLocaliser::compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const {
@@ -281,7 +281,7 @@ double LineLocaliser::telling_turn(std::span<const PoseMode> modes, Query& query
   constexpr double known_rad = 15 * degree;  // closer to a look that was taken: nothing new
   const ViewCamera& camera = query.looks[0].view.camera;
   double best = 0, least = 0;
-  for (const double turn_deg : {30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180}) {
+  for (const double turn_deg : {20, -20, 45, -45, 90, -90, 135, -135, 180}) {
     const double turn = turn_deg * degree;
     const bool taken = std::any_of(query.looks.begin(), query.looks.end(), [&](const Seen& look) {
       return std::abs(std::remainder(look.turn_rad - turn, 2 * std::numbers::pi)) < known_rad;

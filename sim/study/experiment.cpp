@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "calib/rig.h"
@@ -116,21 +117,37 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
       draw_query(visibility_, settings_.protocol, settings_.mount.height_m, settings_.seed, trial);
   NoiseFreeViewOptions looking = look_options(settings_);
   looking.with_corners = true;
-  const NoiseFreeView seen = look(visibility_, rig_.rig, result.truth, looking);
-  const StereoObservation sighting = sensor_.sense(seen, {.seed = settings_.seed, .trial = trial});
+  std::vector<Look> looks;
+  LocalisationAnswer answer;
+  StereoObservation first;
+  double turn_rad = 0;
+  for (int taken = 0; taken < std::max(1, settings_.looks); ++taken) {
+    Pose2D pose = result.truth;
+    pose.heading_rad += turn_rad;
+    const NoiseFreeView seen = look(visibility_, rig_.rig, pose, looking);
+    StereoObservation sighting = sensor_.sense(
+        seen, {.seed = settings_.seed, .trial = trial, .frame = static_cast<std::uint32_t>(taken)});
 
-  const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
-  const PlaceView view = interpret(told, sighting, settings_);
-  const LocalisationAnswer answer = localiser.localise(view);
-  result.cpu_ms = clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu;
-  result.wall_ms = clock_ms(CLOCK_MONOTONIC) - wall;
+    const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
+    looks.push_back({interpret(told, sighting, settings_), turn_rad});
+    answer =
+        looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
+    result.cpu_ms += clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu;
+    result.wall_ms += clock_ms(CLOCK_MONOTONIC) - wall;
+
+    if (taken == 0) first = std::move(sighting);
+    if (answer.status == LocalisationStatus::answered) break;
+    const double share = 2 * std::numbers::pi * (taken + 1) / settings_.looks;
+    turn_rad = answer.next_turn_rad != 0 ? answer.next_turn_rad : share;
+  }
 
   result.status = answer.status;
-  result.corners = static_cast<int>(sighting.corners.size());
+  result.corners = static_cast<int>(first.corners.size());
   result.corner_mismatches =
-      static_cast<int>(std::count_if(sighting.corners.begin(), sighting.corners.end(),
+      static_cast<int>(std::count_if(first.corners.begin(), first.corners.end(),
                                      [](const SensedCorner& corner) { return corner.mismatched; }));
-  result.lines = static_cast<int>(view.lines.size());
+  result.lines = static_cast<int>(looks[0].view.lines.size());
+  result.looks = static_cast<int>(looks.size());
   result.score = answer.score;
   result.runner_up = answer.runner_up;
   result.probability = answer.probability;

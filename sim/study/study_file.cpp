@@ -256,9 +256,11 @@ ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
       settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
     }
     if (const auto* looks = localiser->get("looks")) {
-      if (integer(*looks, "localiser.looks") != 1) {
-        fail(*looks, "localiser.looks is not 1", "only one view per query is supported");
+      const std::int64_t count = integer(*looks, "localiser.looks");
+      if (count < 1 || count > 12) {
+        fail(*looks, "localiser.looks is not from 1 to 12", "use 1, or 2 for a second look");
       }
+      settings.looks = static_cast<int>(count);
     }
   }
   return settings;
@@ -326,6 +328,7 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   all["map.rig"] = s.map_rig == MapRig::same ? "same" : "recalibrated";
   all["localiser.method"] = s.method;
   all["localiser.knows_endpoint_sigma"] = s.knows_endpoint_sigma ? "true" : "false";
+  if (s.looks != 1) all["localiser.looks"] = fmt::format("{}", s.looks);
   if (s.method == "lines") {  // the others do not use these
     all["localiser.ranker"] = s.localiser.ranker;
     all["localiser.candidates"] = fmt::format("{}", s.localiser.candidates);

@@ -65,7 +65,7 @@ struct Sampled {
 Sampled sampled(const PlaceLine& line, const Pose2D& pose, const ViewCamera& camera) {
   constexpr int steps = 20000;
   Sampled result;
-  Eigen::Vector3f last;
+  Eigen::Vector3f last = Eigen::Vector3f::Zero();
   bool seen_before = false;
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector3d world = line.a_m + (line.b_m - line.a_m) * i / steps;

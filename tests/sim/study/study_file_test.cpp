@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/base/atomic_file.h"
+#include "calib/error.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/sources/measured_sources.h"
@@ -78,6 +79,27 @@ TEST(StudyFile, SweepsFormAGridTheFirstKeySlowest) {
   EXPECT_EQ(study.cells[2].experiment.sources.edge_loss, 0.2);
   EXPECT_EQ(study.cells[2].experiment.protocol, QueryProtocol::path);
   EXPECT_NE(study.cells[1].settings, study.cells[0].settings);
+}
+
+TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
+  const auto cell = [](const std::string& localiser) {
+    return parse_study("[study]\ntrials = 10\n[localiser]\n" + localiser, "s.toml").cells.at(0);
+  };
+  const auto lines = cell(
+      "method = \"lines\"\nranker = \"pgh\"\ncandidates = 7\nmax_error_rate = 0.05\nlooks = 3\n");
+  EXPECT_EQ(lines.experiment.localiser.ranker, "pgh");
+  EXPECT_EQ(lines.experiment.localiser.candidates, 7);
+  EXPECT_EQ(lines.experiment.localiser.max_error_rate, 0.05);
+  EXPECT_EQ(lines.experiment.looks, 3);
+  EXPECT_EQ(lines.settings.at("localiser.max_error_rate"), "0.05");
+  EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
+  // Keys of older stores hold none of these.
+  EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.candidates"), 0u);
+  EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);
+  for (const char* wrong : {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n",
+                            "max_error_rate = 1.5\n", "looks = 13\n", "method = \"sift\"\n"}) {
+    EXPECT_THROW(cell(wrong), Error) << wrong;
+  }
 }
 
 TEST(StudyFile, ComplaintsNameLineAndRemedy) {

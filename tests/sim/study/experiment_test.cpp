@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/experiment.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "calib/rig_estimate.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+
+using namespace vernier::localise;
+using namespace vernier::sim;
+
+namespace {
+
+class Experiments : public testing::Test {
+ protected:
+  static ExperimentSettings settings(QueryProtocol protocol, int headings = 0) {
+    ExperimentSettings s;
+    s.method = "lines";
+    s.protocol = protocol;
+    s.map_headings = headings;
+    s.seed = 77;
+    return s;
+  }
+
+  LocalisationExperiment experiment(const ExperimentSettings& s) const {
+    return {visibility_, rig_, std::make_shared<MapViews>(map_views(visibility_, rig_.rig, s)), s};
+  }
+
+  World world_ = test::small_office();
+  Visibility visibility_{world_};
+  RigEstimate rig_ = test::nominal_rig();
+};
+
+// False alarms below 1e-6 if 9 of 10 are right at least.
+TEST_F(Experiments, LinesFindTheRobotUnderAllSources) {
+  const auto trials =
+      experiment(settings(QueryProtocol::path)).run_block({.block = 0, .first = 0, .count = 60});
+  int right = 0, wrong_though_sure = 0;
+  std::vector<double> errors;
+  for (const TrialResult& t : trials) {
+    right += t.error_m <= 1;
+    wrong_though_sure += t.answered() && !(t.error_m <= 1);
+    if (t.error_m <= 1) errors.push_back(t.error_m);
+    EXPECT_EQ(t.looks, 1);
+    EXPECT_GE(t.probability, 0);
+    EXPECT_LE(t.probability, 1);
+    if (t.answered()) {
+      EXPECT_GE(t.probability, 0.99);
+    }
+  }
+  EXPECT_GE(right, 42);
+  EXPECT_LE(wrong_though_sure, 3);
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.05);
+}
+
+TEST_F(Experiments, FurtherLooksAreTakenWhereTheFirstIsUnsure) {
+  ExperimentSettings s = settings(QueryProtocol::anywhere, 8);
+  const TrialBlock block{.block = 0, .first = 0, .count = 30};
+  const auto one = experiment(s).run_block(block);
+  s.looks = 4;
+  const auto four = experiment(s).run_block(block);
+  int sure_of_one = 0, sure_of_four = 0, more = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].truth.x_m, four[i].truth.x_m);
+    EXPECT_EQ(four[i].looks == 1, one[i].answered()) << i;
+    if (four[i].looks == 1) {
+      EXPECT_EQ(one[i].score, four[i].score);
+      EXPECT_EQ(one[i].answer.x_m, four[i].answer.x_m);
+    }
+    EXPECT_LE(four[i].looks, 4);
+    more += four[i].looks > 1;
+    sure_of_one += one[i].success();
+    sure_of_four += four[i].success();
+  }
+  EXPECT_GT(more, 0);
+  EXPECT_GT(sure_of_four, sure_of_one);
+}
+
+/// Answers the first node, whatever it sees, and counts the looks.
+class First : public Localiser {
+ public:
+  explicit First(const TopologicalMap& map) : map_(map) {}
+  LocalisationAnswer localise(const PlaceView& query) const override {
+    LocalisationAnswer answer;
+    answer.status = LocalisationStatus::unsure;
+    answer.node = 0;
+    answer.pose = map_.nodes[0].pose;
+    answer.next_turn_rad = 0.5;
+    headings.push_back(query.lines.size());
+    return answer;
+  }
+  LocalisationAnswer localise_looks(std::span<const Look> looks) const override {
+    turns.push_back(looks.back().turn_rad);
+    return localise(looks[0].view);
+  }
+  mutable std::vector<std::size_t> headings;
+  mutable std::vector<double> turns;
+
+ private:
+  const TopologicalMap& map_;
+};
+
+TEST_F(Experiments, RunsALocaliserOfOnesOwn) {
+  ExperimentSettings s = settings(QueryProtocol::near_path);
+  s.looks = 3;
+  const LocalisationExperiment robot = experiment(s);
+  const TopologicalMap map = robot.record_map(0, robot.map_estimator_rig(0));
+  const First first(map);
+  const TrialResult trial = robot.run_trial(5, robot.estimator_rig(5), map, first);
+  EXPECT_EQ(trial.looks, 3);
+  EXPECT_EQ(first.turns, (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(trial.status, LocalisationStatus::unsure);
+  EXPECT_FALSE(trial.success());
+  EXPECT_NEAR(trial.error_m, distance_m(map.nodes[0].pose, trial.truth), 1e-12);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -13,6 +13,7 @@ set(vernier_fuzz_targets
   fuzz/targets/json.cpp
   fuzz/targets/kalibr_camchain.cpp
   fuzz/targets/kalibr_target.cpp
+  fuzz/targets/map_file.cpp
   fuzz/targets/matcher_command.cpp
   fuzz/targets/mrcal_cameramodel.cpp
   fuzz/targets/numpy.cpp

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/map_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "calib/rig.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "tests/support/camera_views.h"
+#include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
+#include "tests/support/rooms.h"
+
+namespace vernier {
+
+using namespace vernier::localise;
+
+namespace {
+
+using test::error_message;
+using test::Folder;
+
+TopologicalMap some_rooms(int nodes, int lines = 20) {
+  TopologicalMap map;
+  for (int i = 0; i < nodes; ++i) {
+    MapNode node{{0.5 * i, -1.25, 0.1 * i}, test::view_of(test::random_room(i, lines), 0.1)};
+    for (int k = 0; k < 3; ++k) node.view.image_lines.push_back({{1.5 * k, 2}, {3, 4.25 + i}});
+    map.nodes.push_back(node);
+  }
+  return map;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void expect_same(const TopologicalMap& a, const TopologicalMap& b) {
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    const MapNode &p = a.nodes[i], &q = b.nodes[i];
+    EXPECT_EQ(p.pose.x_m, q.pose.x_m);
+    EXPECT_EQ(p.pose.heading_rad, q.pose.heading_rad);
+    EXPECT_EQ(p.view.mount.pitch_rad, q.view.mount.pitch_rad);
+    // A rig.json holds rotations as quaternions.
+    EXPECT_LT((parameters(*p.view.rig) - parameters(*q.view.rig)).cwiseAbs().maxCoeff(), 1e-12);
+    ASSERT_EQ(p.view.lines.size(), q.view.lines.size());
+    for (std::size_t k = 0; k < p.view.lines.size(); ++k) {
+      EXPECT_EQ(p.view.lines[k].a_m, q.view.lines[k].a_m);
+      EXPECT_EQ(p.view.lines[k].b_m, q.view.lines[k].b_m);
+      EXPECT_EQ(p.view.lines[k].kind, q.view.lines[k].kind);
+      EXPECT_EQ(p.view.lines[k].sigma_m, q.view.lines[k].sigma_m);
+    }
+    ASSERT_EQ(p.view.image_lines.size(), q.view.image_lines.size());
+    for (std::size_t k = 0; k < p.view.image_lines.size(); ++k) {
+      EXPECT_EQ(p.view.image_lines[k].a_px, q.view.image_lines[k].a_px);
+      EXPECT_EQ(p.view.image_lines[k].b_px, q.view.image_lines[k].b_px);
+    }
+  }
+}
+
+TEST(MapFile, ReadsWhatWasWritten) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  for (const int nodes : {0, 1, 7, 1001}) {
+    const TopologicalMap map = some_rooms(nodes, 4);
+    write_map(file, map);
+    expect_same(map, read_map(file));
+    const std::string once = bytes_of(file);
+    write_map(file, read_map(file));
+    EXPECT_EQ(bytes_of(file).size(), once.size());
+  }
+  EXPECT_LT(bytes_of(file).size(), 1001u * 450);  // the rig once
+}
+
+TEST(MapFile, ExtendingGivesWhatWritingAllGives) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  TopologicalMap map = some_rooms(5);
+  const TopologicalMap more = some_rooms(9);
+  write_map(file, map);
+  const std::string before = bytes_of(file);
+  extend_map(file, more.nodes);
+  EXPECT_EQ(bytes_of(file).substr(16, before.size() - 16), before.substr(16));
+  map.nodes.insert(map.nodes.end(), more.nodes.begin(), more.nodes.end());
+  expect_same(map, read_map(file));
+  // Another rig is stored with its nodes.
+  TopologicalMap other = some_rooms(2);
+  Rig rig = *other.nodes[0].view.rig;
+  rig.T_camera_first[1].t.x() -= 0.01;
+  for (MapNode& node : other.nodes) node.view.rig = std::make_shared<const Rig>(rig);
+  extend_map(file, other.nodes);
+  map.nodes.insert(map.nodes.end(), other.nodes.begin(), other.nodes.end());
+  expect_same(map, read_map(file));
+}
+
+TEST(MapFile, CutsAndFlippedBitsAreRefused) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  write_map(file, some_rooms(3, 2));
+  const std::string good = bytes_of(file);
+  for (std::size_t length = 0; length < good.size(); length += 5) {
+    const auto cut = folder.write("cut.map", good.substr(0, length));
+    ASSERT_NE(error_message([&] { read_map(cut); }), "") << length;
+  }
+  for (std::size_t at = 0; at < good.size(); at += 3) {
+    std::string flipped = good;
+    flipped[at] = static_cast<char>(flipped[at] ^ (1 << at % 8));
+    const auto damaged = folder.write("flipped.map", flipped);
+    const std::string said = error_message([&] { read_map(damaged); });
+    if (said.empty()) {
+      // A byte that fills a part up to 8 holds nothing.
+      expect_same(read_map(file), read_map(damaged));
+      continue;
+    }
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    EXPECT_NE(said.find("flipped.map"), std::string::npos) << said;
+  }
+}
+
+TEST(MapFile, SaysWhatIsWrong) {
+  const Folder folder;
+  const auto said_of = [&](const std::string& bytes) {
+    const auto file = folder.write("a.map", bytes);
+    return error_message([&] { read_map(file); }).substr(file.string().size());
+  };
+  const auto file = folder.path() / "good.map";
+  write_map(file, some_rooms(2));
+  std::string bytes = bytes_of(file);
+  EXPECT_EQ(said_of("{}"), ": is not a map; make one with write_map()");
+  bytes[8] = 2;
+  EXPECT_EQ(said_of(bytes),
+            ": is a map of version 2; this program reads version 1: make the map again");
+  bytes[8] = 1;
+  EXPECT_EQ(said_of(bytes.substr(0, bytes.size() - 8)),
+            ": is damaged: it is cut off; make the map again");
+  bytes[12] = 3;
+  EXPECT_EQ(said_of(bytes),
+            ": is damaged: it has another number of nodes than its head says; make "
+            "the map again");
+  EXPECT_NE(error_message([&] { read_map(folder.path()); }).find("is no file that can be read"),
+            std::string::npos);
+  EXPECT_NE(error_message([&] { read_map(folder.path() / "none"); }).find("is no file"),
+            std::string::npos);
+
+  TopologicalMap wrong = some_rooms(2);
+  wrong.nodes[1].view.lines[0].a_m.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(error_message([&] { write_map(file, wrong); }).find("map node 1: holds a number"),
+            std::string::npos);
+  wrong = some_rooms(1);
+  wrong.nodes[0].view.rig = nullptr;
+  EXPECT_EQ(error_message([&] { write_map(file, wrong); }),
+            "map: a node has no rig; set PlaceView::rig");
+  expect_same(read_map(file), some_rooms(2));  // the old one stays
+}
+
+}  // namespace
+}  // namespace vernier

@@ -97,8 +97,8 @@ class RaisedThreadLimit {
   std::optional<tbb::global_control> control_;
 };
 
-/// Calls work(0) … work(count - 1) on the threads of an arena. `finished` orders what they did before
-/// what follows, as the end of the loop does: the thread sanitizer does not see into TBB.
+/// Calls work(0) … work(count - 1) on the threads of an arena. `finished` orders what they did
+/// before what follows, as the end of the loop does: the thread sanitizer does not see into TBB.
 template <class Work>
 void in_parallel(tbb::task_arena& arena, int count, Work work) {
   std::atomic<int> finished = 0;

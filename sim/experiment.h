@@ -58,7 +58,7 @@ struct ExperimentSettings {
   std::string method = "pgh";
   localise::LocaliserOptions localiser;
   /// Views of a query at most, from one position: another one is taken as long as the localiser
-  /// does not answer, turned as it asks for (next_turn_rad), or by a share of the circle.
+  /// does not answer, turned as it asks for (next_turn_rad), or away from those taken.
   int looks = 1;
   bool knows_endpoint_sigma = false;  ///< the estimator assumes sources.endpoint_sigma_px
   std::uint64_t seed = 1;

@@ -139,8 +139,10 @@ void append_part(FileInProgress& out, std::uint32_t kind, std::string bytes) {
 void check(const MapNode& node, std::size_t index) {
   const auto beyond = [](double x, double most) { return !(std::abs(x) <= most); };
   bool wrong = beyond(node.pose.x_m, most_metres) || beyond(node.pose.y_m, most_metres) ||
-               beyond(node.pose.heading_rad, most_metres) || node.view.lines.size() > most_lines ||
-               node.view.image_lines.size() > most_lines;
+               beyond(node.pose.heading_rad, most_metres) ||
+               beyond(node.view.mount.height_m, most_metres) ||
+               beyond(node.view.mount.pitch_rad, most_metres) ||
+               node.view.lines.size() > most_lines || node.view.image_lines.size() > most_lines;
   for (const PlaceLine& line : node.view.lines) {
     wrong = wrong || beyond(line.a_m.cwiseAbs().maxCoeff(), most_metres) ||
             beyond(line.b_m.cwiseAbs().maxCoeff(), most_metres) ||
@@ -190,22 +192,26 @@ std::string rig_bytes(const PlaceView& view) {
 /// Appends nodes; `rig` is the last rig of the file so far.
 void append_nodes(FileInProgress& out, std::span<const MapNode> nodes, std::string rig) {
   std::size_t begin = 0;
-  const Rig* last = nullptr;
+  const PlaceView* last = nullptr;
+  const auto as_last = [&](const PlaceView& view) {
+    return last && view.rig == last->rig && view.mount.height_m == last->mount.height_m &&
+           view.mount.pitch_rad == last->mount.pitch_rad;
+  };
   while (begin < nodes.size()) {
     std::size_t end = begin;
     std::string bytes;
     for (; end < nodes.size() && end - begin < nodes_a_part; ++end) {
       const PlaceView& view = nodes[end].view;
-      if (view.rig.get() != last || !last) {
+      check(nodes[end], end);
+      if (!as_last(view)) {
         std::string needed = rig_bytes(view);
         if (needed != rig) {
           if (end > begin) break;
           append_part(out, rig_part, needed);
           rig = std::move(needed);
         }
-        last = view.rig.get();
+        last = &view;
       }
-      check(nodes[end], end);
       put_node(bytes, nodes[end]);
     }
     std::string part;

@@ -11,26 +11,34 @@
 
 namespace vernier::localise::internal {
 
-std::uint64_t NodeGrid::key(double x_m, double y_m) {
-  const auto cell = [](double m) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(m / cell_m_)));
+NodeGrid::Cell NodeGrid::cell(const Pose2D& pose) {
+  const double most = 1e9;  // of cells; further away nodes share these
+  const auto index = [most](double m) {
+    return static_cast<std::int64_t>(std::clamp(std::floor(m / cell_m_), -most, most));
   };
-  return static_cast<std::uint64_t>(cell(x_m)) << 32 | cell(y_m);
+  const bool finite = std::isfinite(pose.x_m) && std::isfinite(pose.y_m);
+  return finite ? Cell{index(pose.x_m), index(pose.y_m)} : Cell{};
+}
+
+std::uint64_t NodeGrid::key(std::int64_t x, std::int64_t y) {
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |
+         static_cast<std::uint32_t>(y);
 }
 
 NodeGrid::NodeGrid(const TopologicalMap& map) : map_(map) {
   for (std::size_t i = 0; i < map.nodes.size(); ++i) {
-    const Pose2D& pose = map.nodes[i].pose;
-    cells_[key(pose.x_m, pose.y_m)].push_back(static_cast<int>(i));
+    const Cell at = cell(map.nodes[i].pose);
+    cells_[key(at.x, at.y)].push_back(static_cast<int>(i));
   }
 }
 
 void NodeGrid::visit(const Pose2D& pose, const std::function<void(int)>& node) const {
+  const Cell at = cell(pose);
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
-      const auto cell = cells_.find(key(pose.x_m + dx * cell_m_, pose.y_m + dy * cell_m_));
-      if (cell == cells_.end()) continue;
-      for (const int i : cell->second) node(i);
+      const auto found = cells_.find(key(at.x + dx, at.y + dy));
+      if (found == cells_.end()) continue;
+      for (const int i : found->second) node(i);
     }
   }
 }

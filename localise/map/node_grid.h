@@ -26,7 +26,11 @@ class NodeGrid {
 
  private:
   static constexpr double cell_m_ = 2;
-  static std::uint64_t key(double x_m, double y_m);
+  struct Cell {
+    std::int64_t x = 0, y = 0;
+  };
+  static Cell cell(const Pose2D& pose);
+  static std::uint64_t key(std::int64_t x, std::int64_t y);
   void visit(const Pose2D& pose, const std::function<void(int)>& node) const;
 
   const TopologicalMap& map_;

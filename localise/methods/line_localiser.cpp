@@ -249,7 +249,13 @@ LocalisationAnswer LineLocaliser::answer(Query& query) const {
   const std::vector<WeightedMode> modes = pose_posterior(query.compared, observations);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
-    result.modes.push_back({m.best.pose, m.best.node, m.probability, m.best.score});
+    // Only scores of the last comparison are log-likelihoods.
+    const double probability = options_.stages.compare ? m.probability : 0;
+    result.modes.push_back({m.best.pose, m.best.node, probability, m.best.score});
+  }
+  if (!options_.stages.compare) {
+    std::stable_sort(result.modes.begin(), result.modes.end(),
+                     [](const PoseMode& a, const PoseMode& b) { return a.score > b.score; });
   }
   const PoseMode& best = result.modes[0];
   result.node = best.node;
@@ -261,7 +267,6 @@ LocalisationAnswer LineLocaliser::answer(Query& query) const {
   for (const PoseMode& mode : result.modes) {
     if (distance_m(mode.pose, best.pose) > 1) {
       result.runner_up = std::max(result.runner_up, mode.score);
-      break;
     }
   }
   const bool sure =

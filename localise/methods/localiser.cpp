@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/localiser.h"
 
-#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -32,6 +33,18 @@ void check(const LocaliserOptions& options) {
   }
 }
 
+void check(const TopologicalMap& map) {
+  constexpr double most = 1e6;  // metres, radians
+  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
+    const Pose2D& pose = map.nodes[i].pose;
+    if (!(std::abs(pose.x_m) <= most && std::abs(pose.y_m) <= most &&
+          std::abs(pose.heading_rad) <= most)) {
+      throw Error("map node " + std::to_string(i), "its pose is not finite or beyond 1e6",
+                  "leave the node out");
+    }
+  }
+}
+
 template <class Method>
 LocaliserFactory factory() {
   return [](const TopologicalMap& map, const LocaliserOptions& options) {
@@ -49,6 +62,10 @@ class Registry {
 
   void add(const std::string& method, LocaliserFactory factory) {
     const std::lock_guard lock(mutex_);
+    if (!factory && factories_.count(method) == 0) {
+      throw Error("localiser " + vernier::internal::in_quotes(method), "has no factory",
+                  "give a function that makes one");
+    }
     if (method.empty() || !factories_.emplace(method, std::move(factory)).second) {
       throw Error("localiser " + vernier::internal::in_quotes(method),
                   method.empty() ? "has no name" : "is already registered", "choose another name");
@@ -126,6 +143,7 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
                 "use " + known);
   }
   check(options);
+  check(map);
   return factory(map, options);
 }
 

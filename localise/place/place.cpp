@@ -79,7 +79,7 @@ PlaceView select_lines(std::span<const SpaceSegment> segments,
   for (std::size_t i = 0; i < segments.size(); ++i) {
     view.image_lines.push_back(images[i].left);
     const SpaceSegment& segment = segments[i];
-    if (!segment.reliable || segment.depth_sigma_m > options.max_sigma_m) continue;
+    if (!segment.reliable || !(segment.depth_sigma_m <= options.max_sigma_m)) continue;
     PlaceLine line{T * segment.a_m, T * segment.b_m, LineKind::oblique, segment.depth_sigma_m};
     if (may_be_vertical(segment, images[i].left, options)) {
       const Eigen::Vector2d mean = 0.5 * (line.a_m + line.b_m).head<2>();

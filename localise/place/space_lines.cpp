@@ -10,6 +10,7 @@ void SpaceLines::add(const Eigen::Vector3f& a_m,
                      const Eigen::Vector3f& b_m,
                      float sigma,
                      bool is_counted) {
+  for (auto* column : {&ax, &ay, &az, &bx, &by, &bz, &sigma_m, &counted}) column->resize(size);
   ax.push_back(a_m.x());
   ay.push_back(a_m.y());
   az.push_back(a_m.z());

@@ -41,6 +41,9 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
         m.probability += weights[i] / total;
     }
   }
+  std::stable_sort(modes.begin(), modes.end(), [](const WeightedMode& a, const WeightedMode& b) {
+    return a.probability > b.probability;
+  });
   return modes;
 }
 

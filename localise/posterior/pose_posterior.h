@@ -31,8 +31,8 @@ struct WeightedMode {
   double probability = 0;
 };
 
-/// Modes of a view of so many observations, further than 0.3 m or 0.2 rad apart, best score first,
-/// at most 20.
+/// Modes of a view of so many observations, further than 0.3 m or 0.2 rad apart: the 20 of best
+/// score, most probable first.
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          const PosteriorOptions& options = {});

@@ -41,7 +41,8 @@ void visit_parts(const PlaceLine& line, double x_m, double y_m, const Add& add) 
   const double length = line.length_m();
   const Eigen::Vector3d from(x_m, y_m, 0);
   const double range = (0.5 * (line.a_m + line.b_m) - from).head<2>().norm();
-  if (!std::isfinite(length) || !std::isfinite(range)) return;
+  constexpr double most_m = 1e6;
+  if (!(length <= most_m) || !(range <= most_m)) return;
   const int parts = std::clamp(static_cast<int>(length / (upright ? upright_part_m : other_part_m)),
                                1, upright ? 6 : 10);
   const auto mass =
@@ -112,6 +113,7 @@ Panorama panorama_at(std::span<const MapNode* const> views,
     const double step_x = c * dx + s * dy, step_y = -s * dx + c * dy;
     for (const PlaceLine& line : view->view.lines) {
       const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
+      if (!middle.allFinite()) continue;
       const double seen = std::atan2(middle.y(), middle.x()) + view->pose.heading_rad;
       const int there = static_cast<int>(std::floor(seen / bearing_rad));
       const int of = views_there[((there % Bins::bearings) + Bins::bearings) % Bins::bearings];

@@ -63,7 +63,7 @@ struct Cell {
 std::vector<PlanUpright> plan_uprights(std::span<const PlaceLine> lines) {
   std::vector<PlanUpright> uprights;
   for (const PlaceLine& line : lines) {
-    if (line.kind != LineKind::vertical) continue;
+    if (line.kind != LineKind::vertical || !(line.sigma_m >= 0)) continue;
     const Eigen::Vector3f middle = (0.5 * (line.a_m + line.b_m)).cast<float>();
     uprights.push_back({middle.x(), middle.y(),
                         static_cast<float>(std::min(line.a_m.z(), line.b_m.z())),

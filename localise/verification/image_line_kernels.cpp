@@ -51,6 +51,7 @@ void predict(const SpaceLines& lines,
              PredictedLines& predicted) {
   constexpr float nearest_m = 0.25f, shortest_px = 8;
   constexpr float steep_most = 0.5f, flat_least = 0.25f;  // of |dx|
+  constexpr float steep_query = steep_below;              // where the same line of a query goes
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto set = [&](float x) { return hn::Set(d, x); };
@@ -104,6 +105,7 @@ void predict(const SpaceLines& lines,
     const V sigma = hn::LoadU(d, lines.sigma_m.data() + i);
     const V counted = hn::LoadU(d, lines.counted.data() + i);
     const auto is_steep = hn::Lt(hn::Abs(dx), set(steep_most));
+    const auto seen_as_steep = hn::Lt(hn::Abs(dx), set(steep_query));
     const auto store = [&](ImageLines& out, int& size, hn::Mask<Tag> which, V counts) {
       hn::CompressStore(u, which, d, out.u.data() + size);
       hn::CompressStore(v, which, d, out.v.data() + size);
@@ -116,9 +118,10 @@ void predict(const SpaceLines& lines,
       hn::CompressStore(counts, which, d, out.counted.data() + size);
       size += static_cast<int>(hn::CompressStore(length, which, d, out.length_px.data() + size));
     };
-    store(predicted.steep, steep, hn::And(kept, is_steep), counted);
+    store(predicted.steep, steep, hn::And(kept, is_steep),
+          hn::IfThenElseZero(seen_as_steep, counted));
     store(predicted.flat, flat, hn::And(kept, hn::Gt(hn::Abs(dx), set(flat_least))),
-          hn::IfThenElseZero(hn::Not(is_steep), counted));
+          hn::IfThenElseZero(hn::Not(seen_as_steep), counted));
   }
   predicted.steep.size = steep;
   predicted.flat.size = flat;

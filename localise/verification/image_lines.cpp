@@ -15,7 +15,6 @@ namespace {
 
 constexpr float shortest_px = 8;
 constexpr float nearest_m = 0.25f;
-constexpr float steep_below = 0.375f;  ///< |dx| of a steep line of the query
 
 }  // namespace
 

@@ -20,6 +20,8 @@ struct QueryLine {
   bool steep = false;     ///< it is compared with steep lines, else with flat ones
 };
 
+inline constexpr float steep_below = 0.375f;  ///< |dx| of a steep line of the query
+
 /// Whether a line of the query with this direction is compared with steep lines.
 bool is_steep(float dx);
 
@@ -37,8 +39,8 @@ struct ImageLines {
   void end();
 };
 
-/// What both eyes should see of some lines. A line of about 20 to 30 degrees from the vertical is
-/// in both sets, counted in the first only.
+/// What both eyes should see of some lines. A line of 14.5 to 30 degrees from the vertical is
+/// in both sets, counted in that where the same line of a query would be.
 struct PredictedLines {
   ImageLines steep, flat;
 };

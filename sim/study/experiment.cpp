@@ -55,6 +55,25 @@ PlaceView interpret(const Rig& told,
   return view;
 }
 
+/// Of sixteen turns the one that is furthest from those of all looks.
+double newest_turn_rad(const std::vector<Look>& looks) {
+  constexpr int turns = 16;
+  double best = 0, furthest = -1;
+  for (int i = 0; i < turns; ++i) {
+    const double turn = 2 * std::numbers::pi * i / turns;
+    double nearest = 2 * std::numbers::pi;
+    for (const Look& look : looks) {
+      nearest =
+          std::min(nearest, std::abs(std::remainder(turn - look.turn_rad, 2 * std::numbers::pi)));
+    }
+    if (nearest > furthest) {
+      furthest = nearest;
+      best = turn;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 MapViews map_views(const Visibility& visibility,
@@ -137,8 +156,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
 
     if (taken == 0) first = std::move(sighting);
     if (answer.status == LocalisationStatus::answered) break;
-    const double share = 2 * std::numbers::pi * (taken + 1) / settings_.looks;
-    turn_rad = answer.next_turn_rad != 0 ? answer.next_turn_rad : share;
+    turn_rad = answer.next_turn_rad != 0 ? answer.next_turn_rad : newest_turn_rad(looks);
   }
 
   result.status = answer.status;

@@ -329,9 +329,12 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   all["localiser.method"] = s.method;
   all["localiser.knows_endpoint_sigma"] = s.knows_endpoint_sigma ? "true" : "false";
   if (s.looks != 1) all["localiser.looks"] = fmt::format("{}", s.looks);
-  if (s.method == "lines") {  // the others do not use these
-    all["localiser.ranker"] = s.localiser.ranker;
+  const LocaliserOptions usual;  // older stores have no keys of these
+  if (s.localiser.ranker != usual.ranker) all["localiser.ranker"] = s.localiser.ranker;
+  if (s.localiser.candidates != usual.candidates) {
     all["localiser.candidates"] = fmt::format("{}", s.localiser.candidates);
+  }
+  if (s.localiser.max_error_rate != usual.max_error_rate) {
     all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
   }
   all["study.protocol"] = name(s.protocol);

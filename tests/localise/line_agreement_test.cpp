@@ -204,8 +204,24 @@ TEST(ViewAgreement, ChargesForLinesThatShouldBeSeen) {
   uncounted.pad();
   const double charged = agreement(view, more, {}, fine_agreement(), space).score;
   const double free = agreement(view, uncounted, {}, fine_agreement(), space).score;
-  EXPECT_LT(charged, free + 1e-3);
+  EXPECT_LT(charged, free - 1);
   EXPECT_NEAR(free, all, 1.0);
+}
+
+// Lines between steep and flat were charged as missing.
+TEST(ViewAgreement, APerfectViewCostsNothingAtAnyTilt) {
+  PredictedLines space;
+  for (int tilt = 0; tilt <= 80; ++tilt) {
+    const double radian = 0.01745329 * tilt;
+    const std::vector<PlaceLine> line{{{3, 0, 0.8},
+                                       {3, 0.7 * std::sin(radian), 0.8 + 0.7 * std::cos(radian)},
+                                       LineKind::oblique,
+                                       0.02}};
+    const ComparedView view = compared_view(view_of(line));
+    ASSERT_EQ(view.lines.size(), 1u);
+    EXPECT_NEAR(agreement(view, space_lines(line), {}, fine_agreement(), space).score, 0, 0.01)
+        << tilt;
+  }
 }
 
 }  // namespace

@@ -132,6 +132,20 @@ TEST(NodeGrid, IsASearchOfAllNodes) {
   }
 }
 
+TEST(NodeGrid, FindsNodesAcrossCellBorders) {
+  TopologicalMap map;
+  map.nodes = {{{-0.1, 0, 0}, {}}, {{0.3, 0, 0}, {}}, {{2.1, 0, 0}, {}}};
+  const NodeGrid grid(map);
+  EXPECT_EQ(grid.near({-6.1e-17, 0, 0}, 1.1, 1), (std::vector<int>{0, 1}));
+  EXPECT_EQ(grid.near({1.9999999999999998, 0, 0}, 2, 1), (std::vector<int>{1, 2}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(grid.near({nan, 0, 0}, 1, 1).empty());
+  EXPECT_TRUE(grid.near({1e300, 0, 0}, 1, 1).empty());
+  map.nodes[1].pose.heading_rad = 1e308;
+  EXPECT_EQ(test::error_message([&] { make_localiser("lines", map); }),
+            "map node 1: its pose is not finite or beyond 1e6; leave the node out");
+}
+
 // Oracle: the rule of KnownLines in double precision, line by line.
 TEST(KnownLines, AgreeWithTheRule) {
   const auto first = test::random_room(31, 60);
@@ -195,6 +209,9 @@ TEST(PosePosterior, SharesOutProbability) {
   const std::vector<Hypothesis> bad{{{0, 0, 0}, 0, -800}};
   EXPECT_LT(pose_posterior(bad, 300, options)[0].probability, 1e-6);
   EXPECT_TRUE(pose_posterior({}, 300, options).empty());
+  // Two poses close to each other are more probable together than one that scores better alone.
+  const std::vector<Hypothesis> pair{{{0, 0, 0}, 0, 0}, {{8, 0, 0}, 1, -1}, {{8.5, 0, 0}, 1, -1}};
+  EXPECT_EQ(pose_posterior(pair, 300, options)[0].best.node, 1);
 }
 
 TEST(LineLocaliser, FindsThePoseToMillimetres) {

@@ -92,7 +92,12 @@ TEST(MapFile, ExtendingGivesWhatWritingAllGives) {
   EXPECT_EQ(bytes_of(file).substr(16, before.size() - 16), before.substr(16));
   map.nodes.insert(map.nodes.end(), more.nodes.begin(), more.nodes.end());
   expect_same(map, read_map(file));
-  // Another rig is stored with its nodes.
+  // Another mount or rig is stored with its nodes.
+  TopologicalMap tilted = some_rooms(2);
+  tilted.nodes[1].view.mount.pitch_rad = -0.2;
+  extend_map(file, tilted.nodes);
+  map.nodes.insert(map.nodes.end(), tilted.nodes.begin(), tilted.nodes.end());
+  expect_same(map, read_map(file));
   TopologicalMap other = some_rooms(2);
   Rig rig = *other.nodes[0].view.rig;
   rig.T_camera_first[1].t.x() -= 0.01;
@@ -154,6 +159,10 @@ TEST(MapFile, SaysWhatIsWrong) {
   TopologicalMap wrong = some_rooms(2);
   wrong.nodes[1].view.lines[0].a_m.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(error_message([&] { write_map(file, wrong); }).find("map node 1: holds a number"),
+            std::string::npos);
+  wrong = some_rooms(1);
+  wrong.nodes[0].view.mount.height_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(error_message([&] { write_map(file, wrong); }).find("map node 0: holds a number"),
             std::string::npos);
   wrong = some_rooms(1);
   wrong.nodes[0].view.rig = nullptr;

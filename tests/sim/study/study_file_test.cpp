@@ -93,6 +93,7 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   EXPECT_EQ(lines.experiment.looks, 3);
   EXPECT_EQ(lines.settings.at("localiser.max_error_rate"), "0.05");
   EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
+  EXPECT_EQ(cell("method = \"pgh\"\ncandidates = 4\n").settings.at("localiser.candidates"), "4");
   // Keys of older stores hold none of these.
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.candidates"), 0u);
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);

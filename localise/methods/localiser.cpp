@@ -13,6 +13,7 @@
 #include "localise/methods/baseline_localiser.h"
 #include "localise/methods/line_localiser.h"
 #include "localise/methods/pgh_localiser.h"
+#include "localise/place.h"
 #include "localise/topological_map.h"
 
 namespace vernier::localise {

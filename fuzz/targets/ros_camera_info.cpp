@@ -32,7 +32,9 @@ void run_ros_camera_info(std::string_view bytes) {
   const auto file = accepted([&] { return format_ros_camera_info(*info); });
   if (!file) return;
   const RosCameraInfo again = parse_ros_camera_info(file->text, "written");
-  require_close(rig_of({{info->camera, {}}}), rig_of({{again.camera, {}}}));
+  const auto rig = accepted([&] { return rig_of({{info->camera, {}}}); });
+  if (!rig) return;  // its name is too long for a rig
+  require_close(*rig, rig_of({{again.camera, {}}}));
   require(info->P == again.P, "the projection is kept");
   require((info->R_rectified_camera - again.R_rectified_camera).cwiseAbs().maxCoeff() <= 1e-12,
           "the rectification is kept");

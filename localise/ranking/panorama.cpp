@@ -107,10 +107,7 @@ Panorama panorama_at(std::span<const MapNode* const> views,
                      int in_view) {
   std::vector<float> circle(static_cast<std::size_t>(Bins::bearings) * Bins::channels, 0.0f);
   for (const MapNode* view : views) {
-    const double c = std::cos(view->pose.heading_rad), s = std::sin(view->pose.heading_rad);
-    // The step to (x, y) in the view's frame.
-    const double dx = x_m - view->pose.x_m, dy = y_m - view->pose.y_m;
-    const double step_x = c * dx + s * dy, step_y = -s * dx + c * dy;
+    const Pose2D step = relative({x_m, y_m, 0}, view->pose);
     for (const PlaceLine& line : view->view.lines) {
       const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
       if (!middle.allFinite()) continue;
@@ -118,7 +115,7 @@ Panorama panorama_at(std::span<const MapNode* const> views,
       const int there = static_cast<int>(std::floor(seen / bearing_rad));
       const int of = views_there[((there % Bins::bearings) + Bins::bearings) % Bins::bearings];
       const float share = 1.0f / static_cast<float>(std::max(1, of));
-      visit_parts(line, step_x, step_y, [&](double bearing, int channel, float mass) {
+      visit_parts(line, step.x_m, step.y_m, [&](double bearing, int channel, float mass) {
         const double at = bearing + view->pose.heading_rad / bearing_rad - 0.5;
         const double low = std::floor(at);
         const auto upper = static_cast<float>(at - low);

@@ -49,7 +49,6 @@ void predict(const SpaceLines& lines,
              float sine,
              const ViewCamera& camera,
              PredictedLines& predicted) {
-  constexpr float nearest_m = 0.25f, shortest_px = 8;
   constexpr float steep_most = 0.5f, flat_least = 0.25f;  // of |dx|
   constexpr float steep_query = steep_below;              // where the same line of a query goes
   const Tag d;
@@ -59,7 +58,7 @@ void predict(const SpaceLines& lines,
           y0 = set(y_m), h = set(camera.height_m), cp = set(camera.cos_pitch),
           sp = set(camera.sin_pitch), f = set(camera.f_px), fB = set(camera.disparity_px_m()),
           left = set(camera.left_px), right = set(camera.right_px), top = set(camera.top_px),
-          bottom = set(camera.bottom_px), near = set(nearest_m);
+          bottom = set(camera.bottom_px), near = set(nearest_compared_m);
   int steep = 0, flat = 0;
   for (int i = 0; i < static_cast<int>(lines.size); i += lanes) {
     // Camera coordinates of an end: x right, y down, z forward.
@@ -78,7 +77,7 @@ void predict(const SpaceLines& lines,
     part.cut(d, hn::Sub(za, near), hn::Sub(zb, near));
     if (hn::AllTrue(d, part.gone)) continue;
     const auto image = [&](V t, V& u, V& v, V& w) {
-      w = hn::Div(one, hn::Max(between(za, zb, t), set(0.5f * nearest_m)));
+      w = hn::Div(one, hn::Max(between(za, zb, t), set(0.5f * nearest_compared_m)));
       u = hn::Mul(hn::Mul(f, between(xa, xb, t)), w);
       v = hn::Mul(hn::Mul(f, between(ya, yb, t)), w);
     };
@@ -97,8 +96,8 @@ void predict(const SpaceLines& lines,
     const V du = hn::Sub(between(ua, ub, part.t1), u), dv = hn::Sub(between(va, vb, part.t1), v);
     const V dw = hn::Sub(between(wa, wb, part.t1), w);
     const V length = hn::Sqrt(hn::MulAdd(du, du, hn::Mul(dv, dv)));
-    const auto kept =
-        hn::AndNot(part.gone, hn::And(hn::Gt(part.t1, part.t0), hn::Ge(length, set(shortest_px))));
+    const auto kept = hn::AndNot(
+        part.gone, hn::And(hn::Gt(part.t1, part.t0), hn::Ge(length, set(shortest_compared_px))));
     if (hn::AllFalse(d, kept)) continue;
     const V per_length = hn::Div(one, hn::Max(length, set(1e-6f)));
     const V dx = hn::Mul(du, per_length), dy = hn::Mul(dv, per_length);

@@ -11,13 +11,6 @@
 
 namespace vernier::localise::internal {
 
-namespace {
-
-constexpr float shortest_px = 8;
-constexpr float nearest_m = 0.25f;
-
-}  // namespace
-
 bool is_steep(float dx) { return std::abs(dx) < steep_below; }
 
 std::vector<QueryLine> query_lines(const PlaceView& view, const ViewCamera& camera) {
@@ -26,10 +19,11 @@ std::vector<QueryLine> query_lines(const PlaceView& view, const ViewCamera& came
   for (const PlaceLine& line : view.lines) {
     const Eigen::Vector3f a_m = line.a_m.cast<float>(), b_m = line.b_m.cast<float>();
     const Eigen::Vector3f a = project(camera, a_m), b = project(camera, b_m);
-    const bool in_front = a.z() > 0 && a.z() < 1 / nearest_m && b.z() > 0 && b.z() < 1 / nearest_m;
+    const bool in_front =
+        a.z() > 0 && a.z() < 1 / nearest_compared_m && b.z() > 0 && b.z() < 1 / nearest_compared_m;
     const Eigen::Vector2f d = (b - a).head<2>();
     const float length = d.norm();
-    if (!in_front || !(length >= shortest_px) || !std::isfinite(length)) continue;
+    if (!in_front || !(length >= shortest_compared_px) || !std::isfinite(length)) continue;
     const Eigen::Vector3f middle = 0.5f * (a + b);
     const auto sigma = static_cast<float>(line.sigma_m);
     lines.push_back({middle.x(), middle.y(), middle.z(), d.x() / length, d.y() / length, length,

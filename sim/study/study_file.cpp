@@ -18,6 +18,7 @@
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
 
 namespace vernier::sim::internal {
@@ -311,35 +312,6 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     study.sweep_keys.push_back(key);
     study.sweep_values.push_back(std::move(values));
   }
-}
-
-/// Every setting in effect, by its dotted key: identifies a cell.
-std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
-  std::map<std::string, std::string> all;
-  for (const SourceParameter& p : source_parameters()) {
-    all[fmt::format("sources.{}", p.name)] = fmt::format("{}", s.sources.*p.value);
-  }
-  const bool common = s.sources.lateral_shift_mode == ShiftMode::common;
-  all["sources.lateral_shift_mode"] = common ? "common" : "independent";
-  all["camera.height_m"] = fmt::format("{}", s.mount.height_m);
-  all["camera.pitch_deg"] = fmt::format("{}", s.mount.pitch_rad / degree);
-  all["map.spacing_m"] = fmt::format("{}", s.map_spacing_m);
-  all["map.headings"] = s.map_headings == 0 ? "path" : fmt::format("{}", s.map_headings);
-  all["map.rig"] = s.map_rig == MapRig::same ? "same" : "recalibrated";
-  all["localiser.method"] = s.method;
-  all["localiser.knows_endpoint_sigma"] = s.knows_endpoint_sigma ? "true" : "false";
-  if (s.looks != 1) all["localiser.looks"] = fmt::format("{}", s.looks);
-  const LocaliserOptions usual;  // older stores have no keys of these
-  if (s.localiser.ranker != usual.ranker) all["localiser.ranker"] = s.localiser.ranker;
-  if (s.localiser.candidates != usual.candidates) {
-    all["localiser.candidates"] = fmt::format("{}", s.localiser.candidates);
-  }
-  if (s.localiser.max_error_rate != usual.max_error_rate) {
-    all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
-  }
-  all["study.protocol"] = name(s.protocol);
-  all["study.seed"] = fmt::format("{}", s.seed);
-  return all;
 }
 
 /// Of the product of all lists, before anything is made of it.

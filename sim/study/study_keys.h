@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 
 /// Under which keys the parts of a study are stored, and the world ceilings that its notes hold.
 namespace vernier::sim::internal {
+
+/// Every setting in effect, by its dotted key: identifies a cell.
+std::map<std::string, std::string> settings_of(const ExperimentSettings& settings);
 
 /// Everything that a cell's results depend on, as text: the key under which they are stored. Blocks
 /// of another size use other maps per trial and are therefore stored under another key.

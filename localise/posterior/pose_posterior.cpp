@@ -28,11 +28,15 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   }
   if (modes.empty()) return modes;
   std::vector<double> weights;
-  const double elsewhere =
-      -options.elsewhere_nats - options.elsewhere_nats_per_observation * observations;
-  double total = std::exp(options.evidence_share * (elsewhere - modes[0].best.score));
+  const double best = modes[0].best.score;
+  const double misfit = std::max(0.0, -best / std::max(1.0, observations));
+  const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
+  constexpr double usual_observations = 60;
+  double total =
+      options.never_certain + std::exp(options.steepness * (misfit - options.lost_misfit) *
+                                       std::sqrt(std::max(0.0, observations) / usual_observations));
   for (const WeightedMode& m : modes) {
-    weights.push_back(std::exp(options.evidence_share * (m.best.score - modes[0].best.score)));
+    weights.push_back(std::exp(share * (m.best.score - best)));
     total += weights.back();
   }
   for (WeightedMode& m : modes) {

@@ -21,7 +21,7 @@ enum class LocalisationStatus {
   tie,            ///< two positions more than 1 m apart have the same best score
   no_match,       ///< no node of the map matches
   unsure,  ///< an error is more probable than max_error_rate; the answer holds the best guess
-  failed,  ///< the localiser itself failed, as a program that died
+  failed,  ///< the localiser itself failed, as a program that died; see `failure`
 };
 
 std::string_view name(LocalisationStatus status);
@@ -45,12 +45,8 @@ struct LocalisationAnswer {
   std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
   /// The turn of a further look that tells the modes apart best; 0 if there is nothing to tell.
   double next_turn_rad = 0;
-};
-
-/// One of several views from the same position.
-struct Look {
-  PlaceView view;
-  double turn_rad = 0;  ///< its heading minus that of the first look
+  std::string failure;        ///< why, if it failed
+  double program_cpu_ms = 0;  ///< CPU time that another process spent on it
 };
 
 /// Estimates where a view was taken. Implementations keep no state between queries.
@@ -79,7 +75,9 @@ struct LocaliserOptions {
   /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
   double max_error_rate = 0.01;
   LocaliserStages stages;
-  PghOptions histograms;  ///< of `pgh` and the rankers by histograms
+  PghOptions histograms;     ///< of `pgh` and the rankers by histograms
+  std::string command;       ///< of `program`: a program and its arguments, quoted as in a shell
+  double time_limit_s = 10;  ///< of `program`, for a query; above 0
 };
 
 /// Creates the localiser named `method` on a map, which must outlive it:
@@ -91,6 +89,10 @@ struct LocaliserOptions {
 ///    the best ones verifies them and gives the metric pose;
 ///  - `pgh_baseline`: image-line histograms compared in a plain loop, and the memo's filter that
 ///    eliminates the lowest node until one is left. For comparison only;
+///  - `program`: a program of one's own, which reads the map and the queries as lines of JSON and
+///    answers in lines of JSON (docs/own-localiser.md). A query that it does not answer, not in
+///    time or with nonsense has the status `failed`, and the program is started again, three times
+///    in a row at most. Throws Error if it cannot be started;
 ///  - any other that was registered.
 ///
 /// Throws Error for any other name, listing these, and for options out of range.

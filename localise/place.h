@@ -61,6 +61,12 @@ struct PlaceView {
   CameraMount mount = {};
 };
 
+/// One of several views from the same position.
+struct Look {
+  PlaceView view;
+  double turn_rad = 0;  ///< its heading minus that of the first look
+};
+
 /// Transforms triangulated segments to the robot frame. A line that may be vertical (its image is
 /// nearly so and the depths of its ends are equal within their error) is made exactly vertical at
 /// its mean depth: in buildings such lines are vertical, and the tilt would be noise. The view's

@@ -18,6 +18,7 @@
 #include <fstream>
 #include <iterator>
 #include <thread>
+#include <utility>
 
 #include "calib/base/unfinished_work.h"
 #include "calib/error.h"
@@ -40,8 +41,7 @@ short with_usual_signals(posix_spawnattr_t& attributes) {
   return POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
 }
 
-/// Starts a program with empty standard input and its output redirected to files. It inherits no
-/// other descriptor. Returns errno.
+/// Starts a program with empty standard input and its output redirected to files. Returns errno.
 int start(const std::vector<std::string>& words,
           const std::string& output,
           const std::string& error_output,
@@ -53,20 +53,7 @@ int start(const std::vector<std::string>& words,
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), make, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_output.c_str(), make, 0600);
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  short flags = with_usual_signals(attributes);
-  if (in_own_group) flags |= POSIX_SPAWN_SETPGROUP;
-  posix_spawnattr_setflags(&attributes, flags);
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  const auto lock = hold_off_abandoning();
-  const int failed =
-      posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
-  if (!failed) note_child(child, in_own_group);
-  posix_spawnattr_destroy(&attributes);
+  const int failed = spawn_program(words, actions, in_own_group, child);
   posix_spawn_file_actions_destroy(&actions);
   return failed;
 }
@@ -117,6 +104,55 @@ TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
   forget_unfinished(path_);
+}
+
+std::vector<std::string> command_words(const std::string& command, const std::string& place) {
+  std::vector<std::string> words;
+  bool in_word = false;
+  char quote = 0;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char letter = command[i];
+    if (quote == 0 && std::isspace(static_cast<unsigned char>(letter))) {
+      in_word = false;
+      continue;
+    }
+    if (!std::exchange(in_word, true)) words.emplace_back();
+    if (letter == quote) {
+      quote = 0;
+    } else if (quote == 0 && (letter == '\'' || letter == '"')) {
+      quote = letter;
+    } else if (letter == '\\' && quote != '\'' && i + 1 < command.size()) {
+      words.back() += command[++i];
+    } else {
+      words.back() += letter;
+    }
+  }
+  if (quote != 0) {
+    throw Error(place, std::string("unclosed quote ") + quote, "close it");
+  }
+  return words;
+}
+
+int spawn_program(const std::vector<std::string>& words,
+                  posix_spawn_file_actions_t& actions,
+                  bool in_own_group,
+                  pid_t& child) {
+  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  short flags = with_usual_signals(attributes);
+  if (in_own_group) flags |= POSIX_SPAWN_SETPGROUP;
+  posix_spawnattr_setflags(&attributes, flags);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  if (words.empty()) arguments.insert(arguments.begin(), const_cast<char*>(""));
+  const auto lock = hold_off_abandoning();
+  const int failed =
+      posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  if (!failed) note_child(child, in_own_group);
+  posix_spawnattr_destroy(&attributes);
+  return failed;
 }
 
 std::string ProgramRun::last_output_line() const {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <spawn.h>
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -24,6 +27,18 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// The words of a command line: separated by blanks, with quotes and backslashes as in a shell, and
+/// nothing else of it. Throws Error(`place`) for an unclosed quote.
+std::vector<std::string> command_words(const std::string& command, const std::string& place);
+
+/// Starts a program, searched in PATH, without a shell, with usual signals, and notes it
+/// (unfinished_work.h). It inherits no descriptor but what `actions` gives it as the first three.
+/// Returns errno.
+int spawn_program(const std::vector<std::string>& words,
+                  posix_spawn_file_actions_t& actions,
+                  bool in_own_group,
+                  pid_t& child);
 
 /// Exit state and output of a program.
 struct ProgramRun {

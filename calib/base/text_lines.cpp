@@ -15,9 +15,8 @@
 namespace vernier::internal {
 namespace {
 
-// The longest exact double has 1,075 digits, but no program writes them; a line holds a file name
-// and ten numbers at most.
-constexpr std::size_t most_number_bytes = 1'000, most_line_bytes = 20'000;
+// The longest exact double has 1,075 digits, but no program writes them.
+constexpr std::size_t most_number_bytes = 1'000;
 
 std::string_view without_blanks(std::string_view field) {
   while (!field.empty() && field.front() == ' ') field.remove_prefix(1);
@@ -55,7 +54,8 @@ bool is_small(std::string_view number) {
 
 }  // namespace
 
-TextLines::TextLines(const std::filesystem::path& file) : file_(file), text_(read_whole(file)) {}
+TextLines::TextLines(const std::filesystem::path& file, std::size_t longest_line)
+    : file_(file), text_(read_whole(file)), longest_line_(longest_line) {}
 
 bool TextLines::next(std::string_view& line) {
   if (begin_ >= text_.size()) return false;
@@ -64,9 +64,9 @@ bool TextLines::next(std::string_view& line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   begin_ = end + 1;
   ++number_;
-  if (line.size() > most_line_bytes) {
+  if (line.size() > longest_line_) {
     throw Error(place(), fmt::format("the line has {} bytes", line.size()),
-                fmt::format("it may have {}; is this another kind of file?", most_line_bytes));
+                fmt::format("it may have {}; is this another kind of file?", longest_line_));
   }
   return true;
 }

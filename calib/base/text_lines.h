@@ -15,10 +15,10 @@ namespace vernier::internal {
 class TextLines {
  public:
   /// Throws Error if the file cannot be read.
-  explicit TextLines(const std::filesystem::path& file);
+  explicit TextLines(const std::filesystem::path& file, std::size_t longest_line = 20'000);
 
   /// The next line without its end (LF or CRLF); false at the end of the file. Throws Error if it
-  /// is longer than 20,000 bytes.
+  /// is longer than `longest_line` bytes.
   bool next(std::string_view& line);
 
   /// Bytes of the whole file.
@@ -30,6 +30,7 @@ class TextLines {
  private:
   std::filesystem::path file_;
   std::string text_;
+  std::size_t longest_line_;
   std::size_t begin_ = 0;
   std::size_t number_ = 0;
 };

@@ -35,69 +35,6 @@ Json parse_rig_json(const std::string& text, const std::string& place) {
   }
 }
 
-Node Node::at(const std::string& key) const {
-  if (!json_.is_object()) throw Error(place_, "is not an object", "");
-  if (!json_.contains(key)) throw Error(place_, "has no \"" + key + "\"", "add it");
-  return {json_.at(key), place_ + (place_.back() == ':' ? " " : ".") + key};
-}
-
-Node Node::at(std::size_t index) const {
-  if (index >= array().size()) {
-    throw Error(place_, "has only " + std::to_string(json_.size()) + " entries", "");
-  }
-  return {json_[index], place_ + "[" + std::to_string(index) + "]"};
-}
-
-double Node::number() const {
-  if (!json_.is_number()) throw Error(place_, "is not a number", "");
-  const double value = json_.get<double>();
-  if (!std::isfinite(value)) throw Error(place_, "is not finite", "");
-  return value;
-}
-
-int Node::integer() const {
-  if (!json_.is_number_integer()) throw Error(place_, "is not an integer", "");
-  const auto whole = json_.get<std::int64_t>();
-  const bool wrapped = json_.is_number_unsigned() && whole < 0;
-  if (wrapped || whole != static_cast<int>(whole)) {
-    throw Error(place_, json_.dump() + " is too large a whole number", "correct it");
-  }
-  return static_cast<int>(whole);
-}
-
-std::string Node::text() const {
-  if (!json_.is_string()) throw Error(place_, "is not a string", "");
-  return json_.get<std::string>();
-}
-
-const Json& Node::array() const {
-  if (!json_.is_array()) throw Error(place_, "is not a list", "");
-  return json_;
-}
-
-Eigen::VectorXd Node::vector() const {
-  Eigen::VectorXd v(static_cast<Eigen::Index>(array().size()));
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = at(static_cast<std::size_t>(i)).number();
-  return v;
-}
-
-Eigen::Vector3d Node::vector3() const {
-  const Eigen::VectorXd v = vector();
-  if (v.size() != 3) throw Error(place_, "is not a list of 3 numbers", "");
-  return v;
-}
-
-Eigen::MatrixXd Node::matrix() const {
-  const auto n = static_cast<Eigen::Index>(array().size());
-  Eigen::MatrixXd m(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::VectorXd row = at(static_cast<std::size_t>(i)).vector();
-    if (row.size() != n) throw Error(place_, "is not a square matrix", "");
-    m.row(i) = row.transpose();
-  }
-  return m;
-}
-
 Json to_json(const Eigen::VectorXd& v) {
   Json json = Json::array();
   for (const double x : v) json.push_back(x);

@@ -5,10 +5,9 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "calib/error.h"
+#include "calib/base/json_node.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 
@@ -17,31 +16,7 @@ namespace vernier::internal::rig_json {
 
 using Json = nlohmann::ordered_json;
 
-/// A JSON value with its location, so that every error gives file and key.
-class Node {
- public:
-  Node(const Json& json, std::string place) : json_(json), place_(std::move(place)) {}
-
-  bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
-  /// Throws Error if the key is missing.
-  Node at(const std::string& key) const;
-  Node at(std::size_t index) const;
-  std::size_t size() const { return json_.size(); }
-
-  double number() const;  ///< finite
-  int integer() const;    ///< within the range of int
-  std::string text() const;
-  const Json& array() const;
-  Eigen::Vector3d vector3() const;
-  Eigen::VectorXd vector() const;
-  Eigen::MatrixXd matrix() const;  ///< square
-  const Json& json() const { return json_; }
-  const std::string& place() const { return place_; }
-
- private:
-  const Json& json_;
-  std::string place_;
-};
+using Node = JsonNode;
 
 /// Parses the text of a rig file (calib/base/json_reader.h). Throws Error, also if it is of another
 /// format.

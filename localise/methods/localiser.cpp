@@ -13,6 +13,7 @@
 #include "localise/methods/baseline_localiser.h"
 #include "localise/methods/line_localiser.h"
 #include "localise/methods/pgh_localiser.h"
+#include "localise/methods/program_localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
 
@@ -27,6 +28,10 @@ void check(const LocaliserOptions& options) {
   if (options.candidates < 1 || options.candidates > most_candidates || options.min_lines < 1) {
     throw Error("localiser options", "candidates or min_lines is out of range",
                 "use 1 to 10000 candidates and at least 1 line");
+  }
+  if (!(options.time_limit_s > 0 && options.time_limit_s <= 1e6)) {
+    throw Error("localiser options", "time_limit_s is not above 0 and at most 1e6",
+                "use 10 seconds");
   }
   if (!(options.max_error_rate > 0 && options.max_error_rate <= 1)) {
     throw Error("localiser options", "max_error_rate is not above 0 and at most 1",
@@ -91,7 +96,8 @@ class Registry {
   Registry()
       : factories_{{"lines", factory<LineLocaliser>()},
                    {"pgh", factory<PghLocaliser>()},
-                   {"pgh_baseline", factory<BaselineLocaliser>()}} {}
+                   {"pgh_baseline", factory<BaselineLocaliser>()},
+                   {"program", factory<ProgramLocaliser>()}} {}
 
   mutable std::mutex mutex_;
   std::map<std::string, LocaliserFactory> factories_;

@@ -151,7 +151,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
     answer =
         looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
-    result.cpu_ms += clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu;
+    result.cpu_ms += clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu + answer.program_cpu_ms;
     result.wall_ms += clock_ms(CLOCK_MONOTONIC) - wall;
 
     if (taken == 0) first = std::move(sighting);

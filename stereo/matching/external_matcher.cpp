@@ -48,40 +48,13 @@ struct Command {
   std::string output;
 };
 
-std::vector<std::string> words_of(const std::string& command, const std::string& place) {
-  std::vector<std::string> words;
-  bool in_word = false;
-  char quote = 0;
-  for (std::size_t i = 0; i < command.size(); ++i) {
-    const char letter = command[i];
-    if (quote == 0 && std::isspace(static_cast<unsigned char>(letter))) {
-      in_word = false;
-      continue;
-    }
-    if (!std::exchange(in_word, true)) words.emplace_back();
-    if (letter == quote) {
-      quote = 0;
-    } else if (quote == 0 && (letter == '\'' || letter == '"')) {
-      quote = letter;
-    } else if (letter == '\\' && quote != '\'' && i + 1 < command.size()) {
-      words.back() += command[++i];
-    } else {
-      words.back() += letter;
-    }
-  }
-  if (quote != 0) {
-    throw Error(place, fmt::format("unclosed quote {}", quote), "close it");
-  }
-  return words;
-}
-
 Command parse_command(const std::string& command) {
   Command parsed;
   parsed.place = "matcher '" + command + "'";
   std::replace_if(
       parsed.place.begin(), parsed.place.end(),
       [](unsigned char letter) { return std::iscntrl(letter) != 0; }, ' ');
-  parsed.words = words_of(command, parsed.place);
+  parsed.words = command_words(command, parsed.place);
   if (parsed.words.empty()) throw Error("matcher", "the command is empty", "give a program");
   for (const char* needed : {"{left}", "{right}"}) {
     if (command.find(needed) == std::string::npos) {

@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/views/view_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+#include "calib/base/json_node.h"
+#include "calib/base/shown_text.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/formats/rig_json.h"
+#include "calib/rig.h"
+#include "localise/place.h"
+#include "localise/view_file.h"
+#include "stereo/reconstruction/triangulate.h"
+#include "stereo/segment.h"
+
+namespace vernier::localise::internal {
+
+using stereo::ImageSegment;
+using stereo::StereoSegment;
+using vernier::internal::JsonNode;
+using vernier::internal::rig_json::cameras_json;
+using vernier::internal::rig_json::parse_cameras;
+
+namespace {
+
+constexpr std::size_t most_looks = 64, most_lines = 10'000;
+constexpr double shortest_m = 1e-6, shortest_px = 1e-6;
+
+std::string_view kind_name(LineKind kind) {
+  switch (kind) {
+    case LineKind::vertical:
+      return "vertical";
+    case LineKind::level:
+      return "level";
+    case LineKind::oblique:
+      return "oblique";
+  }
+  return "";
+}
+
+LineKind parse_kind(const JsonNode& node) {
+  const std::string word = node.text();
+  for (const LineKind kind : {LineKind::vertical, LineKind::level, LineKind::oblique}) {
+    if (word == kind_name(kind)) return kind;
+  }
+  throw Error(node.place(), vernier::internal::in_quotes(word) + " is no kind of line",
+              "use vertical, level or oblique");
+}
+
+/// Entries of a list that may be missing, at most so many.
+std::size_t entries(const JsonNode& node, const std::string& key, std::size_t most) {
+  if (!node.has(key)) return 0;
+  const std::size_t n = node.at(key).array().size();
+  if (n > most) {
+    throw Error(node.at(key).place(), fmt::format("has {} entries", n),
+                fmt::format("give at most {}", most));
+  }
+  return n;
+}
+
+Eigen::Vector3d parse_point(const JsonNode& node) {
+  constexpr double furthest_m = 1000;
+  const Eigen::Vector3d point = node.vector3();
+  if (point.cwiseAbs().maxCoeff() > furthest_m) {
+    throw Error(node.place(), fmt::format("is further than {} m away", furthest_m),
+                "give metres in the robot frame");
+  }
+  return point;
+}
+
+PlaceLine parse_line(const JsonNode& node) {
+  PlaceLine line;
+  line.a_m = parse_point(node.at("a_m"));
+  line.b_m = parse_point(node.at("b_m"));
+  line.sigma_m = node.at("sigma_m").number();
+  if (line.sigma_m < 0) throw Error(node.at("sigma_m").place(), "is below 0", "give metres");
+  if (!(line.length_m() > shortest_m)) {
+    throw Error(node.place(), "its ends are the same point", "leave the line out");
+  }
+  line.kind = parse_kind(node.at("kind"));
+  if (line.kind == LineKind::vertical) {
+    const Eigen::Vector2d middle = 0.5 * (line.a_m + line.b_m).head<2>();
+    line.a_m.head<2>() = line.b_m.head<2>() = middle;
+    if (!(line.length_m() > shortest_m)) {
+      throw Error(node.at("kind").place(), "is vertical, and its ends are equally high",
+                  "correct the kind");
+    }
+  }
+  return line;
+}
+
+/// Ends in pixels. A rig's camera tells pixels from other units.
+ImageSegment parse_segment(const JsonNode& node, const Camera* camera) {
+  const Eigen::VectorXd v = node.vector();
+  if (v.size() != 4) throw Error(node.place(), "is not a list of 4 numbers", "give u, v, u, v");
+  const ImageSegment segment{{v[0], v[1]}, {v[2], v[3]}};
+  const double most_px = camera ? 2.0 * camera->size_px.maxCoeff() : 1e6;
+  if (!(v.cwiseAbs().maxCoeff() <= most_px)) {
+    throw Error(node.place(), "lies far off the image", "give pixels of the image");
+  }
+  if (!(segment.length_px() > shortest_px)) {
+    throw Error(node.place(), "its ends are the same pixel", "leave the line out");
+  }
+  return segment;
+}
+
+/// Pixels of a whole view within a few units are most probably no pixels.
+void check_unit(const std::vector<ImageSegment>& lines, const JsonNode& node) {
+  constexpr double normalised = 4;
+  if (lines.empty()) return;
+  double most = 0;
+  for (const ImageSegment& line : lines) {
+    most = std::max({most, line.a_px.cwiseAbs().maxCoeff(), line.b_px.cwiseAbs().maxCoeff()});
+  }
+  if (most < normalised) {
+    throw Error(node.place(), fmt::format("every coordinate is below {}", normalised),
+                "give pixels, not normalised coordinates");
+  }
+}
+
+CameraMount parse_mount(const JsonNode& node) {
+  CameraMount mount{node.at("height_m").number(), node.at("pitch_rad").number()};
+  constexpr double highest_m = 100;
+  if (!(mount.height_m > 0 && mount.height_m <= highest_m)) {
+    throw Error(node.at("height_m").place(),
+                fmt::format("is not above 0 and at most {}", highest_m), "give metres");
+  }
+  if (!(std::abs(mount.pitch_rad) < 0.5 * std::numbers::pi)) {
+    throw Error(node.at("pitch_rad").place(), "is not within a quarter turn", "give radians");
+  }
+  return mount;
+}
+
+/// The view that matched segments give with the rig that saw them.
+PlaceView reconstructed(const JsonNode& node, const PlaceView& seen) {
+  if (!seen.rig) {
+    throw Error(node.place(), "segments need the cameras that saw them",
+                "give a rig, or \"cameras\" with each view");
+  }
+  std::vector<StereoSegment> segments;
+  std::vector<ImageSegment> left;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    const JsonNode pair = node.at(i);
+    segments.push_back({parse_segment(pair.at("left_px"), &seen.rig->cameras[0]),
+                        parse_segment(pair.at("right_px"), &seen.rig->cameras[1])});
+    left.push_back(segments.back().left);
+  }
+  check_unit(left, node);
+  return select_lines(stereo::internal::triangulate(*seen.rig, segments), segments, seen.mount);
+}
+
+PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
+  PlaceView view;
+  view.rig = rig;
+  if (node.has("cameras")) {
+    view.rig = std::make_shared<const Rig>(parse_cameras(node.at("cameras")));
+  }
+  if (view.rig && view.rig->cameras.size() != 2) {
+    throw Error(node.has("cameras") ? node.at("cameras").place() : node.place(),
+                "the rig does not have two cameras", "give a stereo rig");
+  }
+  if (node.has("mount")) view.mount = parse_mount(node.at("mount"));
+  if (node.has("segments")) {
+    if (node.has("lines") || node.has("image_lines_px")) {
+      throw Error(node.place(), "has segments and lines", "give one of them");
+    }
+    entries(node, "segments", most_lines);
+    const PlaceView lines = reconstructed(node.at("segments"), view);
+    view.lines = lines.lines;
+    view.image_lines = lines.image_lines;
+    return view;
+  }
+  if (!node.has("lines")) {
+    throw Error(node.place(), "has neither \"lines\" nor \"segments\"",
+                "give \"lines\": [] for a view without any");
+  }
+  const std::size_t lines = entries(node, "lines", most_lines);
+  for (std::size_t i = 0; i < lines; ++i) view.lines.push_back(parse_line(node.at("lines").at(i)));
+  const std::size_t image_lines = entries(node, "image_lines_px", most_lines);
+  for (std::size_t i = 0; i < image_lines; ++i) {
+    view.image_lines.push_back(parse_segment(node.at("image_lines_px").at(i),
+                                             view.rig ? view.rig->cameras.data() : nullptr));
+  }
+  check_unit(view.image_lines, node);
+  return view;
+}
+
+double parse_angle(const JsonNode& node) {
+  const double angle = node.number();
+  if (!(std::abs(angle) <= 2 * std::numbers::pi)) {
+    throw Error(node.place(), "is more than a turn", "give radians");
+  }
+  return angle;
+}
+
+Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
+
+}  // namespace
+
+Json pose_json(const Pose2D& pose) {
+  return {pose.x_m, pose.y_m, std::remainder(pose.heading_rad, 2 * std::numbers::pi)};
+}
+
+Pose2D parse_pose(const JsonNode& node) {
+  constexpr double most_m = 1e6;
+  if (node.array().size() != 3) {
+    throw Error(node.place(), "is not a list of 3 numbers", "give x_m, y_m, heading_rad");
+  }
+  const Pose2D pose{node.at(0).number(), node.at(1).number(), parse_angle(node.at(2))};
+  if (!(std::abs(pose.x_m) <= most_m && std::abs(pose.y_m) <= most_m)) {
+    throw Error(node.place(), "is beyond 1,000 km", "give metres");
+  }
+  return pose;
+}
+
+Json view_json(const PlaceView& view) {
+  Json json;
+  json["mount"] = {{"height_m", view.mount.height_m}, {"pitch_rad", view.mount.pitch_rad}};
+  if (view.rig) json["cameras"] = cameras_json(*view.rig);
+  Json& lines = json["lines"] = Json::array();
+  for (const PlaceLine& line : view.lines) {
+    lines.push_back({{"a_m", point_json(line.a_m)},
+                     {"b_m", point_json(line.b_m)},
+                     {"kind", kind_name(line.kind)},
+                     {"sigma_m", line.sigma_m}});
+  }
+  Json& image_lines = json["image_lines_px"] = Json::array();
+  for (const ImageSegment& line : view.image_lines) {
+    image_lines.push_back({line.a_px.x(), line.a_px.y(), line.b_px.x(), line.b_px.y()});
+  }
+  return json;
+}
+
+Json looks_json(std::span<const Look> looks) {
+  Json json = Json::array();
+  for (const Look& look : looks) {
+    Json one{{"turn_rad", look.turn_rad}};
+    one.update(view_json(look.view));
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+RecordedLooks parse_looks(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
+  RecordedLooks recorded;
+  if (node.has("pose")) recorded.pose = parse_pose(node.at("pose"));
+  if (!node.has("looks")) {
+    recorded.looks.push_back({parse_view(node, rig), 0});
+    return recorded;
+  }
+  const std::size_t looks = entries(node, "looks", most_looks);
+  if (looks == 0) throw Error(node.at("looks").place(), "is empty", "give at least one");
+  for (std::size_t i = 0; i < looks; ++i) {
+    const JsonNode look = node.at("looks").at(i);
+    const double turn = look.has("turn_rad") ? parse_angle(look.at("turn_rad")) : 0;
+    if (i == 0 && turn != 0) {
+      throw Error(look.at("turn_rad").place(), "is not 0 for the first look",
+                  "count turns from its heading");
+    }
+    recorded.looks.push_back({parse_view(look, rig), turn});
+  }
+  return recorded;
+}
+
+}  // namespace vernier::localise::internal

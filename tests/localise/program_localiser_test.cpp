@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "tests/support/camera_views.h"
+#include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
+#include "tests/support/rooms.h"
+
+namespace vernier {
+
+using namespace vernier::localise;
+
+namespace {
+
+using test::error_message;
+using test::Folder;
+
+TopologicalMap five_rooms() {
+  TopologicalMap map;
+  for (int i = 0; i < 5; ++i) {
+    map.nodes.push_back({{10.0 * i, 0, 0}, test::view_of(test::random_room(i, 60), 0)});
+  }
+  return map;
+}
+
+LocaliserOptions running(const std::string& command, double time_limit_s = 10) {
+  LocaliserOptions options;
+  options.command = command;
+  options.time_limit_s = time_limit_s;
+  return options;
+}
+
+/// A program in Python: what it does before it is ready, and with each query.
+std::string python(const Folder& folder, const std::string& with_query) {
+  const std::string program =
+      "import json, sys, os, time\n"
+      "n = json.loads(sys.stdin.readline())['nodes']\n"
+      "nodes = [json.loads(sys.stdin.readline()) for _ in range(n)]\n"
+      "print('{\"ready\": true}', flush=True)\n"
+      "for number, line in enumerate(sys.stdin):\n"
+      "    " +
+      with_query + "\n";
+  return "python3 '" + folder.write("program.py", program).string() + "'";
+}
+
+TEST(ProgramLocaliser, WorksAsTheManualSays) {
+  const TopologicalMap map = five_rooms();
+  const auto localiser = make_localiser(
+      "program", map, running("python3 " VERNIER_SOURCE_DIR "/docs/examples/own_localiser.py"));
+  for (int i = 0; i < 5; ++i) {
+    const LocalisationAnswer answer = localiser->localise(map.nodes[i].view);
+    EXPECT_EQ(answer.status, LocalisationStatus::answered) << answer.failure;
+    EXPECT_EQ(answer.node, i);
+    EXPECT_EQ(answer.pose.x_m, 10.0 * i);
+    EXPECT_GT(answer.program_cpu_ms, 0);
+  }
+  EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::no_match);
+}
+
+TEST(ProgramLocaliser, ReadsEveryAnswer) {
+  const TopologicalMap map = five_rooms();
+  const Folder folder;
+  const auto localiser = make_localiser(
+      "program", map,
+      running(python(folder,
+                     "print(json.dumps({'status': ['answered', 'unsure', 'tie', 'unsure'][number], "
+                     "**({'pose': [1, 2, 0.5], 'probability': 0.25, 'score': -3, 'node': None, "
+                     "'next_turn_rad': 1.5} if number < 2 else {})}), flush=True)")));
+  const LocalisationAnswer sure = localiser->localise({}), unsure = localiser->localise({});
+  EXPECT_EQ(sure.status, LocalisationStatus::answered) << sure.failure;
+  EXPECT_EQ(sure.pose.y_m, 2);
+  EXPECT_EQ(sure.node, -1);
+  EXPECT_EQ(unsure.status, LocalisationStatus::unsure);
+  EXPECT_EQ(unsure.probability, 0.25);
+  EXPECT_EQ(unsure.next_turn_rad, 1.5);
+  EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::tie);
+  EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::no_match);  // no best guess
+}
+
+/// What a program does wrong spoils the query, and the next one finds it started again.
+TEST(ProgramLocaliser, SurvivesItsProgram) {
+  const TopologicalMap map = five_rooms();
+  const std::string good = "'{\"status\": \"answered\", \"pose\": [1, 2, 0]}'";
+  struct Fault {
+    std::string does, says;
+  };
+  const Fault faults[] = {
+      {"sys.exit('lost my way')", "lost my way"},
+      {"time.sleep(60)", "no answer within"},
+      {"print('hello', flush=True)", "nonsense"},
+      {"print('{\"status\": \"lost\"}', flush=True)", "no status"},
+      {"print('{\"status\": \"answered\"}', flush=True)", "pose"},
+      {"print('{\"status\": \"answered\", \"pose\": [1, 2, NaN]}', flush=True)", "nonsense"},
+      {"print('{\"status\": \"answered\", \"pose\": [1, 2, 400]}', flush=True)",
+       "more than a turn"},
+      {"print('{\"status\": \"tie\", \"node\": 5}', flush=True)", "node"},
+      {"print('{\"status\": \"tie\", \"probability\": 2}', flush=True)", "from 0 to 1"},
+      {"os.write(1, b'x' * 20000000)", "16 MB"},
+      {"os.kill(os.getpid(), 9)", "ended"},
+      {"os.close(1), time.sleep(60)", "ended"},
+  };
+  for (const Fault& fault : faults) {
+    const Folder folder;
+    const std::string mark = (folder.path() / "again").string();
+    const auto localiser = make_localiser(
+        "program", map,
+        running(
+            python(folder, "print(" + good + ", flush=True) if os.path.exists('" + mark +
+                               "') else [open('" + mark + "', 'w').close(), " + fault.does + "]"),
+            1.5));
+    const LocalisationAnswer spoilt = localiser->localise({});
+    EXPECT_EQ(spoilt.status, LocalisationStatus::failed) << fault.does;
+    EXPECT_NE(spoilt.failure.find(fault.says), std::string::npos)
+        << fault.does << ": " << spoilt.failure;
+    EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::answered) << fault.does;
+  }
+}
+
+TEST(ProgramLocaliser, IsLeftAloneAfterThreeFailures) {
+  const TopologicalMap map = five_rooms();
+  const Folder folder;
+  const auto localiser =
+      make_localiser("program", map, running(python(folder, "time.sleep(60)"), 0.3));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(localiser->localise({}).status, LocalisationStatus::failed);
+  }
+  const auto before = std::chrono::steady_clock::now();
+  for (int i = 0; i < 1000; ++i) {
+    const LocalisationAnswer answer = localiser->localise({});
+    EXPECT_EQ(answer.status, LocalisationStatus::failed);
+    EXPECT_NE(answer.failure.find("no answer"), std::string::npos);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(30));  // not 300
+}
+
+TEST(ProgramLocaliser, SaysWhatItDoesWithTheMap) {
+  const TopologicalMap map = five_rooms();
+  const auto first = [&](const std::string& command) {
+    return make_localiser("program", map, running(command))->localise({}).failure;
+  };
+  EXPECT_NE(first("python3 -c 'print(1)'").find("instead of"), std::string::npos);
+  EXPECT_NE(first("false").find("ended"), std::string::npos);
+  EXPECT_NE(first("python3 -c 'raise SystemExit(\"no map\")'").find("no map"), std::string::npos);
+}
+
+TEST(ProgramLocaliser, RefusesCommandsThatCannotRun) {
+  const TopologicalMap map = five_rooms();
+  const auto message = [&](const std::string& command) {
+    return error_message([&] { make_localiser("program", map, running(command)); });
+  };
+  EXPECT_NE(message("").find("no command"), std::string::npos);
+  EXPECT_NE(message("no-such-program-here --x").find("no-such-program-here"), std::string::npos);
+  EXPECT_NE(message("python3 'x").find("unclosed quote"), std::string::npos);
+  EXPECT_NE(error_message([&] { make_localiser("program", map, running("true", 0)); }).find("time"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -55,7 +55,7 @@ struct ExperimentSettings {
   MapRig map_rig = MapRig::recalibrated;
   double map_spacing_m = 0.5;
   int map_headings = 0;  ///< per node; 0: along the route
-  std::string method = "pgh";
+  std::string method = "lines";
   localise::LocaliserOptions localiser;
   /// Views of a query at most, from one position: another one is taken as long as the localiser
   /// does not answer, turned as it asks for (next_turn_rad), or away from those taken.

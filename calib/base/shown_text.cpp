@@ -51,6 +51,14 @@ std::string shortened(std::string_view text) {
 
 std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"'; }
 
+std::string alternatives(std::span<const std::string> words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+  }
+  return text;
+}
+
 std::string printable(std::string_view message, std::size_t most) {
   // Half of the line is its beginning, half its end: the file is named first, the remedy last.
   const std::size_t half = most / 2;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,9 @@ std::string in_quotes(std::string_view text);
 
 /// The same without quotes, for keys that are part of a place.
 std::string shortened(std::string_view text);
+
+/// "a, b or c"
+std::string alternatives(std::span<const std::string> words);
 
 /// A message as one line of at most `most` bytes, cut in the middle if it is longer. Control
 /// characters, characters that turn the direction of writing, and bytes that are not UTF-8 are

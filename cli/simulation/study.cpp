@@ -15,6 +15,7 @@
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_merge.h"
+#include "sim/study/cell_summary.h"
 
 namespace vernier::cli {
 namespace {
@@ -29,6 +30,14 @@ struct StudyArguments {
 
 void print(const Study& study, const fs::path& folder, Session& session) {
   const StudyResults results = study_results(study, folder);
+  for (const CellResult& cell : results.cells) {
+    const int failed = summarise(cell).failed;
+    if (failed == 0) continue;
+    session.add_trust_warning(fmt::format(
+        "the localiser failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
+        "settings says why",
+        failed, cell.trials.size(), cell.cell.label));
+  }
   session.result(study_json(study, results), study_table(study, results));
 }
 

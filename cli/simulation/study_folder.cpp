@@ -123,6 +123,8 @@ Json cell_json(const CellResult& cell) {
            s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
           {"coverage", of_trials(s.coverage)},
           {"success_when_answered", of_trials(s.success_when_answered)},
+          {"best_guess_success", of_trials(s.best_guess_success)},
+          {"failed", s.failed},
           {"node_success", of_trials(s.node_success)},
           {"recall_0_5m_5deg", of_trials(s.recall_05)},
           {"recall_0_25m_2deg", of_trials(s.recall_025)},
@@ -194,18 +196,19 @@ std::string figure(double value, int digits, const char* unit = "") {
 
 std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept = !study.file.sweep_keys.empty();
-  std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
+  std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
                                  swept ? "cell" : "", "trials", "success", "95 % interval",
-                                 "covered", "ceiling", "median m", "cpu ms", "p95 ms");
+                                 "answered", "of these", "ceiling", "median m", "cpu ms", "p95 ms");
   std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
     const double of_trials = s.trials > 0 ? 1 : std::numeric_limits<double>::quiet_NaN();
-    text += fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9}\n",
+    text += fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
                         swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "",
                         s.trials, figure(of_trials * 100 * s.success, 2, " %"), interval_text(s),
                         figure(of_trials * 100 * s.coverage, 1, " %"),
+                        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
                         figure(100 * cell.ceiling, 1, " %"), figure(s.median_error_m, 3),
                         figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
   }

@@ -141,13 +141,8 @@ std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const LocaliserOptions& options) {
   const LocaliserFactory factory = Registry::instance().find(method);
   if (!factory) {
-    std::string known;
-    const std::vector<std::string> names = localiser_names();
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      known += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
-    }
     throw Error("localiser " + vernier::internal::in_quotes(method), "unknown method",
-                "use " + known);
+                "use " + vernier::internal::alternatives(localiser_names()));
   }
   check(options);
   check(map);

@@ -12,6 +12,7 @@
 
 #include "calib/interval.h"
 #include "calib/statistics/quantile.h"
+#include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
@@ -19,6 +20,7 @@
 namespace vernier::sim::internal {
 
 using namespace vernier::internal;
+using namespace localise;
 
 namespace {
 
@@ -35,12 +37,14 @@ CellSummary summarise(const CellResult& cell) {
   CellSummary s;
   s.trials = static_cast<int>(cell.trials.size());
   s.maps = static_cast<int>(cell.maps.size());
-  int successes = 0, answered = 0, node = 0, close = 0, closer = 0;
+  int successes = 0, answered = 0, guesses = 0, node = 0, close = 0, closer = 0;
   std::vector<double> errors, headings, cpu;
   double wall = 0;
   for (const TrialResult& t : cell.trials) {
     cpu.push_back(t.cpu_ms);
     wall += t.wall_ms;
+    guesses += t.error_m <= 1;
+    s.failed += t.status == LocalisationStatus::failed;
     if (!t.answered()) continue;
     ++answered;
     const double turn = std::abs(t.heading_error_rad);
@@ -60,6 +64,7 @@ CellSummary summarise(const CellResult& cell) {
   }
   s.coverage = answered / n;
   s.success_when_answered = answered > 0 ? static_cast<double>(successes) / answered : 0;
+  s.best_guess_success = guesses / n;
   s.node_success = node / n;
   s.recall_05 = close / n;
   s.recall_025 = closer / n;

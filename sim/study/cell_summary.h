@@ -20,6 +20,8 @@ struct CellSummary {
   Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
   double coverage = 0;                    ///< fraction answered
   double success_when_answered = 0;
+  double best_guess_success = 0;         ///< where an unsure localiser's best guess counts too
+  int failed = 0;                        ///< trials in which the localiser itself failed
   double node_success = 0;               ///< for the map node instead of the refined pose
   double recall_05 = 0, recall_025 = 0;  ///< 0.5 m and 5°, 0.25 m and 2°
   double median_error_m = 0;             ///< over answered trials

@@ -8,27 +8,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
-#include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
 
 namespace vernier::sim::internal {
 
-using namespace localise;
 using namespace vernier::internal;
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 constexpr std::size_t most_cells = 10'000;
 constexpr std::int64_t most_trials = 10'000'000;  ///< of all cells together
@@ -43,54 +39,23 @@ void set(toml::table& study, const std::string& key, const toml::node& value) {
   }
 }
 
-class StudyReader : private TomlReader {
+class StudyReader : private SettingsReader {
  public:
-  using TomlReader::TomlReader;
+  using SettingsReader::SettingsReader;
 
   StudyFile read(const toml::table& root, const std::filesystem::path& sources);
 
  private:
-  /// A table of the root, or null if absent.
-  const toml::table* section(const toml::table& root, const char* name) const {
-    const toml::node* node = root.get(name);
-    return node ? &table(*node, fmt::format("[{}]", name)) : nullptr;
-  }
-  double number_in(const toml::node& node, const std::string& what, double low, double high) const;
-  template <class Parse>
-  auto word(const toml::node& node, const std::string& what, Parse parse) const {
-    const std::string said = text(node, what);
-    try {
-      return parse(said);
-    } catch (const Error& error) {
-      fail(node, error.place() + ": " + error.fault(), error.remedy());
-    }
-  }
-
   void read_study_section(const toml::table& root, StudyFile& study) const;
   void read_files(const toml::table& root, StudyFile& study) const;
-  ExperimentSettings read_experiment(const toml::table& root) const;
   std::filesystem::path read_sources_file(const toml::table& root,
                                           const std::filesystem::path& instead);
-  void read_sources(const toml::table& table, SourceSettings& sources) const;
-  void read_map(const toml::table& table, ExperimentSettings& settings) const;
   void read_sweep(const toml::table& root, StudyFile& study) const;
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
 
   SourceSettings sources_;  // initial values of the study's [sources]
 };
-
-double StudyReader::number_in(const toml::node& node,
-                              const std::string& what,
-                              double low,
-                              double high) const {
-  const double value = number(node, what);
-  if (!(value >= low && value <= high)) {
-    fail(node, fmt::format("{} = {} is out of range", what, value),
-         fmt::format("use {} to {}", low, high));
-  }
-  return value;
-}
 
 void StudyReader::read_study_section(const toml::table& root, StudyFile& study) const {
   const toml::node& node = required(root, "study", "the file");
@@ -132,7 +97,7 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
          "give the path relative to the study file");
   }
   const toml::table theirs = parse_toml(read_whole(file), file.string());
-  const StudyReader reader(file.string());
+  const SettingsReader reader(file.string());
   reader.check_keys(theirs, {"sources"}, "");
   const toml::node& sources = reader.required(theirs, "sources", "the file");
   const toml::table& values = reader.table(sources, "[sources]");
@@ -141,130 +106,6 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   }
   reader.read_sources(values, sources_);
   return file;
-}
-
-void StudyReader::read_sources(const toml::table& table, SourceSettings& sources) const {
-  Keys keys{"file", "lateral_shift_mode"};
-  for (const SourceParameter& parameter : source_parameters()) keys.push_back(parameter.name);
-  check_keys(table, keys, "[sources]");
-  for (const SourceParameter& parameter : source_parameters()) {
-    if (const auto* node = table.get(parameter.name)) {
-      sources.*parameter.value = number_in(*node, fmt::format("sources.{}", parameter.name),
-                                           parameter.low, parameter.high);
-    }
-  }
-  if (const auto* node = table.get("lateral_shift_mode")) {
-    const std::string mode = text(*node, "sources.lateral_shift_mode");
-    if (mode != "common" && mode != "independent") {
-      fail(*node, "lateral_shift_mode is " + in_quotes(mode), "use common or independent");
-    }
-    sources.lateral_shift_mode = mode == "common" ? ShiftMode::common : ShiftMode::independent;
-  }
-}
-
-void StudyReader::read_map(const toml::table& table, ExperimentSettings& settings) const {
-  check_keys(table, {"path", "spacing_m", "headings", "rig"}, "[map]");
-  if (const auto* node = table.get("path")) {
-    if (text(*node, "map.path") != "default") {
-      fail(*node, "map.path is not \"default\"",
-           "change the world's [[route]], or remove this key");
-    }
-  }
-  if (const auto* node = table.get("spacing_m")) {
-    settings.map_spacing_m = number_in(*node, "map.spacing_m", 0.01, 100);
-  }
-  if (const auto* node = table.get("headings")) {
-    if (node->is_string()) {
-      if (text(*node, "map.headings") != "path") {
-        fail(*node, "map.headings is neither \"path\" nor a number", "use \"path\" or 1 to 360");
-      }
-      settings.map_headings = 0;
-    } else {
-      const auto count = integer(*node, "map.headings");
-      if (count < 1 || count > 360) fail(*node, "map.headings is out of range", "use 1 to 360");
-      settings.map_headings = static_cast<int>(count);
-    }
-  }
-  if (const auto* node = table.get("rig")) {
-    const std::string which = text(*node, "map.rig");
-    if (which != "recalibrated" && which != "same") {
-      fail(*node, "map.rig is " + in_quotes(which), "use recalibrated or same");
-    }
-    settings.map_rig = which == "same" ? MapRig::same : MapRig::recalibrated;
-  }
-}
-
-ExperimentSettings StudyReader::read_experiment(const toml::table& root) const {
-  ExperimentSettings settings;
-  settings.sources = sources_;
-  const toml::table& study = *root.get("study")->as_table();
-  check_keys(study, {"trials", "seed", "protocol"}, "[study]");
-  if (const auto* seed = study.get("seed")) {
-    const auto value = integer(*seed, "study.seed");
-    if (value < 0) fail(*seed, "study.seed is negative", "use 0 or more");
-    settings.seed = static_cast<std::uint64_t>(value);
-  }
-  if (const auto* protocol = study.get("protocol")) {
-    settings.protocol =
-        word(*protocol, "study.protocol", [](const std::string& w) { return query_protocol(w); });
-  }
-  if (const auto* sources = section(root, "sources")) read_sources(*sources, settings.sources);
-  if (const auto* map = section(root, "map")) read_map(*map, settings);
-  if (const auto* camera = section(root, "camera")) {
-    check_keys(*camera, {"height_m", "pitch_deg"}, "[camera]");
-    if (const auto* height = camera->get("height_m")) {
-      settings.mount.height_m = number_in(*height, "camera.height_m", 0.01, 100);
-    }
-    if (const auto* pitch = camera->get("pitch_deg")) {
-      settings.mount.pitch_rad = degree * number_in(*pitch, "camera.pitch_deg", -89, 89);
-    }
-  }
-  if (const auto* localiser = section(root, "localiser")) {
-    check_keys(
-        *localiser,
-        {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate"},
-        "[localiser]");
-    if (const auto* method = localiser->get("method")) {
-      settings.method = text(*method, "localiser.method");
-      const std::vector<std::string> known = localiser_names();
-      if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
-        fail(*method, "unknown localiser " + in_quotes(settings.method),
-             "use lines, pgh or pgh_baseline");
-      }
-    }
-    if (const auto* knows = localiser->get("knows_endpoint_sigma")) {
-      if (!knows->is_boolean()) {
-        fail(*knows, "localiser.knows_endpoint_sigma is not a boolean", "use true or false");
-      }
-      settings.knows_endpoint_sigma = knows->as_boolean()->get();
-    }
-    if (const auto* ranker = localiser->get("ranker")) {
-      settings.localiser.ranker = text(*ranker, "localiser.ranker");
-      const Keys known{"view", "pgh", "pgh_aggregate"};
-      if (std::find(known.begin(), known.end(), settings.localiser.ranker) == known.end()) {
-        fail(*ranker, "unknown ranker " + in_quotes(settings.localiser.ranker),
-             "use view, pgh or pgh_aggregate");
-      }
-    }
-    if (const auto* candidates = localiser->get("candidates")) {
-      const std::int64_t count = integer(*candidates, "localiser.candidates");
-      if (count < 1 || count > 10'000) {
-        fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 64");
-      }
-      settings.localiser.candidates = static_cast<int>(count);
-    }
-    if (const auto* rate = localiser->get("max_error_rate")) {
-      settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
-    }
-    if (const auto* looks = localiser->get("looks")) {
-      const std::int64_t count = integer(*looks, "localiser.looks");
-      if (count < 1 || count > 12) {
-        fail(*looks, "localiser.looks is not from 1 to 12", "use 1, or 2 for a second look");
-      }
-      settings.looks = static_cast<int>(count);
-    }
-  }
-  return settings;
 }
 
 void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
@@ -303,9 +144,8 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
       values.push_back(shown_value(value));
       toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
-      StudyReader reader(place(), value.source().begin.line);
-      reader.sources_ = sources_;
-      reader.read_experiment(changed);
+      const SettingsReader reader(place(), value.source().begin.line);
+      reader.read_settings(changed, sources_);
     }
     if (values.empty())
       fail(node, "the sweep of " + shortened(key) + " is empty", "list at least one value");
@@ -352,7 +192,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
     }
     StudyCell result;
-    result.experiment = read_experiment(changed);
+    result.experiment = read_settings(changed, sources_);
     result.settings = settings_of(result.experiment);
     result.label = label.empty() ? "as set" : label;
     study.cells.push_back(std::move(result));
@@ -365,7 +205,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   read_study_section(root, study);
   read_files(root, study);
   study.sources = read_sources_file(root, sources);
-  read_experiment(root);  // the file's own values first, with their own lines
+  read_settings(root, sources_);  // the file's own values first, with their own lines
   read_sweep(root, study);
   check_sweep_size(root, study);
   add_cells(root, study);

@@ -7,13 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <system_error>
 #include <vector>
 
+#include "calib/base/atomic_file.h"
+#include "calib/base/fingerprint.h"
+#include "calib/base/program_run.h"
 #include "calib/base/text_lines.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
@@ -33,6 +38,9 @@ namespace {
 /// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
+/// The same of one method: `lines` since its posterior depends on how well views fit.
+constexpr int lines_version = 2;
+
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
 
@@ -43,6 +51,23 @@ double noted(const StoreNotes& notes, const std::string& key) {
   if (found == notes.end()) return nan;
   const double value = to_real(found->second).value_or(nan);
   return value > 0 && value <= 1 ? value : nan;
+}
+
+/// The content of the files that are words of a command: a program that has changed is another one.
+std::string files_named_in(const std::string& command) {
+  std::string content;
+  for (const std::string& word : command_words(command, "localiser.command")) {
+    std::error_code unknown;
+    constexpr std::uintmax_t most_bytes = 10'000'000;
+    if (!std::filesystem::is_regular_file(word, unknown) ||
+        std::filesystem::file_size(word, unknown) > most_bytes) {
+      continue;
+    }
+    content += word;
+    content += '\n';
+    content += read_whole(word);
+  }
+  return content;
 }
 
 }  // namespace
@@ -71,6 +96,10 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   if (s.localiser.max_error_rate != usual.max_error_rate) {
     all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
   }
+  if (s.method == "program") {
+    all["localiser.command"] = s.localiser.command;
+    all["localiser.time_limit_s"] = fmt::format("{}", s.localiser.time_limit_s);
+  }
   all["study.protocol"] = name(s.protocol);
   all["study.seed"] = fmt::format("{}", s.seed);
   return all;
@@ -90,6 +119,10 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   }
   if (study.file.trials_per_block != usual_block) {
     key["study.trials_per_block"] = study.file.trials_per_block;
+  }
+  if (cell.experiment.method == "lines") key["localiser.version"] = lines_version;
+  if (cell.experiment.method == "program") {
+    key["localiser.files"] = fingerprint(files_named_in(cell.experiment.localiser.command));
   }
   return key.dump();
 }

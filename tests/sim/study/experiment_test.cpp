@@ -16,6 +16,7 @@
 #include "localise/topological_map.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
+#include "tests/support/foreign_files.h"
 #include "tests/support/small_office.h"
 
 namespace vernier {
@@ -114,6 +115,38 @@ class First : public Localiser {
  private:
   const TopologicalMap& map_;
 };
+
+/// A program that gives up in the middle spoils its trial and no other.
+TEST_F(Experiments, SurviveAProgramThatDies) {
+  const test::Folder folder;
+  const auto program =
+      folder.write("mine.py",
+                   "import json, sys\n"
+                   "n = json.loads(sys.stdin.readline())['nodes']\n"
+                   "nodes = [json.loads(sys.stdin.readline()) for _ in range(n)]\n"
+                   "print('{\"ready\": true}', flush=True)\n"
+                   "for number, line in enumerate(sys.stdin):\n"
+                   "    if number == 3: sys.exit('no more')\n"
+                   "    assert json.loads(line)['looks'][0]['lines']\n"
+                   "    print(json.dumps({'status': 'answered', 'node': 2,\n"
+                   "                      'pose': nodes[2]['pose']}), flush=True)\n");
+  ExperimentSettings s = settings(QueryProtocol::path);
+  s.method = "program";
+  s.localiser.command = "python3 '" + program.string() + "'";
+  const LocalisationExperiment robot = experiment(s);
+  const auto trials = robot.run_block({.block = 0, .first = 0, .count = 10});
+  ASSERT_EQ(trials.size(), 10u);
+  const TopologicalMap map = robot.record_map(0, robot.map_estimator_rig(0));
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const bool dies = i % 4 == 3;
+    EXPECT_EQ(trials[i].status, dies ? LocalisationStatus::failed : LocalisationStatus::answered);
+    EXPECT_FALSE(dies && trials[i].success());
+    if (!dies) {
+      EXPECT_NEAR(trials[i].node.x_m, map.nodes[2].pose.x_m, 1e-9);
+      EXPECT_GT(trials[i].cpu_ms, 0);
+    }
+  }
+}
 
 TEST_F(Experiments, RunsALocaliserOfOnesOwn) {
   ExperimentSettings s = settings(QueryProtocol::near_path);

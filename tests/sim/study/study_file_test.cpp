@@ -39,7 +39,7 @@ TEST(StudyFile, DefaultsAreTheMemos) {
   EXPECT_EQ(e.sources.stereo_mismatch, 0.01);
   EXPECT_EQ(e.sources.calibration, 1);
   EXPECT_EQ(e.mount.height_m, 1.2);
-  EXPECT_EQ(e.method, "pgh");
+  EXPECT_EQ(e.method, "lines");
 }
 
 TEST(StudyFile, FewTrialsStillRecordSixMaps) {
@@ -101,6 +101,27 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
                             "max_error_rate = 1.5\n", "looks = 13\n", "method = \"sift\"\n"}) {
     EXPECT_THROW(cell(wrong), Error) << wrong;
   }
+}
+
+TEST(StudyFile, AProgramIsPartOfTheCell) {
+  const StudyFile study = parse_study(
+      "[study]\ntrials = 10\n[localiser]\ncommand = \"./mine --fast\"\ntime_limit_s = 2\n"
+      "[sweep]\n\"localiser.method\" = [\"lines\", \"program\"]\n",
+      "s.toml");
+  ASSERT_EQ(study.cells.size(), 2u);
+  EXPECT_EQ(study.cells[0].settings.count("localiser.command"), 0u);
+  EXPECT_EQ(study.cells[1].experiment.localiser.command, "./mine --fast");
+  EXPECT_EQ(study.cells[1].experiment.localiser.time_limit_s, 2);
+  EXPECT_EQ(study.cells[1].settings.at("localiser.command"), "./mine --fast");
+  const std::string program = "[study]\n[localiser]\nmethod = \"program\"\n";
+  EXPECT_NE(complaint_of(program).find("command"), std::string::npos);
+  EXPECT_NE(
+      complaint_of(program + "command = \" \"\n").find("s.toml:4: localiser.command is empty"),
+      std::string::npos);
+  EXPECT_NE(complaint_of(program + "command = \"a 'b\"\n").find("unclosed quote"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(program + "command = \"a\"\ntime_limit_s = 0\n").find("out of range"),
+            std::string::npos);
 }
 
 TEST(StudyFile, ComplaintsNameLineAndRemedy) {

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/settings_reader.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "calib/base/program_run.h"
+#include "calib/base/shown_text.h"
+#include "calib/error.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+#include "sim/sources.h"
+
+namespace vernier::sim::internal {
+
+using namespace localise;
+using namespace vernier::internal;
+
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180;
+
+}  // namespace
+
+double SettingsReader::number_in(const toml::node& node,
+                                 const std::string& what,
+                                 double low,
+                                 double high) const {
+  const double value = number(node, what);
+  if (!(value >= low && value <= high)) {
+    fail(node, fmt::format("{} = {} is out of range", what, value),
+         fmt::format("use {} to {}", low, high));
+  }
+  return value;
+}
+
+void SettingsReader::read_sources(const toml::table& table, SourceSettings& sources) const {
+  Keys keys{"file", "lateral_shift_mode"};
+  for (const SourceParameter& parameter : source_parameters()) keys.push_back(parameter.name);
+  check_keys(table, keys, "[sources]");
+  for (const SourceParameter& parameter : source_parameters()) {
+    if (const auto* node = table.get(parameter.name)) {
+      sources.*parameter.value = number_in(*node, fmt::format("sources.{}", parameter.name),
+                                           parameter.low, parameter.high);
+    }
+  }
+  if (const auto* node = table.get("lateral_shift_mode")) {
+    const std::string mode = text(*node, "sources.lateral_shift_mode");
+    if (mode != "common" && mode != "independent") {
+      fail(*node, "lateral_shift_mode is " + in_quotes(mode), "use common or independent");
+    }
+    sources.lateral_shift_mode = mode == "common" ? ShiftMode::common : ShiftMode::independent;
+  }
+}
+
+void SettingsReader::read_camera(const toml::table& table, CameraMount& mount) const {
+  check_keys(table, {"height_m", "pitch_deg"}, "[camera]");
+  if (const auto* height = table.get("height_m")) {
+    mount.height_m = number_in(*height, "camera.height_m", 0.01, 100);
+  }
+  if (const auto* pitch = table.get("pitch_deg")) {
+    mount.pitch_rad = radians_per_degree * number_in(*pitch, "camera.pitch_deg", -89, 89);
+  }
+}
+
+void SettingsReader::read_map(const toml::table& table, ExperimentSettings& settings) const {
+  check_keys(table, {"path", "spacing_m", "headings", "rig"}, "[map]");
+  if (const auto* node = table.get("path")) {
+    if (text(*node, "map.path") != "default") {
+      fail(*node, "map.path is not \"default\"",
+           "change the world's [[route]], or remove this key");
+    }
+  }
+  if (const auto* node = table.get("spacing_m")) {
+    settings.map_spacing_m = number_in(*node, "map.spacing_m", 0.01, 100);
+  }
+  if (const auto* node = table.get("headings")) {
+    if (node->is_string()) {
+      if (text(*node, "map.headings") != "path") {
+        fail(*node, "map.headings is neither \"path\" nor a number", "use \"path\" or 1 to 360");
+      }
+      settings.map_headings = 0;
+    } else {
+      const auto count = integer(*node, "map.headings");
+      if (count < 1 || count > 360) fail(*node, "map.headings is out of range", "use 1 to 360");
+      settings.map_headings = static_cast<int>(count);
+    }
+  }
+  if (const auto* node = table.get("rig")) {
+    const std::string which = text(*node, "map.rig");
+    if (which != "recalibrated" && which != "same") {
+      fail(*node, "map.rig is " + in_quotes(which), "use recalibrated or same");
+    }
+    settings.map_rig = which == "same" ? MapRig::same : MapRig::recalibrated;
+  }
+}
+
+void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
+  check_keys(table,
+             {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
+              "command", "time_limit_s"},
+             "[localiser]");
+  if (const auto* method = table.get("method")) {
+    settings.method = text(*method, "localiser.method");
+    const std::vector<std::string> known = localiser_names();
+    if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
+      fail(*method, "unknown localiser " + in_quotes(settings.method),
+           "use " + alternatives(known));
+    }
+  }
+  if (const auto* knows = table.get("knows_endpoint_sigma")) {
+    if (!knows->is_boolean()) {
+      fail(*knows, "localiser.knows_endpoint_sigma is not a boolean", "use true or false");
+    }
+    settings.knows_endpoint_sigma = knows->as_boolean()->get();
+  }
+  if (const auto* ranker = table.get("ranker")) {
+    settings.localiser.ranker = text(*ranker, "localiser.ranker");
+    const Keys known{"view", "pgh", "pgh_aggregate"};
+    if (std::find(known.begin(), known.end(), settings.localiser.ranker) == known.end()) {
+      fail(*ranker, "unknown ranker " + in_quotes(settings.localiser.ranker),
+           "use view, pgh or pgh_aggregate");
+    }
+  }
+  if (const auto* candidates = table.get("candidates")) {
+    const std::int64_t count = integer(*candidates, "localiser.candidates");
+    if (count < 1 || count > 10'000) {
+      fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 64");
+    }
+    settings.localiser.candidates = static_cast<int>(count);
+  }
+  if (const auto* rate = table.get("max_error_rate")) {
+    settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
+  }
+  if (const auto* looks = table.get("looks")) {
+    const std::int64_t count = integer(*looks, "localiser.looks");
+    if (count < 1 || count > 12) {
+      fail(*looks, "localiser.looks is not from 1 to 12", "use 1, or 2 for a second look");
+    }
+    settings.looks = static_cast<int>(count);
+  }
+  read_program(table, settings);
+}
+
+void SettingsReader::read_program(const toml::table& table, ExperimentSettings& settings) const {
+  if (settings.method != "program") return;  // a sweep may set both
+  const toml::node& command = required(table, "command", "[localiser]");
+  settings.localiser.command = text(command, "localiser.command");
+  std::vector<std::string> words;
+  try {
+    words = command_words(settings.localiser.command, "localiser.command");
+  } catch (const Error& error) {
+    fail(command, "localiser.command has an " + error.fault(), error.remedy());
+  }
+  if (words.empty()) fail(command, "localiser.command is empty", "name the program that answers");
+  if (const auto* limit = table.get("time_limit_s")) {
+    settings.localiser.time_limit_s = number_in(*limit, "localiser.time_limit_s", 1e-3, 86400);
+  }
+}
+
+ExperimentSettings SettingsReader::read_settings(const toml::table& root,
+                                                 const SourceSettings& sources) const {
+  ExperimentSettings settings;
+  settings.sources = sources;
+  const toml::table& study = *root.get("study")->as_table();
+  check_keys(study, {"trials", "seed", "protocol"}, "[study]");
+  if (const auto* seed = study.get("seed")) {
+    const auto value = integer(*seed, "study.seed");
+    if (value < 0) fail(*seed, "study.seed is negative", "use 0 or more");
+    settings.seed = static_cast<std::uint64_t>(value);
+  }
+  if (const auto* protocol = study.get("protocol")) {
+    settings.protocol =
+        word(*protocol, "study.protocol", [](const std::string& w) { return query_protocol(w); });
+  }
+  if (const auto* own = section(root, "sources")) read_sources(*own, settings.sources);
+  if (const auto* map = section(root, "map")) read_map(*map, settings);
+  if (const auto* camera = section(root, "camera")) read_camera(*camera, settings.mount);
+  if (const auto* localiser = section(root, "localiser")) read_localiser(*localiser, settings);
+  return settings;
+}
+
+}  // namespace vernier::sim::internal

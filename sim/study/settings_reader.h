@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <string>
+
+#include "calib/base/toml_reader.h"
+#include "calib/error.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+#include "sim/sources.h"
+
+namespace vernier::sim::internal {
+
+/// Reads the settings of an experiment from the tables of a study file.
+class SettingsReader : public vernier::internal::TomlReader {
+ public:
+  using TomlReader::TomlReader;
+
+  /// The tables [study] (seed and protocol), [sources], [camera], [map] and [localiser] of a study;
+  /// `sources` are those that it starts from.
+  ExperimentSettings read_settings(const toml::table& root, const SourceSettings& sources) const;
+
+  void read_sources(const toml::table& table, SourceSettings& sources) const;
+
+ protected:
+  /// A table of the root, or null if absent.
+  const toml::table* section(const toml::table& root, const char* name) const {
+    const toml::node* node = root.get(name);
+    return node ? &table(*node, fmt::format("[{}]", name)) : nullptr;
+  }
+  double number_in(const toml::node& node, const std::string& what, double low, double high) const;
+  template <class Parse>
+  auto word(const toml::node& node, const std::string& what, Parse parse) const {
+    const std::string said = text(node, what);
+    try {
+      return parse(said);
+    } catch (const Error& error) {
+      fail(node, error.place() + ": " + error.fault(), error.remedy());
+    }
+  }
+
+ private:
+  void read_camera(const toml::table& table, localise::CameraMount& mount) const;
+  void read_map(const toml::table& table, ExperimentSettings& settings) const;
+  void read_localiser(const toml::table& table, ExperimentSettings& settings) const;
+  void read_program(const toml::table& table, ExperimentSettings& settings) const;
+};
+
+}  // namespace vernier::sim::internal

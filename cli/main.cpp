@@ -109,6 +109,8 @@ int main(int argc, char** argv) {
   cli::add_world(app, session);
   cli::add_simulate(app, session);
   cli::add_study(app, session);
+  cli::add_map(app, session);
+  cli::add_localise(app, session);
   cli::add_report(app, session);
   cli::check_numbers(app);
   try {

@@ -28,6 +28,7 @@ set(vernier_fuzz_targets
   fuzz/targets/study_toml.cpp
   fuzz/targets/text_numbers.cpp
   fuzz/targets/toml.cpp
+  fuzz/targets/view_file.cpp
   fuzz/targets/world_toml.cpp
   fuzz/targets/yaml.cpp)
 set(vernier_fuzz_libraries vernier::sim nlohmann_json::nlohmann_json fmt::fmt SQLite::SQLite3

@@ -19,6 +19,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/observation_json.h"
+#include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
@@ -41,57 +42,11 @@ struct SimulateArguments {
   std::vector<std::string> sources;
 };
 
-const SourceParameter& source_named(const std::string& word) {
-  const std::size_t equals = word.find('=');
-  std::string names = "none";
-  for (const SourceParameter& parameter : source_parameters()) {
-    if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
-    names += ", " + std::string(parameter.name) + "=…";
-  }
-  throw Error("--source " + word, "unknown error source", "supported: " + names);
-}
-
-/// Refuses settings without effect: the range of a source that is off.
-void check_effect(const SourceSettings& settings, const std::set<std::string_view>& given) {
-  const auto refuse = [&](std::string_view reach, std::string_view of, double share) {
-    if (share > 0 || given.count(reach) == 0) return;
-    throw Error("--source " + std::string(reach),
-                "has no effect while " + std::string(of) + " is 0",
-                "also give --source " + std::string(of) + "=…, or leave it out");
-  };
-  refuse("stereo_mismatch_px", "stereo_mismatch", settings.stereo_mismatch);
-  refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
-}
-
-/// Applies settings such as "edge_loss=0.2" to the defaults; "none" turns all sources off. The
-/// calibration error is off unless requested.
-SourceSettings sources_of(const std::vector<std::string>& words) {
-  SourceSettings settings;
-  settings.calibration = 0;
-  std::set<std::string_view> given;
-  for (const std::string& word : words) {
-    if (word == "none") {
-      if (&word != &words.front()) {
-        throw Error("--source none", "would override the sources given before it", "give it first");
-      }
-      settings = no_sources();
-      continue;
-    }
-    const SourceParameter& chosen = source_named(word);
-    if (!given.insert(chosen.name).second) {
-      throw Error("--source " + word, "this source is given twice", "give one value");
-    }
-    settings.*chosen.value =
-        parse_numbers(word.substr(word.find('=') + 1), 1, "--source " + word)[0];
-  }
-  check(settings, "--source");
-  check_effect(settings, given);
-  return settings;
-}
-
 void run(const SimulateArguments& options, Session& session) {
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
-  const SourceSettings sources = sources_of(options.sources);
+  SourceSettings initial;
+  initial.calibration = 0;
+  const SourceSettings sources = sources_of(options.sources, initial);
   const World world = build_world(read_world(find_world(options.world)));
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/corners/match_images.h"
 
+#include <cstdint>
 #include <map>
 
 #include "calib/base/grey_image.h"
@@ -23,12 +24,12 @@ using namespace vernier::internal;
 
 namespace {
 
-using FilesByNumber = std::map<int, std::filesystem::path>;
+using FilesByNumber = std::map<std::int64_t, std::filesystem::path>;
 
 FilesByNumber by_number(const std::vector<std::filesystem::path>& files) {
   FilesByNumber numbered;
   for (const auto& file : files) {
-    const int number = parse_image_name(file).frame;
+    const std::int64_t number = parse_image_name(file).frame;
     const auto [at, is_new] = numbered.emplace(number, file);
     if (!is_new) {
       throw Error(file.string(),
@@ -76,7 +77,12 @@ std::vector<ImageFiles> paired_images(const std::string& left, const std::string
   check_all_paired(lefts, rights, "right");
   check_all_paired(rights, lefts, "left");
   std::vector<ImageFiles> pairs;
-  for (const auto& [number, file] : lefts) pairs.push_back({number, file, rights.at(number)});
+  std::vector<std::int64_t> numbers;
+  for (const auto& [number, file] : lefts) numbers.push_back(number);
+  const FrameNumbering numbering(numbers);  // of time stamps
+  for (const auto& [number, file] : lefts) {
+    pairs.push_back({numbering.frame(number), file, rights.at(number)});
+  }
   return pairs;
 }
 

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import pathlib
 import random
+import struct
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -13,7 +14,7 @@ sys.dont_write_bytecode = True
 import characterise_test
 import evaluate_test
 import stereo_test
-from cli_test import IMAGES, board_lines
+from cli_test import IMAGES, ROOT, board_lines
 
 
 @dataclasses.dataclass
@@ -60,6 +61,35 @@ def matched_pairs():
     return '\n'.join(lines) + '\n'
 
 
+def features():
+    """Views of upright lines at known poses."""
+    chance = random.Random(5)
+    lines = [{'a_m': [x, chance.uniform(-0.4, 0.4) * x, 0], 'b_m': [x, 0, 1.8], 'kind': 'vertical',
+              'sigma_m': 0.02} for x in (2 + 0.2 * i for i in range(20))]
+    for line in lines:
+        line['b_m'][1] = line['a_m'][1]
+    return ''.join(json.dumps({'pose': [i, 0, 0], 'lines': lines[i:]}) + '\n' for i in range(5))
+
+
+def map_file(views):
+    """A map of views of upright lines, with the shipped rig (docs/file-formats.md)."""
+    def part(kind, content):
+        filled = content + bytes(-len(content) % 8)
+        checksum = 0xcbf29ce484222325 ^ len(content)
+        for (word,) in struct.iter_unpack('<Q', filled):
+            checksum = (checksum ^ word) * 0x100000001b3 % 2**64
+            checksum ^= checksum >> 32
+        return struct.pack('<IIQQ', kind, 0, len(content), checksum) + filled
+    rig = (ROOT / 'datasets/rigs/nominal.rig.json').read_bytes()
+    nodes = struct.pack('<Q', len(views))
+    for view in map(json.loads, views):
+        nodes += struct.pack('<3dII', *view['pose'], len(view['lines']), 0)
+        for line in view['lines']:
+            nodes += struct.pack('<Q7d', 0, *line['a_m'], *line['b_m'], line['sigma_m'])
+    return (b'VERNMAP\0' + struct.pack('<II', 1, len(views)) +
+            part(1, struct.pack('<2d', 1.2, 0) + rig) + part(2, nodes))
+
+
 def write_inputs(folder):
     """What the calls read, made without the program."""
     folder = pathlib.Path(folder)
@@ -72,6 +102,8 @@ def write_inputs(folder):
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
     (folder / 'study.toml').write_text(STUDY)
+    (folder / 'views.jsonl').write_text(features())
+    (folder / 'known.map').write_bytes(map_file(features().splitlines()))
 
 
 def calls():
@@ -105,5 +137,9 @@ def calls():
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0'],
              []),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
+             ['out.map']),
+        Call('localise', ['localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal', '-o',
+                          'out.csv'], ['out.csv']),
         Call('report', ['report', 'nominal', '-o', 'out.html'], ['out.html']),
     ]

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/localiser.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calib/base/atomic_file.h"
+#include "calib/base/shown_text.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/rig.h"
+#include "cli/localisation/localised_queries.h"
+#include "cli/localisation/simulated_robot.h"
+#include "cli/localisation/view_options.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
+#include "cli/program/session.h"
+#include "localise/map_file.h"
+#include "localise/place.h"
+#include "localise/topological_map.h"
+#include "localise/view_file.h"
+#include "sim/experiment.h"
+
+namespace vernier::cli {
+namespace {
+
+struct LocaliseArguments {
+  std::string map, method = "lines", protocol = "path", output;
+  ViewOptions views;
+  LocaliserOptions localiser;
+  std::uint32_t queries = 20;
+  int looks = 1;
+};
+
+/// Maps hold lines in metres, but what a view can hold of them depends on its cameras.
+void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name) {
+  constexpr double same_focal_length = 0.05, same_baseline = 0.1;
+  for (const MapNode& node : map.nodes) {
+    if (!node.view.rig) continue;
+    const Camera &a = node.view.rig->cameras[0], &b = rig.cameras[0];
+    const double baseline = rig.T_camera_first[1].t.norm();
+    const double of_map = node.view.rig->T_camera_first[1].t.norm();
+    if (a.size_px == b.size_px && std::abs(a.f_px() - b.f_px()) <= same_focal_length * a.f_px() &&
+        std::abs(baseline - of_map) <= same_baseline * of_map) {
+      return;
+    }
+    throw Error(map_name,
+                fmt::format("was recorded with another rig ({}x{} px, f {:.0f} px, baseline "
+                            "{:.3f} m; here {}x{} px, {:.0f} px, {:.3f} m)",
+                            a.size_px[0], a.size_px[1], a.f_px(), of_map, b.size_px[0],
+                            b.size_px[1], b.f_px(), baseline),
+                "record the map with the rig that asks");
+  }
+}
+
+double thread_cpu_ms() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
+                                             const TopologicalMap& map,
+                                             const Localiser& localiser,
+                                             Session& session) {
+  const NamedViews recorded = read_recorded(options.views, session);
+  std::vector<LocalisedQuery> queries;
+  for (std::size_t i = 0; i < recorded.views.size(); ++i) {
+    const RecordedLooks& seen = recorded.views[i];
+    const PlaceView& first = seen.looks[0].view;
+    if (first.rig) {
+      check_same_rig(map, *first.rig, options.map);
+    } else if (options.method == "lines") {
+      throw Error(options.views.features, recorded.names[i] + " has no cameras",
+                  "give --rig, or \"cameras\" with each view");
+    }
+    LocalisedQuery query;
+    query.name = recorded.names[i];
+    query.truth = seen.pose;
+    query.lines = static_cast<int>(first.lines.size());
+    query.looks = static_cast<int>(seen.looks.size());
+    const double before = thread_cpu_ms();
+    query.answer = localiser.localise_looks(seen.looks);
+    query.cpu_ms = thread_cpu_ms() - before + query.answer.program_cpu_ms;
+    queries.push_back(std::move(query));
+  }
+  return queries;
+}
+
+std::vector<LocalisedQuery> simulated_queries(const LocaliseArguments& options,
+                                              const TopologicalMap& map,
+                                              const Localiser& localiser,
+                                              Session& session) {
+  ExperimentSettings settings;
+  settings.protocol = query_protocol(options.protocol);
+  settings.looks = options.looks;
+  const SimulatedRobot robot(options.views, settings, session);
+  check_same_rig(map, robot.rig().rig, options.map);
+  std::vector<LocalisedQuery> queries;
+  constexpr std::uint32_t few = 100;
+  std::optional<Progress> progress;
+  if (options.queries > few) progress.emplace(session, "queries");
+  for (std::uint32_t i = 0; i < options.queries; ++i) {
+    const auto [trial, answer] = robot.run_query(i, map, localiser);
+    LocalisedQuery query;
+    query.name = "query " + std::to_string(i);
+    query.truth = trial.truth;
+    query.answer = answer;
+    query.lines = trial.lines;
+    query.looks = trial.looks;
+    query.cpu_ms = trial.cpu_ms;
+    queries.push_back(std::move(query));
+    if (progress) progress->update(static_cast<int>(i + 1), static_cast<int>(options.queries));
+  }
+  return queries;
+}
+
+void check(const LocaliseArguments& options, const CLI::App& verb) {
+  check(options.views, verb);
+  if (options.views.world.empty()) {
+    constexpr std::array of_robot{"--protocol", "-n", "--looks"};
+    refuse_options(verb, of_robot, "no robot is simulated");
+  }
+  if (options.method == "program" && options.localiser.command.empty()) {
+    throw Error("localise", "--method program needs the program", "give --command");
+  }
+  if (options.method != "program") {
+    constexpr std::array of_program{"--command", "--time-limit-s"};
+    refuse_options(verb, of_program, "the method is no program", "also give --method program");
+  }
+  if (options.output.empty()) return;
+  check_output_is_not_input({options.map}, options.output);
+  for (const std::string& input :
+       {options.views.features, options.views.poses, options.views.rig, options.views.world}) {
+    if (!input.empty()) check_output_is_not_input({input}, options.output);
+  }
+}
+
+void run(const LocaliseArguments& options, const CLI::App& verb, Session& session) {
+  check(options, verb);
+  const TopologicalMap map = read_map(options.map);
+  const auto localiser = make_localiser(options.method, map, options.localiser);
+  const std::vector<LocalisedQuery> queries =
+      options.views.world.empty() ? recorded_queries(options, map, *localiser, session)
+                                  : simulated_queries(options, map, *localiser, session);
+  if (!options.output.empty()) write_atomically(options.output, queries_csv(queries));
+  check_answers(queries, session);
+  Json json{{"map", options.map}, {"method", options.method}};
+  json.update(queries_json(queries));
+  json["doubts"] = session.trust_warnings();
+  session.result(json, queries_table(queries));
+}
+
+}  // namespace
+
+void add_localise(CLI::App& app, Session& session) {
+  auto o = std::make_shared<LocaliseArguments>();
+  CLI::App* verb = add_verb(
+      app, session, "localise", "find where views were taken on a topological map",
+      "vernier map make --world workshop -o workshop.map\n"
+      "  vernier localise workshop.map --world workshop -n 20\n"
+      "  vernier localise rooms.map --left 'left*.png' --right 'right*.png' --rig rig.json\n"
+      "  vernier localise rooms.map --features views.jsonl --rig rig.json -o answers.csv");
+  verb->add_option("map", o->map, "map file")->required();
+  add_view_options(*verb, o->views);
+  verb->add_option("--protocol", o->protocol,
+                   "where the simulated robot asks: near_path, path or anywhere")
+      ->capture_default_str();
+  verb->add_option("-n", o->queries, "number of simulated queries")
+      ->check(CLI::Range(1u, 1'000'000u))
+      ->capture_default_str();
+  verb->add_option("--looks", o->looks,
+                   "views from a position at most, the further ones where it is unsure")
+      ->check(CLI::Range(1, 12))
+      ->capture_default_str();
+  verb->add_option("--method", o->method, alternatives(localiser_names()))->capture_default_str();
+  verb->add_option("--ranker", o->localiser.ranker, "of lines: view, pgh or pgh_aggregate")
+      ->capture_default_str();
+  verb->add_option("--candidates", o->localiser.candidates, "best-ranked poses to verify")
+      ->capture_default_str();
+  verb->add_option("--max-error-rate", o->localiser.max_error_rate,
+                   "of lines: unsure where an error is more probable; 1: it always answers")
+      ->capture_default_str();
+  verb->add_option("--command", o->localiser.command,
+                   "of program: a program of your own and its arguments (docs/own-localiser.md)");
+  verb->add_option("--time-limit-s", o->localiser.time_limit_s, "of program, for a query")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("-o,--output", o->output, "answers, one line a query");
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
+}
+
+}  // namespace vernier::cli

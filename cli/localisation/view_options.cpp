@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/localisation/view_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "calib/base/error_place.h"
+#include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_file.h"
+#include "cli/localisation/place_poses.h"
+#include "cli/program/camera_images.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "localise/pair_view.h"
+#include "localise/place.h"
+#include "localise/view_file.h"
+#include "stereo/corners/match_images.h"
+#include "stereo/grey_levels.h"
+
+namespace vernier::cli {
+namespace {
+
+std::shared_ptr<const Rig> stereo_rig(const std::string& name, Session& session) {
+  const RigFile file = read_rig(find_rig(name));
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  if (file.estimate.rig.cameras.size() != 2) {
+    throw Error(name, "does not have two cameras", "give a stereo rig");
+  }
+  return std::make_shared<const Rig>(file.estimate.rig);
+}
+
+NamedViews views_of_file(const ViewOptions& options, Session& session) {
+  const std::shared_ptr<const Rig> rig =
+      options.rig.empty() ? nullptr : stereo_rig(options.rig, session);
+  NamedViews read{read_views(options.features, rig), {}};
+  for (std::size_t i = 0; i < read.views.size(); ++i) {
+    read.names.push_back("view " + std::to_string(i + 1));
+  }
+  return read;
+}
+
+NamedViews views_of_images(const ViewOptions& options, Session& session) {
+  const std::shared_ptr<const Rig> rig = stereo_rig(options.rig, session);
+  const std::vector<ImageFiles> files = paired_images(options.left, options.right);
+  std::map<std::string, Pose2D> poses;
+  if (!options.poses.empty()) poses = read_place_poses(options.poses);
+  PairViewOptions how;
+  how.max_disparity_px = options.max_disparity_px;
+  NamedViews read;
+  constexpr std::size_t few = 5;
+  std::optional<Progress> progress;
+  if (files.size() > few) progress.emplace(session, "views of image pairs");
+  for (const ImageFiles& pair : files) {
+    const RectifiedPair images =
+        read_camera_images(*rig, options.rig, pair.left.string(), pair.right.string(), session);
+    RecordedLooks seen;
+    seen.looks.push_back(
+        {with_errors_of(
+             options.rig,
+             [&] { return view_of_pair(rig, images.left, images.right, options.mount(), how); }),
+         0});
+    if (const auto pose = poses.find(pair.left.filename().string()); pose != poses.end()) {
+      seen.pose = pose->second;
+    } else if (!poses.empty()) {
+      throw Error(options.poses, "has no pose of " + pair.left.filename().string(),
+                  "add it, or leave the image out");
+    }
+    read.views.push_back(std::move(seen));
+    read.names.push_back(pair.left.filename().string());
+    if (progress)
+      progress->update(static_cast<int>(read.views.size()), static_cast<int>(files.size()));
+  }
+  return read;
+}
+
+}  // namespace
+
+CameraMount ViewOptions::mount() const { return {height_m, pitch_deg * std::numbers::pi / 180}; }
+
+void add_view_options(CLI::App& verb, ViewOptions& o) {
+  verb.add_option("--world", o.world, "world file or shipped name, seen by a simulated robot");
+  verb.add_option("--features", o.features,
+                  "file of views, one position a line of JSON (docs/file-formats.md)");
+  verb.add_option("--left", o.left, "left images (quoted pattern)");
+  verb.add_option("--right", o.right,
+                  "right images (quoted pattern); paired with left images by number");
+  verb.add_option("--rig", o.rig,
+                  "rig file or shipped name (simulated robot: nominal unless given)");
+  verb.add_option("--poses", o.poses,
+                  "poses of image pairs, by left image: image,x_m,y_m,heading_deg");
+  verb.add_option("--height-m", o.height_m, "camera height, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb.add_option("--pitch-deg", o.pitch_deg, "camera pitch, degrees; positive is down")
+      ->check(CLI::Range(-89.0, 89.0))
+      ->capture_default_str();
+  verb.add_option("--max-disparity", o.max_disparity_px,
+                  "largest disparity to search in images, px (default: a quarter of the width)")
+      ->check(CLI::Range(1, 100'000));
+  verb.add_option("--source", o.sources,
+                  "setting of an error source of the simulated robot, such as edge_loss=0.2, or "
+                  "none (repeatable)");
+  verb.add_option("--seed", o.seed, "random seed of the simulated robot")->capture_default_str();
+}
+
+void check(const ViewOptions& options, const CLI::App& verb) {
+  const bool images = !options.left.empty() || !options.right.empty();
+  const int kinds = !options.world.empty() + !options.features.empty() + images;
+  if (kinds != 1) {
+    throw Error(verb.get_name(),
+                kinds == 0 ? "no views are given" : "more than one kind of views is given",
+                "give --world, or --features, or --left and --right");
+  }
+  if (images && (options.left.empty() || options.right.empty())) {
+    throw Error(verb.get_name(), "images of one camera only", "give --left and --right");
+  }
+  if (images && options.rig.empty()) {
+    throw Error(verb.get_name(), "images need the rig that took them", "give --rig");
+  }
+  constexpr std::array of_images{"--poses", "--max-disparity"};
+  constexpr std::array of_robot{"--source", "--seed"};
+  constexpr std::array of_camera{"--height-m", "--pitch-deg"};
+  if (!images) refuse_options(verb, of_images, "there are no images");
+  if (options.world.empty()) refuse_options(verb, of_robot, "no robot is simulated");
+  if (!options.features.empty()) {
+    refuse_options(verb, of_camera, "the file of views says how the camera is mounted");
+  }
+}
+
+NamedViews read_recorded(const ViewOptions& options, Session& session) {
+  return options.features.empty() ? views_of_images(options, session)
+                                  : views_of_file(options, session);
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/source_options.h"
+
+#include <cstddef>
+#include <set>
+#include <string_view>
+
+#include "calib/error.h"
+#include "cli/program/session.h"
+#include "sim/sources.h"
+
+namespace vernier::cli {
+namespace {
+
+const SourceParameter& source_named(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  std::string names = "none";
+  for (const SourceParameter& parameter : source_parameters()) {
+    if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
+    names += ", " + std::string(parameter.name) + "=…";
+  }
+  throw Error("--source " + word, "unknown error source", "supported: " + names);
+}
+
+/// Refuses settings without effect: the range of a source that is off.
+void check_effect(const SourceSettings& settings, const std::set<std::string_view>& given) {
+  const auto refuse = [&](std::string_view reach, std::string_view of, double share) {
+    if (share > 0 || given.count(reach) == 0) return;
+    throw Error("--source " + std::string(reach),
+                "has no effect while " + std::string(of) + " is 0",
+                "also give --source " + std::string(of) + "=…, or leave it out");
+  };
+  refuse("stereo_mismatch_px", "stereo_mismatch", settings.stereo_mismatch);
+  refuse("corner_mismatch_px", "corner_mismatch", settings.corner_mismatch);
+}
+
+}  // namespace
+
+SourceSettings sources_of(const std::vector<std::string>& words, SourceSettings settings) {
+  std::set<std::string_view> given;
+  for (const std::string& word : words) {
+    if (word == "none") {
+      if (&word != &words.front()) {
+        throw Error("--source none", "would override the sources given before it", "give it first");
+      }
+      settings = no_sources();
+      continue;
+    }
+    const SourceParameter& chosen = source_named(word);
+    if (!given.insert(chosen.name).second) {
+      throw Error("--source " + word, "this source is given twice", "give one value");
+    }
+    settings.*chosen.value =
+        parse_numbers(word.substr(word.find('=') + 1), 1, "--source " + word)[0];
+  }
+  check(settings, "--source");
+  check_effect(settings, given);
+  return settings;
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,222 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier map and localise as a user calls them.
+
+    localise_test.py PROGRAM [unittest's options]
+"""
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SIZE = 640
+
+
+def room(seed):
+    """Upright lines around the origin: (x, y, low, high)."""
+    chance = random.Random(seed)
+    return [(chance.uniform(1.5, 7), chance.uniform(-3, 3), chance.uniform(0, 0.8),
+             chance.uniform(1.2, 2.2)) for _ in range(40)]
+
+
+def view(lines, x=0.0, y=0.0, heading=0.0, **more):
+    """What is before a robot at a pose in the room."""
+    c, s = math.cos(heading), math.sin(heading)
+    seen = []
+    for at_x, at_y, low, high in lines:
+        dx, dy = at_x - x, at_y - y
+        forward, left = c * dx + s * dy, -s * dx + c * dy
+        if forward > 1 and abs(left) < 0.5 * forward:
+            seen.append({'a_m': [forward, left, low], 'b_m': [forward, left, high],
+                         'kind': 'vertical', 'sigma_m': 0.02})
+    return {'lines': seen, **more}
+
+
+def write(file, objects):
+    file.write_text(''.join(json.dumps(one) + '\n' for one in objects))
+
+
+class Localise(unittest.TestCase):
+    def setUp(self):
+        keeper = tempfile.TemporaryDirectory()
+        self.addCleanup(keeper.cleanup)
+        self.folder = pathlib.Path(keeper.name)
+        verb_calls.write_inputs(self.folder)
+
+    def run_program(self, *words):
+        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=120)
+
+    def done(self, *words, code=0):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, code, run.stderr)
+        return run.stdout
+
+    def refused(self, *words, says):
+        before = sorted(self.folder.rglob('*'))
+        run = self.run_program('-q', *words) if words[0] == '-q' else self.run_program(*words)
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+        self.assertIn(says, run.stderr)
+        self.assertEqual(sorted(self.folder.rglob('*')), before)
+
+    def map_of_rooms(self, *names):
+        write(self.folder / 'rooms.jsonl',
+              [view(room(i), pose=[20.0 * i, 0, 0]) for i in range(6)])
+        self.done('map', 'make', '--features', 'rooms.jsonl', '--rig', 'nominal', '-o', 'rooms.map')
+
+    def test_a_simulated_robot_is_found(self):
+        made = self.done('map', 'make', '--world', 'workshop', '--spacing-m', '2', '-o', 'w.map', '--json')
+        self.assertEqual(json.loads(made)['file'], 'w.map')
+        info = json.loads(self.done('map', 'info', 'w.map', '--json'))
+        self.assertEqual(info['nodes'], json.loads(made)['nodes'])
+        self.assertGreater(info['lines_median'], 50)
+        words = ['localise', 'w.map', '--world', 'workshop', '-n', '12', '--seed', '5', '--json']
+        found = json.loads(self.done(*words))
+        self.assertEqual(len(found['queries']), 12)
+        self.assertEqual(found['success']['queries'], 12)
+        self.assertGreaterEqual(found['success']['best_guesses_right'], 8)
+        again = json.loads(self.done(*words))
+        for result in (found, again):
+            for query in result['queries']:
+                del query['cpu_ms']
+        self.assertEqual(found['queries'], again['queries'])
+        other = json.loads(self.done(*words[:-3], '--seed', '6', '--json'))
+        self.assertNotEqual(found['queries'][0]['truth'], other['queries'][0]['truth'])
+
+    def test_drives_differ_and_a_map_can_be_extended(self):
+        make = ['map', 'make', '--world', 'posts.world.toml', '--spacing-m', '1']
+        self.done(*make, '-o', 'a.map')
+        self.done(*make, '-o', 'again.map')
+        self.done(*make, '--drive', '1', '-o', 'b.map')
+        bytes_of = lambda name: (self.folder / name).read_bytes()
+        self.assertEqual(bytes_of('a.map'), bytes_of('again.map'))
+        self.assertNotEqual(bytes_of('a.map'), bytes_of('b.map'))
+        nodes = json.loads(self.done('map', 'info', 'a.map', '--json'))['nodes']
+        self.done(*make, '--drive', '1', '--extend', 'a.map')
+        self.assertEqual(json.loads(self.done('map', 'info', 'a.map', '--json'))['nodes'], 2 * nodes)
+        head = 16
+        self.assertEqual(bytes_of('a.map')[head:len(bytes_of('again.map'))],
+                         bytes_of('again.map')[head:])
+
+    def test_features_of_a_file(self):
+        self.map_of_rooms()
+        write(self.folder / 'q.jsonl',
+              [view(room(i), 0.1, -0.05, 0.06, pose=[20.0 * i + 0.1, -0.05, 0.06]) for i in range(6)])
+        out = self.done('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal',
+                        '-o', 'answers.csv', '--json')
+        found = json.loads(out)
+        for i, query in enumerate(found['queries']):
+            self.assertEqual(query['status'], 'answered', query)
+            self.assertLess(query['error_m'], 0.1)
+            self.assertEqual(query['node'], i)
+        rows = (self.folder / 'answers.csv').read_text().splitlines()
+        self.assertEqual(rows[0], 'query,status,x_m,y_m,heading_deg,probability,node,error_m')
+        self.assertEqual(len(rows), 7)
+        self.assertAlmostEqual(float(rows[2].split(',')[2]), 20.1, delta=0.1)
+
+    def test_several_looks_of_a_file(self):
+        self.map_of_rooms()
+        turned = view(room(2), 0, 0, 0.3, turn_rad=0.3)
+        write(self.folder / 'q.jsonl', [{'looks': [view(room(2), turn_rad=0), turned]}])
+        found = json.loads(self.done('localise', 'rooms.map', '--features', 'q.jsonl', '--rig',
+                                     'nominal', '--json'))
+        self.assertEqual(found['queries'][0]['looks'], 2)
+        self.assertAlmostEqual(found['queries'][0]['pose'][0], 40, delta=0.1)
+
+    def test_without_evidence_it_abstains(self):
+        self.map_of_rooms()
+        parallel = [{'a_m': [3 + i, 1, 0], 'b_m': [3 + i, -1, 0], 'kind': 'level', 'sigma_m': 0.02}
+                    for i in range(5)]
+        one = room(0)[:1]
+        for lines in ([], view(one)['lines'] or parallel[:1], parallel):
+            write(self.folder / 'q.jsonl', [{'lines': lines}])
+            run = self.run_program('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal')
+            self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+            self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+
+    def test_images(self):
+        call = ['--left', 'big_left.pgm', '--right', 'big_right.pgm', '--rig', 'rig.json']
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        width, height = map(int, (self.folder / 'big_left.pgm').read_text(errors='ignore').split()[1:3])
+        for camera in rig['cameras']:
+            camera['size_px'] = [width, height]
+        (self.folder / 'rig.json').write_text(json.dumps(rig))
+        (self.folder / 'poses.csv').write_text('image,x_m,y_m,heading_deg\nbig_left.pgm,3,-2,90\n')
+        made = json.loads(self.done('map', 'make', *call, '--poses', 'poses.csv', '-o', 'i.map', '--json'))
+        self.assertGreater(made['lines_median'], 20)
+        query = json.loads(self.done('localise', 'i.map', *call, '--json'))['queries'][0]
+        self.assertEqual(query['status'], 'answered')
+        for found, true, within in zip(query['pose'], (3, -2, 90), (0.02, 0.02, 0.5)):
+            self.assertAlmostEqual(found, true, delta=within)
+        self.refused('map', 'make', *call, '-o', 'j.map', says='give --poses')
+
+    def test_a_program_of_ones_own(self):
+        self.map_of_rooms()
+        write(self.folder / 'q.jsonl', [view(room(4))])
+        mine = f"python3 '{ROOT / 'docs/examples/own_localiser.py'}'"
+        words = ['localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal', '--method',
+                 'program', '--json']
+        found = json.loads(self.done(*words, '--command', mine))
+        self.assertEqual(found['queries'][0]['node'], 4)
+        run = self.run_program(*words, '--command', 'false')
+        self.assertEqual(run.returncode, 3)
+        self.assertIn('has ended', run.stderr)
+        self.refused(*words, says='--command')
+        self.refused(*words, '--command', './no-such-program', says='no-such-program')
+
+    def test_bad_input(self):
+        self.map_of_rooms()
+        ask = ['localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal', '-o', 'a.csv']
+        line = {'a_m': [3, 0, 0], 'b_m': [3, 0, 1.5], 'kind': 'vertical', 'sigma_m': 0.02}
+        for wrong, says in (({**line, 'b_m': [3, 0, 0]}, 'same point'),
+                            ({**line, 'a_m': [3000, 0, 0]}, 'give metres'),
+                            ({**line, 'sigma_m': float('nan')}, 'q.jsonl:1')):
+            write(self.folder / 'q.jsonl', [{'lines': [wrong]}])
+            self.refused(*ask, says=says)
+        write(self.folder / 'q.jsonl', [{'lines': [line]}])
+        self.refused(*ask[:4], says='has no cameras')
+        self.refused('localise', 'q.jsonl', *ask[2:], says='q.jsonl: ')
+        self.refused('localise', 'none.map', *ask[2:], says='none.map: ')
+        self.refused(*ask, '--method', 'sift', says='unknown method')
+        self.refused(*ask, '--candidates', '0', says='candidates')
+        self.refused(*ask, '--command', 'true', says='--method program')
+        self.refused(*ask, '--world', 'workshop', says='more than one kind')
+        self.refused('localise', 'rooms.map', says='no views are given')
+        self.refused('localise', 'rooms.map', '--left', 'left.pgm', '--rig', 'rig.json', says='one camera')
+        self.refused('localise', 'rooms.map', '--world', 'workshop', '--rig', 'rig.json', '--source',
+                     'none', says='another rig')
+        self.refused('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal', '-o',
+                     'rooms.map', says='rooms.map')
+        self.refused('map', 'make', '--features', 'rooms.jsonl', says='no map is named')
+        self.refused('map', 'make', '--features', 'q.jsonl', '-o', 'x.map', says='has no pose')
+        self.refused('map', 'make', '--world', 'workshop', '--features', 'q.jsonl', '-o', 'x.map',
+                     says='more than one kind')
+
+    def test_damaged_maps(self):
+        self.map_of_rooms()
+        write(self.folder / 'q.jsonl', [view(room(1))])
+        whole = (self.folder / 'rooms.map').read_bytes()
+        ask = ['localise', 'bad.map', '--features', 'q.jsonl', '--rig', 'nominal']
+        for bytes_of in (b'', whole[:100], whole[:-1], b'X' + whole[1:], whole[:8] + b'\x63' + whole[9:],
+                         whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]):
+            (self.folder / 'bad.map').write_bytes(bytes_of)
+            self.refused(*ask, says='bad.map: ')
+            self.refused('map', 'info', 'bad.map', says='bad.map: ')
+            self.refused('map', 'make', '--features', 'rooms.jsonl', '--rig', 'nominal', '--extend',
+                         'bad.map', says='bad.map: ')
+
+
+if __name__ == '__main__':
+    sys.argv.pop(1)
+    unittest.main()

@@ -102,7 +102,7 @@ Rig rig_of(std::vector<PlacedCamera> cameras) {
   for (const PlacedCamera& c : cameras) {
     if (!internal::is_camera_name(c.camera.name)) {
       throw Error("camera " + internal::in_quotes(c.camera.name),
-                  "its name is longer than 100 bytes or not on one line", "rename it");
+                  "its name is longer than 100 bytes, not on one line or not UTF-8", "rename it");
     }
     distinct = distinct && !c.camera.name.empty() && names.insert(c.camera.name).second;
   }

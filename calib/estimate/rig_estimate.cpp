@@ -87,7 +87,8 @@ void rename_cameras(RigEstimate& estimate, const std::vector<std::string>& names
   for (const std::string& name : names) {
     if (is_camera_name(name)) continue;
     throw Error("names of cameras",
-                in_quotes(name) + " is longer than 100 bytes or not on one line", "shorten it");
+                in_quotes(name) + " is longer than 100 bytes, not on one line or not UTF-8",
+                "shorten it");
   }
   const std::vector<std::string> before = parameter_names(rig);
   std::vector<std::string> cameras_before;

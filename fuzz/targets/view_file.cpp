@@ -31,9 +31,9 @@ const std::shared_ptr<const Rig>& fuzz_rig() {
 void require_same_views(const std::vector<RecordedLooks>& a, const std::vector<RecordedLooks>& b) {
   require(a.size() == b.size(), "the positions are kept");
   for (std::size_t i = 0; i < a.size(); ++i) {
-    require(a[i].pose.has_value() == b[i].pose.has_value() &&
-                a[i].looks.size() == b[i].looks.size(),
-            "poses and looks are kept");
+    require(
+        a[i].pose.has_value() == b[i].pose.has_value() && a[i].looks.size() == b[i].looks.size(),
+        "poses and looks are kept");
     for (std::size_t k = 0; k < a[i].looks.size(); ++k) {
       const PlaceView &p = a[i].looks[k].view, &q = b[i].looks[k].view;
       require(p.lines.size() == q.lines.size() && p.image_lines.size() == q.image_lines.size(),
@@ -102,8 +102,7 @@ std::vector<std::string> localiser_answer_seeds() {
           R"({"status":"no_match","node":null})"};
 }
 
-const Registered registered_view_file{
-    {"view_file", 6000, "views", run_view_file, view_file_seeds}};
+const Registered registered_view_file{{"view_file", 6000, "views", run_view_file, view_file_seeds}};
 const Registered registered_localiser_answer{
     {"localiser_answer", 1000, "views", run_localiser_answer, localiser_answer_seeds}};
 

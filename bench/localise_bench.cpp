@@ -11,7 +11,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/statistics/random.h"
 #include "datasets/shipped.h"
-#include "localise/histograms/bhattacharyya.h"
+#include "localise/histograms/best_matches.h"
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"

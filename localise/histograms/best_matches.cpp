@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/histograms/bhattacharyya.h"
+#include "localise/histograms/best_matches.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "localise/histograms/bhattacharyya.cpp"
+#define HWY_TARGET_INCLUDE "localise/histograms/best_matches.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once a target
 
 #include <hwy/highway.h>

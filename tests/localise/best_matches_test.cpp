@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "localise/histograms/bhattacharyya.h"
+#include "localise/histograms/best_matches.h"
 
 #include <gtest/gtest.h>
 

@@ -174,6 +174,7 @@ Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& opti
   }
   const std::vector<int> chosen = longest(lengths, options.max_lines);
   std::vector<PlaneLine> pointing;
+  pointing.reserve(chosen.size());
   for (const int i : chosen) {
     pointing.emplace_back(lines[i].a_px, lines[i].b_px, LineError{options.endpoint_sigma_px});
   }
@@ -221,6 +222,7 @@ Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& optio
   check(options);
   const std::vector<int> chosen = longest_in_view(lines, options.max_lines);
   std::vector<SpaceLine> pointing;
+  pointing.reserve(chosen.size());
   for (const int i : chosen) pointing.push_back(line_in_space(lines[i]));
   const PghAxes axes = axes_of(options, options.height_bands);
   Pgh pgh = build(chosen, chosen, axes, options.type, [&](auto r, auto o) {

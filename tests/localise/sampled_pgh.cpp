@@ -33,6 +33,7 @@ struct Sampled {
 const std::vector<double>& quantiles() {
   static const std::vector<double> values = [] {
     std::vector<double> z;
+    z.reserve(draws);
     for (int i = 0; i < draws; ++i) z.push_back(normal_quantile((i + 0.5) / draws));
     return z;
   }();

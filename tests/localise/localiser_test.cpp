@@ -160,7 +160,7 @@ TEST(MakeLocaliser, UnknownMethodNamesTheKnown) {
   } catch (const Error& error) {
     const std::string said = error.what();
     EXPECT_EQ(said.find("localiser \"sift\": unknown method; use "), 0u) << said;
-    EXPECT_NE(said.find("lines, pgh, pgh_baseline or pgh_baseline_vectorised"), std::string::npos)
+    EXPECT_NE(said.find("lines, pgh, pgh_baseline, pgh_baseline_vectorised"), std::string::npos)
         << said;
   }
 }

@@ -6,12 +6,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <ctime>
 
 #include "calib/base/instruction_set.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/random.h"
 #include "datasets/shipped.h"
-#include "localise/histograms/bhattacharyya.h"
+#include "localise/histograms/best_matches.h"
 #include "localise/localiser.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
@@ -111,8 +112,34 @@ void whole_query(benchmark::State& state, const char* method) {
   }
 }
 
+/// CPU time of a process.
+double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The same queries in turn with the baseline in plain loops and vectorised.
+void baseline_vectorised_against_plain(benchmark::State& state) {
+  const auto plain = make_localiser("pgh_baseline", scene().map);
+  const auto vectorised = make_localiser("pgh_baseline_vectorised", scene().map);
+  double plain_ms = 0, vectorised_ms = 0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const PlaceView& query = scene().queries[i++ % 10];
+    const double start = cpu_ms();
+    benchmark::DoNotOptimize(plain->localise(query));
+    const double middle = cpu_ms();
+    benchmark::DoNotOptimize(vectorised->localise(query));
+    plain_ms += middle - start;
+    vectorised_ms += cpu_ms() - middle;
+  }
+  state.counters["plain_ms"] = plain_ms / static_cast<double>(i);
+  state.counters["vectorised_ms"] = vectorised_ms / static_cast<double>(i);
+  state.counters["times_faster"] = plain_ms / vectorised_ms;
+}
+
 BENCHMARK(histograms_of_a_view)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(whole_query, pgh, "pgh")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(whole_query, pgh_baseline, "pgh_baseline")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(whole_query, pgh_baseline_vectorised, "pgh_baseline_vectorised")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(baseline_vectorised_against_plain)->Unit(benchmark::kMillisecond)->Iterations(20);
 
 }  // namespace

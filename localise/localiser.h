@@ -89,6 +89,8 @@ struct LocaliserOptions {
 ///    the best ones verifies them and gives the metric pose;
 ///  - `pgh_baseline`: image-line histograms compared in a plain loop, and the memo's filter that
 ///    eliminates the lowest node until one is left. For comparison only;
+///  - `pgh_baseline_vectorised`: the same method on stored roots with SIMD dot products. For
+///    comparison of times;
 ///  - `program`: a program of one's own, which reads the map and the queries as lines of JSON and
 ///    answers in lines of JSON (docs/own-localiser.md). A query that it does not answer, not in
 ///    time or with nonsense has the status `failed`, and the program is started again, three times

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "calib/error.h"
-#include "localise/histograms/smeared_ramp.h"
+#include "localise/histograms/line_pairs.h"
+#include "localise/histograms/pair_entry.h"
 #include "localise/place.h"
 #include "stereo/segment.h"
 
@@ -21,100 +24,38 @@ using namespace stereo;
 
 namespace {
 
-constexpr double right_angle = 0.5 * std::numbers::pi;
-
-/// Contribution of line `other` to the histogram of a reference line: an angle, and up to four
-/// intervals of distance, each with its fraction of the line.
-struct Entry {
-  double angle_rad = 0;
-  int band = 0;
-  double weight = 0;
-  int stretches = 0;
-  double low[4] = {}, high[4] = {}, share[4] = {};
-
-  void add(double from, double to, double part) {
-    low[stretches] = std::min(from, to);
-    high[stretches] = std::max(from, to);
-    share[stretches++] = part;
-  }
-};
-
 void check(const PghOptions& o) {
-  if (o.angle_bins < 1 || o.distance_bins < 1 || o.height_bands < 1 || !(o.max_distance > 0) ||
-      !(o.band_height_m > 0) || !(o.angle_sigma_rad > 0) || !(o.distance_sigma > 0) ||
-      o.max_lines < 2) {
-    throw Error("histogram options", "bins, bands, distances and sigmas must be above 0",
+  constexpr double most_bins = 1e7;
+  const double bins = 8.0 * o.angle_bins * o.distance_bins * o.height_bands;  // directed
+  const bool positive = o.angle_bins > 0 && o.distance_bins > 0 && o.height_bands > 0 &&
+                        o.max_distance > 0 && o.band_height_m > 0 && o.angle_sigma_rad > 0 &&
+                        o.distance_sigma > 0 && o.max_weight_m > 0;
+  if (!positive || !(o.endpoint_sigma_px >= 0) || o.max_lines < 2) {
+    throw Error("histogram options",
+                "bins, bands, distances, sigmas and weight must be above 0, lines above 1",
                 "use positive values");
   }
-}
-
-/// Distributes an angle in [0, pi/2] with Gaussian error over the bins, reflected at both ends (-5
-/// degrees between undirected lines is 5 degrees).
-void angle_shares(double angle, const PghOptions& o, std::vector<double>& shares) {
-  shares.resize(o.angle_bins);
-  const double width = right_angle / o.angle_bins;
-  const auto below = [&](double x) { return smeared_ramp_cdf(x, angle, angle, o.angle_sigma_rad); };
-  for (int i = 0; i < o.angle_bins; ++i) {
-    const double low = i * width, high = low + width;
-    shares[i] = below(high) - below(low) + below(-low) - below(-high) +
-                below(2 * right_angle - low) - below(2 * right_angle - high);
+  if (!std::isfinite(o.max_distance)) {
+    throw Error("histogram options", "the largest distance is not finite", "use a finite one");
+  }
+  if (bins > most_bins) {
+    throw Error("histogram options", "a histogram has more than 10 million bins",
+                "use fewer bins or bands");
   }
 }
 
-void add_entry(const Entry& entry,
-               const PghOptions& o,
-               std::vector<double>& shares,
-               std::span<float> histogram) {
-  angle_shares(entry.angle_rad, o, shares);
-  std::vector<float>& ramp = [&]() -> std::vector<float>& {
-    thread_local std::vector<float> bins;
-    bins.assign(o.distance_bins, 0.0f);
-    return bins;
-  }();
-  for (int s = 0; s < entry.stretches; ++s) {
-    if (entry.low[s] > o.max_distance + 4 * o.distance_sigma) continue;
-    add_smeared_ramp(ramp, o.max_distance, entry.low[s], entry.high[s], o.distance_sigma,
-                     entry.weight * entry.share[s]);
+PghAxes axes_of(const PghOptions& o, int bands) {
+  constexpr double right_angle = 0.5 * std::numbers::pi;
+  switch (o.type) {
+    case PghType::mirror:
+      return {bands, o.angle_bins, o.distance_bins, right_angle, 0, o.max_distance};
+    case PghType::rotation:
+      return {bands, 2 * o.angle_bins, o.distance_bins, 2 * right_angle, 0, o.max_distance};
+    case PghType::directed:
+      return {bands,           4 * o.angle_bins, 2 * o.distance_bins,
+              4 * right_angle, -o.max_distance,  o.max_distance};
   }
-  for (int a = 0; a < o.angle_bins; ++a) {
-    if (shares[a] < 1e-4) continue;
-    float* row = histogram.data() +
-                 static_cast<std::ptrdiff_t>(entry.band * o.angle_bins + a) * o.distance_bins;
-    const auto share = static_cast<float>(shares[a]);
-    for (int d = 0; d < o.distance_bins; ++d) row[d] += share * ramp[d];
-  }
-}
-
-/// Builds every row from `entry_of(reference, other)`, normalises it, and drops empty ones.
-template <class EntryOf, class WeightOf>
-Pgh build(const std::vector<int>& chosen,
-          int bands,
-          const PghOptions& o,
-          EntryOf entry_of,
-          WeightOf weight_of) {
-  const int bins = bands * o.angle_bins * o.distance_bins;
-  Pgh pgh;
-  pgh.rows = HistogramRows::Zero(static_cast<Eigen::Index>(chosen.size()), bins);
-  pgh.weights.resize(static_cast<Eigen::Index>(chosen.size()));
-  std::vector<double> shares;
-  Eigen::Index kept = 0;
-  for (const int reference : chosen) {
-    auto row = pgh.rows.row(kept);
-    row.setZero();
-    for (const int other : chosen) {
-      if (other == reference) continue;
-      const Entry entry = entry_of(reference, other);
-      add_entry(entry, o, shares, {row.data(), static_cast<std::size_t>(bins)});
-    }
-    const float total = row.sum();
-    if (!(total > 1e-6f)) continue;
-    row = (row / total).cwiseMax(0.0f).cwiseSqrt();
-    row.normalize();
-    pgh.weights[kept++] = static_cast<float>(weight_of(reference));
-  }
-  pgh.rows.conservativeResize(kept, bins);
-  pgh.weights.conservativeResize(kept);
-  return pgh;
+  throw Error("histogram options", "the type is unknown", "use mirror, rotation or directed");
 }
 
 /// Whether a line of this length has a direction.
@@ -135,33 +76,80 @@ std::vector<int> longest(const std::vector<double>& lengths, int most) {
   return order;
 }
 
-/// Distances of a segment's points from the line (p, unit u): a hyperbola that falls to the point
-/// nearest the line and rises from there. Each branch is approximated by two intervals with
-/// linearly growing distance.
-void add_stretches(const Eigen::Vector3d& p,
-                   const Eigen::Vector3d& u,
-                   const PlaceLine& other,
-                   Entry& entry) {
-  const auto across = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    const Eigen::Vector3d y = x - p;
-    return y - u * u.dot(y);
-  };
-  const Eigen::Vector3d a = across(other.a_m), d = across(other.b_m) - a;
-  const double dd = d.squaredNorm();
-  if (dd < 1e-12) {
-    entry.add(a.norm(), a.norm(), 1);
-    return;
+/// The lines in the robot frame that appear longest to the robot.
+std::vector<int> longest_in_view(std::span<const PlaceLine> lines, int most) {
+  std::vector<double> subtended;  // angular size: length over range
+  for (const PlaceLine& line : lines) {
+    const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
+    const double range = std::max(middle.head<2>().norm(), 0.1);
+    subtended.push_back(has_direction(line.length_m()) ? line.length_m() / range : 0);
   }
-  const double nearest = std::clamp(-a.dot(d) / dd, 0.0, 1.0);
-  const auto branch = [&](double from, double to) {
-    if (!(to > from)) return;
-    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-    const double at_middle = (a + middle * d).norm();
-    entry.add((a + from * d).norm(), at_middle, half);
-    entry.add(at_middle, (a + to * d).norm(), half);
-  };
-  branch(0, nearest);
-  branch(nearest, 1);
+  return longest(subtended, most);
+}
+
+/// One row for each of `references`: of every line in `others` except itself the entry that
+/// `entry_of(reference, other)` makes. Indices count along both lists. Empty rows are dropped.
+template <class EntryOf>
+Pgh build(const std::vector<int>& references,
+          const std::vector<int>& others,
+          const PghAxes& axes,
+          PghType type,
+          EntryOf entry_of) {
+  const auto bins = static_cast<Eigen::Index>(axes.bins());
+  Pgh pgh;
+  pgh.axes = axes;
+  pgh.rows = HistogramRows::Zero(static_cast<Eigen::Index>(references.size()), bins);
+  EntryWriter writer(type, axes);
+  Eigen::Index kept = 0;
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    auto row = pgh.rows.row(kept);
+    row.setZero();
+    for (std::size_t o = 0; o < others.size(); ++o) {
+      if (others[o] == references[r]) continue;
+      writer.add(entry_of(r, o), {row.data(), static_cast<std::size_t>(bins)});
+    }
+    const float total = row.sum();
+    if (!(total > 1e-6f)) continue;
+    row = (row / total).cwiseMax(0.0f).cwiseSqrt();
+    row.normalize();
+    pgh.lines.push_back(references[r]);
+    ++kept;
+  }
+  pgh.rows.conservativeResize(kept, bins);
+  return pgh;
+}
+
+template <class WeightOf>
+void set_weights(Pgh& pgh, WeightOf weight_of) {
+  pgh.weights.resize(static_cast<Eigen::Index>(pgh.lines.size()));
+  for (std::size_t i = 0; i < pgh.lines.size(); ++i) {
+    pgh.weights[static_cast<Eigen::Index>(i)] = static_cast<float>(weight_of(pgh.lines[i]));
+  }
+}
+
+LineError error_of(const PlaceLine& line) {
+  return {line.sigma_m, line.kind == LineKind::vertical};
+}
+
+/// From above, with the robot on its left.
+PlaneLine floor_projection(const PlaceLine& line) {
+  const Eigen::Vector2d a = line.a_m.head<2>(), b = line.b_m.head<2>();
+  const Eigen::Vector2d d = b - a;
+  const bool robot_on_left = d.y() * a.x() - d.x() * a.y() >= 0;
+  return robot_on_left ? PlaneLine(a, b, error_of(line)) : PlaneLine(b, a, error_of(line));
+}
+
+/// Pointing upward, or with the robot on its left.
+SpaceLine line_in_space(const PlaceLine& line) {
+  const Eigen::Vector3d &a = line.a_m, &b = line.b_m, d = b - a;
+  const bool steep = line.kind == LineKind::vertical || std::abs(d.z()) > d.head<2>().norm();
+  const bool keep = steep ? d.z() >= 0 : d.y() * a.x() - d.x() * a.y() >= 0;
+  return keep ? SpaceLine(a, b, error_of(line)) : SpaceLine(b, a, error_of(line));
+}
+
+int band_of(double height_m, const PghOptions& o) {
+  const double band = std::floor(height_m / o.band_height_m);
+  return static_cast<int>(std::clamp(band, 0.0, o.height_bands - 1.0));
 }
 
 }  // namespace
@@ -176,31 +164,7 @@ PghOptions image_pgh_options() {
           .max_weight_m = 1e9};
 }
 
-Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& options) {
-  check(options);
-  std::vector<double> subtended;  // angular size: length over range
-  std::vector<Eigen::Vector3d> directions;
-  for (const PlaceLine& line : lines) {
-    const Eigen::Vector3d middle = 0.5 * (line.a_m + line.b_m);
-    const double range = std::max(middle.head<2>().norm(), 0.1);
-    subtended.push_back(has_direction(line.length_m()) ? line.length_m() / range : 0);
-    directions.push_back((line.b_m - line.a_m).normalized());
-  }
-  const auto weight = [&](int i) { return std::min(options.max_weight_m, lines[i].length_m()); };
-  const auto entry_of = [&](int reference, int other) {
-    Entry entry;
-    const double cosine = std::abs(directions[reference].dot(directions[other]));
-    entry.angle_rad = std::acos(std::min(1.0, cosine));
-    entry.weight = weight(other);
-    const double height = 0.5 * (lines[other].a_m.z() + lines[other].b_m.z());
-    entry.band = std::clamp(static_cast<int>(std::floor(height / options.band_height_m)), 0,
-                            options.height_bands - 1);
-    add_stretches(lines[reference].a_m, directions[reference], lines[other], entry);
-    return entry;
-  };
-  return build(longest(subtended, options.max_lines), options.height_bands, options, entry_of,
-               weight);
-}
+HistogramRows plain_histograms(const Pgh& pgh) { return pgh.rows.cwiseAbs2(); }
 
 Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& options) {
   check(options);
@@ -208,29 +172,67 @@ Pgh image_histograms(std::span<const ImageSegment> lines, const PghOptions& opti
   for (const ImageSegment& line : lines) {
     lengths.push_back(has_direction(line.length_px()) ? line.length_px() : 0);
   }
-  const auto entry_of = [&](int reference, int other) {
-    const ImageSegment &r = lines[reference], &o = lines[other];
-    const Eigen::Vector2d u = (r.b_px - r.a_px) / lengths[reference];
-    const Eigen::Vector2d v = (o.b_px - o.a_px) / lengths[other];
-    Entry entry;
-    entry.angle_rad = std::acos(std::min(1.0, std::abs(u.dot(v))));
-    entry.weight = lengths[other];
-    const auto across = [&](const Eigen::Vector2d& x) {
-      const Eigen::Vector2d y = x - r.a_px;
-      return u.x() * y.y() - u.y() * y.x();
-    };
-    const double a = across(o.a_px), b = across(o.b_px);
-    if (a * b < 0) {  // crosses the reference line
-      const double share = std::abs(a) / (std::abs(a) + std::abs(b));
-      entry.add(0, std::abs(a), share);
-      entry.add(0, std::abs(b), 1 - share);
-    } else {
-      entry.add(std::abs(a), std::abs(b), 1);
-    }
+  const std::vector<int> chosen = longest(lengths, options.max_lines);
+  std::vector<PlaneLine> pointing;
+  pointing.reserve(chosen.size());
+  for (const int i : chosen) {
+    pointing.emplace_back(lines[i].a_px, lines[i].b_px, LineError{options.endpoint_sigma_px});
+  }
+  Pgh pgh = build(chosen, chosen, axes_of(options, 1), options.type, [&](auto r, auto o) {
+    PairEntry entry = pair_in_plane(pointing[r], pointing[o], options);
+    entry.weight = pointing[o].length;
     return entry;
+  });
+  set_weights(pgh, [&](int i) { return lengths[i]; });
+  return pgh;
+}
+
+Pgh ground_histograms(std::span<const PlaceLine> lines, const PghOptions& options) {
+  check(options);
+  const auto floor_length = [&](int i) { return (lines[i].b_m - lines[i].a_m).head<2>().norm(); };
+  const auto is_point = [&](int i) {
+    return lines[i].kind == LineKind::vertical || !has_direction(floor_length(i));
   };
-  return build(longest(lengths, options.max_lines), 1, options, entry_of,
-               [&](int i) { return lengths[i]; });
+  const std::vector<int> chosen = longest_in_view(lines, options.max_lines);
+  std::vector<int> projected, others;  // lines first, then points
+  std::vector<PlaneLine> pointing;
+  for (const int i : chosen) {
+    if (is_point(i)) continue;
+    projected.push_back(i);
+    pointing.push_back(floor_projection(lines[i]));
+  }
+  others = projected;
+  std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(others), is_point);
+
+  Pgh pgh = build(projected, others, axes_of(options, 2), options.type, [&](auto r, auto o) {
+    const PlaceLine& other = lines[others[o]];
+    const bool point = o >= projected.size();
+    PairEntry entry = point ? point_in_plane(pointing[r], 0.5 * (other.a_m + other.b_m).head<2>(),
+                                             other.sigma_m, options)
+                            : pair_in_plane(pointing[r], pointing[o], options);
+    entry.band = point ? 1 : 0;
+    entry.weight = std::min(options.max_weight_m, point ? other.length_m() : pointing[o].length);
+    return entry;
+  });
+  set_weights(pgh, [&](int i) { return std::min(options.max_weight_m, floor_length(i)); });
+  return pgh;
+}
+
+Pgh spatial_histograms(std::span<const PlaceLine> lines, const PghOptions& options) {
+  check(options);
+  const std::vector<int> chosen = longest_in_view(lines, options.max_lines);
+  std::vector<SpaceLine> pointing;
+  pointing.reserve(chosen.size());
+  for (const int i : chosen) pointing.push_back(line_in_space(lines[i]));
+  const PghAxes axes = axes_of(options, options.height_bands);
+  Pgh pgh = build(chosen, chosen, axes, options.type, [&](auto r, auto o) {
+    PairEntry entry = pair_in_space(pointing[r], pointing[o], options);
+    entry.weight = std::min(options.max_weight_m, pointing[o].length);
+    entry.band = band_of(0.5 * (pointing[o].a.z() + pointing[o].b.z()), options);
+    return entry;
+  });
+  set_weights(pgh, [&](int i) { return std::min(options.max_weight_m, lines[i].length_m()); });
+  return pgh;
 }
 
 }  // namespace vernier::localise

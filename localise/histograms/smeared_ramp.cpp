@@ -23,11 +23,11 @@ class NormalTable {
     }
   }
   double cdf(double z) const {
-    if (z <= -reach) return 0;
+    if (!(z > -reach)) return 0;
     return z >= reach ? 1 : interpolate(z, cdf_, density_);
   }
   double integral(double z) const {
-    if (z <= -reach) return 0;
+    if (!(z > -reach)) return 0;
     return z >= reach ? z : interpolate(z, integral_, cdf_);
   }
 
@@ -53,32 +53,65 @@ const NormalTable& normal_table() {
   return table;
 }
 
+/// 6e-5 of the mass is farther away, in sigmas.
+constexpr double ramp_reach = 4;
+
+/// Adds what is between the edges of the bins that [from, to] touches, where `below(x)` is the part
+/// below the edge at x. The caller's from and to may be huge, but are numbers.
+template <class Below>
+void add_between_edges(std::span<float> bins,
+                       double first_edge,
+                       double width,
+                       double from,
+                       double to,
+                       double mass,
+                       Below below) {
+  const auto n = static_cast<double>(bins.size());
+  const int first = static_cast<int>(std::clamp((from - first_edge) / width, 0.0, n));
+  const int last = static_cast<int>(std::clamp((to - first_edge) / width + 1, 0.0, n));
+  if (first >= last) return;
+  double before = below(first_edge + first * width);
+  for (int i = first; i < last; ++i) {
+    const double after = below(first_edge + (i + 1) * width);
+    bins[i] += static_cast<float>(mass * (after - before));
+    before = after;
+  }
+}
+
+/// Whether sums and products of its numbers stay finite; not a number is refused.
+bool is_moderate(const SmearedRamp& ramp) {
+  constexpr double most = 1e100;
+  return std::abs(ramp.low) < most && std::abs(ramp.high) < most && ramp.sigma < most;
+}
+
 }  // namespace
 
-double smeared_ramp_cdf(double x, double low, double high, double sigma) {
+double mass_below(double x, const SmearedRamp& ramp) {
   const NormalTable& normal = normal_table();
+  const auto& [low, high, sigma] = ramp;
   const double width = high - low;
   if (width < 1e-3 * sigma) return normal.cdf((x - 0.5 * (low + high)) / sigma);
   return sigma / width * (normal.integral((x - low) / sigma) - normal.integral((x - high) / sigma));
 }
 
-void add_smeared_ramp(
-    std::span<float> bins, double max, double low, double high, double sigma, double mass) {
-  const int n = static_cast<int>(bins.size());
-  const double width = max / n;
-  constexpr double reach = 4;  // in sigmas: 6e-5 of the mass is beyond
-  const int first = std::max(0, static_cast<int>((low - reach * sigma) / width));
-  const int last = std::min(n - 1, static_cast<int>((high + reach * sigma) / width));
-  const auto below = [&](double x) {
-    const double direct = smeared_ramp_cdf(x, low, high, sigma);
-    return low < reach * sigma ? direct - smeared_ramp_cdf(-x, low, high, sigma) : direct;
-  };
-  double before = below(first * width);
-  for (int i = first; i <= last; ++i) {
-    const double after = below((i + 1) * width);
-    bins[i] += static_cast<float>(mass * (after - before));
-    before = after;
-  }
+void add_magnitudes(std::span<float> bins, double max, const SmearedRamp& ramp, double mass) {
+  if (!is_moderate(ramp)) return;
+  const double reach = ramp_reach * ramp.sigma;
+  const double nearest = std::max({ramp.low, -ramp.high, 0.0});
+  const double farthest = std::max(ramp.high, -ramp.low);
+  const bool reflected = ramp.low < reach;
+  add_between_edges(bins, 0, max / static_cast<double>(bins.size()), nearest - reach,
+                    farthest + reach, mass, [&](double x) {
+                      const double direct = mass_below(x, ramp);
+                      return reflected ? direct - mass_below(-x, ramp) : direct;
+                    });
+}
+
+void add_signed(std::span<float> bins, double max, const SmearedRamp& ramp, double mass) {
+  if (!is_moderate(ramp)) return;
+  const double reach = ramp_reach * ramp.sigma;
+  add_between_edges(bins, -max, 2 * max / static_cast<double>(bins.size()), ramp.low - reach,
+                    ramp.high + reach, mass, [&](double x) { return mass_below(x, ramp); });
 }
 
 }  // namespace vernier::localise::internal

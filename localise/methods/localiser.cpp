@@ -97,6 +97,7 @@ class Registry {
       : factories_{{"lines", factory<LineLocaliser>()},
                    {"pgh", factory<PghLocaliser>()},
                    {"pgh_baseline", factory<BaselineLocaliser>()},
+                   {"pgh_baseline_vectorised", factory<VectorisedBaselineLocaliser>()},
                    {"program", factory<ProgramLocaliser>()}} {}
 
   mutable std::mutex mutex_;

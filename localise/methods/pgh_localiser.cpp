@@ -34,7 +34,10 @@ LocalisationAnswer PghLocaliser::localise(const PlaceView& query) const {
     candidates.push_back(
         {near.node, near.score * aligned.score, compose(node.pose, aligned.query_in_node)});
   }
-  if (candidates.empty()) return answer;
+  if (candidates.empty()) {
+    answer.status = LocalisationStatus::no_match;
+    return answer;
+  }
   const auto best =
       std::max_element(candidates.begin(), candidates.end(),
                        [](const Candidate& a, const Candidate& b) { return a.score < b.score; });

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "localise/histograms/bhattacharyya.h"
+#include "localise/histograms/best_matches.h"
 #include "localise/pgh.h"
 #include "localise/place.h"
 #include "localise/ranking/node_ranker.h"

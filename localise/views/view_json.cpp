@@ -30,7 +30,7 @@ using vernier::internal::rig_json::parse_cameras;
 
 namespace {
 
-constexpr std::size_t most_looks = 64, most_lines = 10'000;
+constexpr std::size_t most_looks = 64, most_view_lines = 10'000;
 constexpr double shortest_m = 1e-6, shortest_px = 1e-6;
 
 std::string_view kind_name(LineKind kind) {
@@ -171,7 +171,7 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
     if (node.has("lines") || node.has("image_lines_px")) {
       throw Error(node.place(), "has segments and lines", "give one of them");
     }
-    entries(node, "segments", most_lines);
+    entries(node, "segments", most_view_lines);
     const PlaceView lines = reconstructed(node.at("segments"), view);
     view.lines = lines.lines;
     view.image_lines = lines.image_lines;
@@ -181,9 +181,9 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
     throw Error(node.place(), "has neither \"lines\" nor \"segments\"",
                 "give \"lines\": [] for a view without any");
   }
-  const std::size_t lines = entries(node, "lines", most_lines);
+  const std::size_t lines = entries(node, "lines", most_view_lines);
   for (std::size_t i = 0; i < lines; ++i) view.lines.push_back(parse_line(node.at("lines").at(i)));
-  const std::size_t image_lines = entries(node, "image_lines_px", most_lines);
+  const std::size_t image_lines = entries(node, "image_lines_px", most_view_lines);
   for (std::size_t i = 0; i < image_lines; ++i) {
     view.image_lines.push_back(parse_segment(node.at("image_lines_px").at(i),
                                              view.rig ? view.rig->cameras.data() : nullptr));

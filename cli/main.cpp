@@ -47,6 +47,7 @@ void perform(CLI::App& app, vernier::cli::Session& session, int argc, char** arg
     vernier::cli::print_result(text.str());
     return;
   }
+  vernier::cli::refuse_empty_values(app);
   if (!session.action) throw CLI::ParseError("no verb given", CLI::ExitCodes::RequiredError);
   session.action();
 }

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "calib/base/program_run.h"
+#include "calib/base/program_stream.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/unfinished_work.h"
 #include "calib/error.h"
@@ -26,44 +27,6 @@ namespace vernier::internal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void close_descriptor(int& descriptor) {
-  if (descriptor >= 0) ::close(descriptor);
-  descriptor = -1;
-}
-
-/// Both ends of a connection, closed unless released. A socket, so that writing to a program that
-/// has ended is an error and no signal.
-struct Connection {
-  std::array<int, 2> ends{-1, -1};
-
-  Connection() {
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-      ends = {-1, -1};
-      fail();
-    }
-    // Above the numbers of the standard streams, which may be closed here.
-    for (int& end : ends) {
-      const int high = ::fcntl(end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-      close_descriptor(end);
-      end = high;
-      if (end < 0) fail();
-    }
-  }
-  [[noreturn]] void fail() {
-    const int why = errno;
-    for (int& end : ends) close_descriptor(end);
-    throw Error("program", std::string("no connection to it can be made: ") + std::strerror(why),
-                "close other programs or raise the limit of open files");
-  }
-  ~Connection() {
-    for (int& end : ends) close_descriptor(end);
-  }
-  int release() {
-    ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-    return std::exchange(ends[0], -1);
-  }
-};
 
 int wait_ms(Clock::time_point end) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
@@ -74,12 +37,11 @@ int wait_ms(Clock::time_point end) {
 }  // namespace
 
 ProgramConversation::ProgramConversation(const std::vector<std::string>& words) {
-  Connection input, output, error_output;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, input.ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output.ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, error_output.ends[1], STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, input_.theirs(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output_.theirs(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, error_output_.theirs(), STDERR_FILENO);
   const int failed = spawn_program(words, actions, true, child_);
   posix_spawn_file_actions_destroy(&actions);
   if (failed) {
@@ -88,21 +50,14 @@ ProgramConversation::ProgramConversation(const std::vector<std::string>& words) 
                 std::string("cannot be started: ") + std::strerror(failed),
                 "check its name, PATH and permissions");
   }
-  input_ = input.release();
-  output_ = output.release();
-  error_output_ = error_output.release();
+  for (ProgramStream* stream : {&input_, &output_, &error_output_}) stream->close_theirs();
 }
 
-ProgramConversation::~ProgramConversation() { end(); }
-
-void ProgramConversation::end() noexcept {
-  if (child_ > 0) {
-    ::kill(-child_, SIGKILL);
-    while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) continue;
-    forget_child(child_);
-    child_ = 0;
-  }
-  for (int* descriptor : {&input_, &output_, &error_output_}) close_descriptor(*descriptor);
+ProgramConversation::~ProgramConversation() {
+  if (child_ <= 0) return;
+  ::kill(-child_, SIGKILL);
+  while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) continue;
+  forget_child(child_);
 }
 
 bool ProgramConversation::take_line(std::string& answer) {
@@ -118,18 +73,14 @@ bool ProgramConversation::take_line(std::string& answer) {
   return true;
 }
 
-/// Takes what there is; false at the end of the stream. Keeps the last `most_kept` bytes.
-bool ProgramConversation::read_from(int& descriptor, std::string& to, std::size_t most_kept) {
+/// Takes what there is; closes the stream at its end. Keeps the last `most_kept` bytes.
+void ProgramConversation::read_from(ProgramStream& stream, std::string& to, std::size_t most_kept) {
   std::array<char, 65536> buffer;
-  const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
-  if (got < 0) return errno == EAGAIN || errno == EINTR;
-  if (got == 0) {
-    close_descriptor(descriptor);
-    return false;
-  }
+  const ssize_t got = ::read(stream.ours(), buffer.data(), buffer.size());
+  if (got == 0) stream.close_ours();
+  if (got <= 0) return;
   to.append(buffer.data(), static_cast<std::size_t>(got));
   if (to.size() > most_kept) to.erase(0, to.size() - most_kept);
-  return true;
 }
 
 ProgramConversation::Outcome ProgramConversation::ask(std::string_view lines,
@@ -143,10 +94,10 @@ ProgramConversation::Outcome ProgramConversation::ask(std::string_view lines,
   while (true) {
     if (lines.empty() && take_line(answer)) return Outcome::line;
     if (pending_.size() > longest_line) return Outcome::too_long;
-    if (output_ < 0 || (input_ < 0 && !lines.empty())) return Outcome::ended;
-    std::array<pollfd, 3> ready{{{output_, POLLIN, 0},
-                                 {error_output_, POLLIN, 0},
-                                 {lines.empty() ? -1 : input_, POLLOUT, 0}}};
+    if (output_.ours() < 0 || (input_.ours() < 0 && !lines.empty())) return Outcome::ended;
+    std::array<pollfd, 3> ready{{{output_.ours(), POLLIN, 0},
+                                 {error_output_.ours(), POLLIN, 0},
+                                 {lines.empty() ? -1 : input_.ours(), POLLOUT, 0}}};
     const int count = ::poll(ready.data(), ready.size(), wait_ms(end));
     if (count < 0 && errno != EINTR) return Outcome::ended;
     if (count == 0) return Outcome::timed_out;
@@ -154,9 +105,9 @@ ProgramConversation::Outcome ProgramConversation::ask(std::string_view lines,
     if (ready[1].revents != 0) read_from(error_output_, complaints_, kept_complaints);
     if (ready[0].revents != 0) read_from(output_, pending_, longest_line + 1);
     if (ready[2].revents != 0) {
-      const ssize_t sent = ::send(input_, lines.data(), lines.size(), MSG_NOSIGNAL);
+      const ssize_t sent = ::send(input_.ours(), lines.data(), lines.size(), MSG_NOSIGNAL);
       if (sent > 0) lines.remove_prefix(static_cast<std::size_t>(sent));
-      if (sent < 0 && errno != EAGAIN && errno != EINTR) close_descriptor(input_);
+      if (sent < 0 && errno != EAGAIN && errno != EINTR) input_.close_ours();
     }
   }
 }

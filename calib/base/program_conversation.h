@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/base/program_stream.h"
+
 namespace vernier::internal {
 
 /// A running program that answers lines with lines: what is sent is its standard input, what it
@@ -46,11 +48,10 @@ class ProgramConversation {
 
  private:
   bool take_line(std::string& answer);
-  bool read_from(int& descriptor, std::string& to, std::size_t most_kept);
-  void end() noexcept;
+  static void read_from(ProgramStream& stream, std::string& to, std::size_t most_kept);
 
   pid_t child_ = 0;
-  int input_ = -1, output_ = -1, error_output_ = -1;  // from our side; -1: closed
+  ProgramStream input_, output_, error_output_;
   std::string pending_, complaints_;
   std::size_t searched_ = 0;  // bytes of pending_ that hold no end of line
 };

@@ -3,11 +3,13 @@
 #include "calib/base/program_run.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <chrono>
@@ -20,15 +22,36 @@
 #include <thread>
 #include <utility>
 
+#include "calib/base/program_stream.h"
 #include "calib/base/unfinished_work.h"
 #include "calib/error.h"
 
 namespace vernier::internal {
 namespace {
 
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+/// What a program writes, as much as messages need: the beginning and the end of it.
+class KeptOutput {
+ public:
+  void append(std::string_view bytes) {
+    const std::size_t room = kept - std::min(kept, begin_.size());
+    begin_ += bytes.substr(0, room);
+    if (bytes.size() <= room) return;
+    end_ += bytes.substr(room);
+    if (end_.size() > 2 * kept) end_.erase(0, end_.size() - kept);
+  }
+  std::string text() const { return begin_ + end_; }
+
+ private:
+  static constexpr std::size_t kept = 64'000;
+  std::string begin_, end_;
+};
+
+/// Reads what is there; false when there is nothing more to come.
+bool read_available(int descriptor, KeptOutput& to) {
+  std::array<char, 65536> buffer;
+  const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
+  if (got > 0) to.append({buffer.data(), static_cast<std::size_t>(got)});
+  return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
 /// The signals that this process ignores or blocks are as usual in the program.
@@ -39,36 +62,6 @@ short with_usual_signals(posix_spawnattr_t& attributes) {
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &all);
   return POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
-}
-
-/// Starts a program with empty standard input and its output redirected to files. Returns errno.
-int start(const std::vector<std::string>& words,
-          const std::string& output,
-          const std::string& error_output,
-          bool in_own_group,
-          pid_t& child) {
-  constexpr int make = O_WRONLY | O_CREAT | O_TRUNC;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), make, 0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_output.c_str(), make, 0600);
-  const int failed = spawn_program(words, actions, in_own_group, child);
-  posix_spawn_file_actions_destroy(&actions);
-  return failed;
-}
-
-void wait_for(pid_t child, int& status) {
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-}
-
-bool ends_within(double time_limit_s, pid_t child, int& status) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(time_limit_s);
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
 }
 
 }  // namespace
@@ -171,23 +164,54 @@ std::string ProgramRun::last_output_line() const {
 }
 
 ProgramRun run_program(const std::vector<std::string>& words, double time_limit_s) {
-  const TemporaryFolder folder;
-  const std::string output = folder.path() / "output", error_output = folder.path() / "complaint";
+  using Clock = std::chrono::steady_clock;
   ProgramRun run;
+  ProgramStream output, complaint;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, output.theirs(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, complaint.theirs(), STDERR_FILENO);
   pid_t child = 0;
-  run.start_error = start(words, output, error_output, time_limit_s > 0, child);
+  run.start_error = spawn_program(words, actions, time_limit_s > 0, child);
+  posix_spawn_file_actions_destroy(&actions);
+  output.close_theirs();
+  complaint.close_theirs();
   if (run.start_error) return run;
+
+  constexpr double longest_s = 1e9;
+  const auto end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(std::min(time_limit_s, longest_s)));
+  KeptOutput said, complained;
   int status = -1;  // neither ended nor signalled
-  if (time_limit_s > 0 && !ends_within(time_limit_s, child, status)) {
-    run.timed_out = true;
-    ::kill(-child, SIGKILL);
+  bool has_ended = false;
+  while (!has_ended) {
+    has_ended = ::waitpid(child, &status, WNOHANG) != 0;
+    if (!has_ended && time_limit_s > 0 && Clock::now() > end) {
+      run.timed_out = true;
+      ::kill(-child, SIGKILL);
+      while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+      has_ended = true;
+    }
+    // What it left behind may hold the streams open: only what is there now counts.
+    constexpr int most_reads = 1000;  // then it is time to look at the clock
+    for (int reads = 0; reads < most_reads; ++reads) {
+      std::array<pollfd, 2> ready{};
+      ready[0] = {output.ours(), POLLIN, 0};
+      ready[1] = {complaint.ours(), POLLIN, 0};
+      if (::poll(ready.data(), ready.size(), has_ended ? 0 : 1) <= 0) break;
+      if (ready[0].revents != 0 && !read_available(output.ours(), said)) output.close_ours();
+      if (ready[1].revents != 0 && !read_available(complaint.ours(), complained)) {
+        complaint.close_ours();
+      }
+    }
   }
-  if (time_limit_s <= 0 || run.timed_out) wait_for(child, status);
   forget_child(child);
   if (WIFEXITED(status) && !run.timed_out) run.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
-  run.output = read_text(output);
-  run.error_output = read_text(error_output);
+  run.output = said.text();
+  run.error_output = complained.text();
   return run;
 }
 

@@ -55,7 +55,10 @@ bool is_small(std::string_view number) {
 }  // namespace
 
 TextLines::TextLines(const std::filesystem::path& file, std::size_t longest_line)
-    : file_(file), text_(read_whole(file)), longest_line_(longest_line) {}
+    : file_(file), text_(read_whole(file)), longest_line_(longest_line) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text_.starts_with(byte_order_mark)) begin_ = byte_order_mark.size();
+}
 
 bool TextLines::next(std::string_view& line) {
   if (begin_ >= text_.size()) return false;
@@ -108,6 +111,10 @@ int parse_whole(std::string_view field, const std::string& place, std::string_vi
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
+  if (error == std::errc::result_out_of_range && end == text.data() + text.size()) {
+    throw Error(place, fmt::format("{} is {}, too large a whole number", what, in_quotes(text)),
+                "correct or remove the line");
+  }
   return number_or_error(whole ? std::optional(value) : std::nullopt, text, place, what);
 }
 

@@ -111,7 +111,11 @@ const toml::node& TomlReader::required(const toml::table& table,
 
 std::string TomlReader::text(const toml::node& node, const std::string& what) const {
   if (!node.is_string()) fail(node, what + " is not a string", "put it in quotes");
-  return node.as_string()->get();
+  const std::string& text = node.as_string()->get();
+  if (text.find('\0') != std::string::npos) {
+    fail(node, what + " holds a zero byte", "remove \\u0000");  // a file name would end there
+  }
+  return text;
 }
 
 double TomlReader::number(const toml::node& node, const std::string& what) const {

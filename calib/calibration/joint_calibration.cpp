@@ -219,6 +219,10 @@ JointMinimum start_of(const JointEvidence& evidence,
   joint.cost.corner_weights = joint.boards.corner_weights;
   joint.cost.warp = joint.boards.warp;
   joint.cost.held = held_mask(start, options.held);
+  const auto& mask = joint.cost.held;
+  if (!mask.empty() && std::find(mask.begin(), mask.end(), false) == mask.end()) {
+    throw Error("calibration", "every parameter is fixed", "free at least one");
+  }
   joint.cost.pairs = evidence.pairs;
   joint.packed = PackedPairs(evidence.pairs);
   for (const GaussianRigPrior& prior : evidence.priors) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 #include "calib/board_observations.h"
 #include "calib/calibration/outliers.h"
@@ -19,11 +20,12 @@ constexpr int bins = 40;
 
 int cell_along(double pixel, int size, int cells) {
   const double place = (pixel + 0.5) / size * cells;  // pixel 0 spans [-0.5, 0.5)
-  return std::clamp(static_cast<int>(std::floor(place)), 0, cells - 1);
+  return place > 0 ? static_cast<int>(std::min(std::floor(place), cells - 1.0)) : 0;
 }
 
 int bin_of(double in_sigmas) {
-  return static_cast<int>(std::clamp(std::floor((in_sigmas - first_edge) / bin), 0.0, bins - 1.0));
+  const double place = std::floor((in_sigmas - first_edge) / bin);
+  return place > 0 ? static_cast<int>(std::min(place, bins - 1.0)) : 0;
 }
 
 }  // namespace
@@ -41,6 +43,12 @@ std::vector<CornerResidual> residuals_of_camera(const RigEstimate& estimate, int
     const BoardView& view = evidence.observations.views[v];
     if (view.camera != camera) continue;
     for (std::size_t i = 0; i < all[v].size(); ++i) {
+      if (!all[v][i].allFinite()) {
+        throw Error("evidence",
+                    "frame " + std::to_string(view.frame) +
+                        ": the stored pose does not place its board before the camera",
+                    "calibrate again");
+      }
       residuals.push_back({view.frame, view.ids[i], view.pixels_px[i], all[v][i]});
     }
   }

@@ -27,6 +27,10 @@ std::string not_empty(const std::string& text);
 /// take blanks, quotes, hexadecimal numbers, "nan" and "inf".
 void check_numbers(CLI::App& app);
 
+/// Throws Error for an option or argument that is given, and empty: a shell's variable that is not
+/// set would otherwise count as not given.
+void refuse_empty_values(const CLI::App& app);
+
 /// Throws Error for the first of the options given on the command line, because it would have no
 /// effect. `why` is the reason, such as "the rig file already defines it".
 void refuse_options(const CLI::App& verb,

@@ -30,6 +30,21 @@ void Session::info(const std::string& line) const {
   if (!quiet) say(printable(line, most_line_bytes) + "\n");
 }
 
+namespace {
+
+/// Text whose control characters do nothing to a terminal: names come from files.
+std::string printable_lines(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool acts = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+    result += acts ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return result;
+}
+
+}  // namespace
+
 void Session::add_trust_warning(const std::string& reason) {
   trust_warnings_.push_back(reason);
   say(printable("vernier: not trustworthy: " + reason, most_line_bytes) + "\n");
@@ -42,7 +57,7 @@ void Session::result(const Json& object, const std::string& text) const {
     // a file name may contain invalid UTF-8
     print_result(out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   } else {
-    print_result(text);
+    print_result(printable_lines(text));
   }
 }
 
@@ -147,8 +162,19 @@ std::vector<double> parse_distances(const std::string& text, const std::string& 
       throw Error(option, in_quotes(text) + " is not a list of positive distances",
                   "give metres separated by commas, for example 1,5,inf");
     }
+    constexpr double nearest_m = 1e-3, furthest_m = 1e9;
+    if (value < nearest_m || (std::isfinite(value) && value > furthest_m)) {
+      throw Error(option,
+                  fmt::format("{:g} m is not from {} to {:g} m", value, nearest_m, furthest_m),
+                  "give metres, or inf");
+    }
     if (std::find(distances.begin(), distances.end(), value) == distances.end()) {
       distances.push_back(value);
+    }
+    constexpr std::size_t most_distances = 100;
+    if (distances.size() > most_distances) {
+      throw Error(option, fmt::format("lists more than {} distances", most_distances),
+                  "give fewer, or several calls");
     }
     at = comma + 1;
   }

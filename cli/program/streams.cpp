@@ -68,7 +68,7 @@ void print_result(std::string_view text) {
   throw Error(
       "standard output",
       std::string("cannot be written: ") + (fault == EBADF ? "it is closed" : std::strerror(fault)),
-      "direct it elsewhere; the output files have been written");
+      "direct it elsewhere; output files, if there are any, have been written");
 }
 
 }  // namespace vernier::cli

@@ -134,7 +134,11 @@ void FolderClaim::extend() const {
 void FolderClaim::remove_empty_store(const fs::path& store) const {
   const bool was_there =
       std::find(stores_before_.begin(), stores_before_.end(), store) != stores_before_.end();
-  if (!was_there && fs::exists(store) && !holds_results(read_store(store))) fs::remove(store);
+  if (was_there || (fs::is_regular_file(store) && holds_results(read_store(store)))) return;
+  for (const char* end : {"", "-wal", "-shm", "-journal"}) {
+    const fs::path one = store.string() + end;
+    if (fs::is_regular_file(one)) fs::remove(one);
+  }
 }
 
 void FolderClaim::withdraw(const Shard& shard) const noexcept {

@@ -26,6 +26,7 @@ constexpr std::int64_t most_shards = 1'000'000;
 /// Digits only, at most 2^63 - 1.
 std::optional<std::int64_t> whole_number(std::string_view text) {
   if (text.empty() || text[0] < '0' || text[0] > '9') return std::nullopt;
+  if (text.size() > 1 && text[0] == '0') return std::nullopt;  // no octal numbers
   std::int64_t value = 0;
   const char* end = text.data() + text.size();
   const auto [last, fault] = std::from_chars(text.data(), end, value);

@@ -99,6 +99,9 @@ void dispatch(const StudyArguments& options, Session& session) {
   const std::string& first = options.words[0];
   if (first == "status") {
     if (options.words.size() != 2) throw Error("study status", "give one folder", "");
+    if (!options.folder.empty() || !options.shard.empty()) {
+      throw Error("study status", "takes neither -o nor --shard", "leave them out");
+    }
     print(open_folder(options.words[1], session), options.words[1], session);
   } else if (first == "merge") {
     merge(options, session);

@@ -3,9 +3,15 @@
 #include "sim/world.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
 
+#include "calib/base/shown_text.h"
+#include "calib/base/utf8.h"
+#include "calib/error.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
@@ -49,7 +55,18 @@ void make(const MakeOptions& options, Session& session) {
   OfficeOptions office;
   office.size_m = {size[0], size[1], size[2]};
   WorldDescription description = make_office(options.seed, office);
-  if (!options.name.empty()) description.name = options.name;
+  if (!options.name.empty()) {
+    constexpr std::size_t most_bytes = 200;
+    const auto acts = [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7f; };
+    if (options.name.size() > most_bytes || first_bad_utf8(options.name) != std::string::npos ||
+        std::any_of(options.name.begin(), options.name.end(), acts)) {
+      throw Error(
+          "--name",
+          in_quotes(options.name) + " is longer than 200 bytes, not on one line or not UTF-8",
+          "shorten or correct it");
+    }
+    description.name = options.name;
+  }
   write_world(description, options.output);
   report(build_world(description), options.output, session);
 }

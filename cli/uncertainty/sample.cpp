@@ -18,6 +18,7 @@
 #include "cli/program/rig_table.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/uncertainty/unphysical_draws.h"
 
 namespace vernier::cli {
 namespace {
@@ -29,35 +30,6 @@ struct SampleArguments {
   double psi_c = 1;
   int count = 1000;
   std::uint64_t seed = 1;
-};
-
-/// The draws that no cameras can have.
-struct UnphysicalDraws {
-  int count = 0;
-  std::string first;  ///< what is wrong with the first of them
-
-  void add(const Rig& rig) {
-    const std::string fault = unphysical(rig);
-    if (fault.empty()) return;
-    if (count++ == 0) first = fault;
-  }
-
-  /// Says the share; a doubt above the share that Gaussian errors may have.
-  void report(int draws, Session& session) const {
-    if (count == 0) return;
-    const double share = static_cast<double>(count) / draws;
-    const std::string words =
-        fmt::format("{} of {} samples ({:.2g} %) are rigs that no cameras can have (the first: {})",
-                    count, draws, 100 * share, first);
-    if (share <= most_unphysical) {
-      session.warn(words);
-      return;
-    }
-    session.add_trust_warning(fmt::format(
-        "{}: more than {:.1g} %, so a Gaussian with this covariance does not describe the rig's "
-        "errors; give a smaller --psi-c, or a rig that is better determined",
-        words, 100 * most_unphysical));
-  }
 };
 
 /// Writes the samples as they are drawn, so that any number fits in memory.

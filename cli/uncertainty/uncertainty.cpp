@@ -12,10 +12,12 @@
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "calib/sampler.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/uncertainty/unphysical_draws.h"
 #include "cli/uncertainty/uncertainty_report.h"
 #include "cli/uncertainty/uncertainty_tables.h"
 
@@ -56,6 +58,19 @@ UncertaintyRequest request_of(const UncertaintyArguments& options, const RigEsti
   return request;
 }
 
+/// The sampled figures describe no rig where too many draws are none.
+void check_draws(const RigEstimate& estimate,
+                 const UncertaintyArguments& options,
+                 Session& session) {
+  if (options.samples <= 0 || !estimate.covariance || !(options.psi_c > 0)) return;
+  const RigSampler sampler(estimate, options.rig);
+  UnphysicalDraws unphysical;
+  for (int i = 0; i < options.samples; ++i) {
+    unphysical.add(sampler.sample(options.psi_c, options.seed, static_cast<std::uint32_t>(i)));
+  }
+  unphysical.report(options.samples, session);
+}
+
 void run(const UncertaintyArguments& options, Session& session) {
   const std::filesystem::path file = find_rig(options.rig);
   const RigFile rig = read_rig(file);
@@ -71,6 +86,7 @@ void run(const UncertaintyArguments& options, Session& session) {
         "the rig file contains no pixel noise: triangulation uncertainty excludes matching noise; "
         "give --pair-sigma-px");
   }
+  check_draws(estimate, options, session);
   std::string written;
   Json json = Json::object();
   if (!options.output.empty()) {

@@ -142,6 +142,10 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     }
     for (const toml::node& value : listed) {
       values.push_back(shown_value(value));
+      if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1) {
+        fail(value, fmt::format("the sweep of {} lists {} twice", shortened(key), values.back()),
+             "remove one");
+      }
       toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
       const SettingsReader reader(place(), value.source().begin.line);

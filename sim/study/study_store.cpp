@@ -54,6 +54,18 @@ std::array<FileState, 2> state_of_store(const fs::path& file) {
   return {state_of(file), state_of(beside(file, "-wal"))};
 }
 
+/// SQLite would wait for a pipe, and take it away.
+void check_regular(const fs::path& file) {
+  for (const char* end : {"", "-wal", "-shm", "-journal"}) {
+    const fs::path one = beside(file, end);
+    std::error_code unknown;
+    const fs::file_status status = fs::status(one, unknown);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+      throw Error(one.string(), "is not a regular file", "remove it, or give another folder");
+    }
+  }
+}
+
 /// Whether the file's head says that changes go to a log beside it (WAL).
 bool has_write_ahead_head(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -71,11 +83,6 @@ bool has_write_ahead_head(const fs::path& file) {
 std::string reading_options(const fs::path& file) {
   const FileState log = state_of(beside(file, "-wal"));
   if (log.exists && log.size > 0) {
-    if (!state_of(beside(file, "-shm")).exists) {
-      throw Error(file.string(),
-                  "was interrupted, and the file " + file.string() + "-shm is missing",
-                  "run its part of the study again, which completes it");
-    }
     return "readonly_shm=1";
   }
   return has_write_ahead_head(file) ? unlocked : "";
@@ -113,7 +120,7 @@ struct StudyStore::Open {
 StudyStore::StudyStore(const fs::path& file) : StudyStore(file, journal_for(file)) {}
 
 StudyStore::StudyStore(const fs::path& file, Journal journal)
-    : open_(new Open{StoreLock(file), Database::to_write(file)}) {
+    : open_(new Open{StoreLock((check_regular(file), file)), Database::to_write(file)}) {
   const Database& database = open_->database;
   const int version = store_version(database);  // before anything is changed
   const bool log = journal == Journal::write_ahead;
@@ -161,8 +168,13 @@ StoreContent read_store(const fs::path& file) {
   using namespace std::chrono_literals;
   constexpr int attempts = 20;
   for (int attempt = 1;; ++attempt) {
+    check_regular(file);
     const auto before = state_of_store(file);
     if (before[0].exists && before[0].size == 0) return {};  // its writer was killed at the start
+    // A log without its index: only a writer can make that.
+    if (state_of(beside(file, "-wal")).size > 0 && !state_of(beside(file, "-shm")).exists) {
+      return {{}, {}, true};
+    }
     try {
       const std::string options = reading_options(file);
       StoreContent content = read_once(file, options);

@@ -254,6 +254,15 @@ TEST_F(ExternalMatcher, IsStoppedWithAllThatItStartedAfterTheLimit) {
   expect_same(map_of(quick, {.time_limit_s = 500}), map_.values);
 }
 
+/// However much it writes in the meantime.
+TEST_F(ExternalMatcher, IsStoppedThoughItWritesWithoutEnd) {
+  for (const char* stream : {"", " >&2"}) {
+    expect_complaint(script("chatty", std::string("yes") + stream + "\n") +
+                         " {left} {right} {output}",
+                     "exceeded the time limit of 0.5 s and was stopped", {.time_limit_s = 0.5});
+  }
+}
+
 TEST_F(ExternalMatcher, RefusesUnequalImages) {
   pair_.right.width_px = 3, pair_.right.height_px = 4;
   expect_complaint("true {left} {right} {output}", "left image is 4x3 and the right one 3x4");

@@ -17,9 +17,9 @@
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
-#include "cli/uncertainty/unphysical_draws.h"
 #include "cli/uncertainty/uncertainty_report.h"
 #include "cli/uncertainty/uncertainty_tables.h"
+#include "cli/uncertainty/unphysical_draws.h"
 
 namespace vernier::cli {
 namespace {

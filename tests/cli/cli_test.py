@@ -473,7 +473,7 @@ class SparedInputs(Case):
 
 class BadInput(Case):
     def test_boards_that_are_not_given(self):
-        for board, of in (('', 'no board given'), ('hexagons:3x3', 'unknown kind of board'),
+        for board, of in (('', '--board: is empty'), ('hexagons:3x3', 'unknown kind of board'),
                           ('charuco:8x6', '--square-m is missing'), ('9by6', 'two whole numbers')):
             self.complains('detect', '--left', 'left*.png', '--board', board, '-o', 'c.vnl', of=of)
         self.complains('detect', '--left', 'left*.png', '--board', 'charuco:8x6', '--square-m',

@@ -257,9 +257,9 @@ TEST_F(ExternalMatcher, IsStoppedWithAllThatItStartedAfterTheLimit) {
 /// However much it writes in the meantime.
 TEST_F(ExternalMatcher, IsStoppedThoughItWritesWithoutEnd) {
   for (const char* stream : {"", " >&2"}) {
-    expect_complaint(script("chatty", std::string("yes") + stream + "\n") +
-                         " {left} {right} {output}",
-                     "exceeded the time limit of 0.5 s and was stopped", {.time_limit_s = 0.5});
+    expect_complaint(
+        script("chatty", std::string("yes") + stream + "\n") + " {left} {right} {output}",
+        "exceeded the time limit of 0.5 s and was stopped", {.time_limit_s = 0.5});
   }
 }
 

@@ -111,13 +111,14 @@ ScaledDecomposition::ScaledDecomposition(const Covariance& covariance) {
                 "give a covariance in which no direction has a negative variance");
   }
   const Eigen::VectorXd s = eigen.values.cwiseMax(0);
+  const double total = s.sum();
   Eigen::MatrixXd U = eigen.directions;
   for (Eigen::Index k = 0; k < n; ++k) {  // sign by the largest component: one answer for all
     Eigen::Index largest_row;
     U.col(k).cwiseAbs().maxCoeff(&largest_row);
     if (U(largest_row, k) < 0) U.col(k) = -U.col(k);
-    directions_.push_back(
-        {s[k] / s.sum(), s[k], U.col(k), describe_direction(U.col(k), covariance.names)});
+    directions_.push_back({total > 0 ? s[k] / total : 0, s[k], U.col(k),
+                           describe_direction(U.col(k), covariance.names)});
   }
   factor_ = sd.asDiagonal() * U * s.cwiseSqrt().asDiagonal();
   scaled_condition_ = condition(s);

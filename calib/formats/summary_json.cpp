@@ -52,18 +52,31 @@ std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
   return held;
 }
 
+/// A number that cannot be negative.
+double not_negative(const Node& node) {
+  const double value = node.number();
+  if (value < 0) throw Error(node.place(), "is negative", "calibrate again");
+  return value;
+}
+
+int count(const Node& node) {
+  const int value = node.integer();
+  if (value < 0) throw Error(node.place(), "is negative", "calibrate again");
+  return value;
+}
+
 }  // namespace
 
 CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   CalibrationSummary summary;
   summary.source = node.at("source").text();
-  summary.pixel_sigma_px = node.at("pixel_sigma_px").number();
-  summary.rms_px = node.at("rms_px").number();
-  summary.chi2 = node.at("chi2").number();
-  summary.dof = node.at("dof").integer();
-  summary.views = node.at("views").integer();
-  if (node.has("prior_chi2")) summary.prior_chi2 = node.at("prior_chi2").number();
-  if (node.has("prior_dof")) summary.prior_dof = node.at("prior_dof").integer();
+  summary.pixel_sigma_px = not_negative(node.at("pixel_sigma_px"));
+  summary.rms_px = not_negative(node.at("rms_px"));
+  summary.chi2 = not_negative(node.at("chi2"));
+  summary.dof = count(node.at("dof"));
+  summary.views = count(node.at("views"));
+  if (node.has("prior_chi2")) summary.prior_chi2 = not_negative(node.at("prior_chi2"));
+  if (node.has("prior_dof")) summary.prior_dof = count(node.at("prior_dof"));
   summary.held = parse_held(node, rig);
   if (node.has("outliers")) {
     for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {

@@ -48,7 +48,7 @@ std::vector<CameraModel> models_named(const std::string& text) {
   std::vector<CameraModel> models;
   std::istringstream stream(text);
   for (std::string name; std::getline(stream, name, ',');) models.push_back(camera_model(name));
-  if (models.empty()) models.push_back(camera_model(text));
+  if (text.empty() || text.back() == ',') models.push_back(camera_model(""));
   return models;
 }
 

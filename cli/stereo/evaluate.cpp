@@ -329,7 +329,7 @@ void add_evaluate(CLI::App& app, Session& session) {
   add_error_options(verb, *o);
   verb->add_option("--matcher", o->matchers.names,
                    "edge, stretch, bm, sgbm and names given by --command, separated by commas; "
-                   "pictures show the first")
+                   "pictures show the first; none: only the programs of --command")
       ->capture_default_str();
   add_command_options(*verb, o->matchers);
   verb->add_option("--outline", o->outline,

@@ -66,7 +66,7 @@ std::vector<Matcher> matchers_named(const MatcherOptions& options) {
   }
   std::istringstream stream(options.names);
   for (std::string name; std::getline(stream, name, ',');) {
-    if (name.empty()) continue;
+    if (name.empty() || name == "none") continue;
     const auto program = std::find_if(programs.begin(), programs.end(),
                                       [&](const Matcher& m) { return m.name == name; });
     add(matchers, program != programs.end() ? *program : matcher_named(name));

@@ -22,6 +22,7 @@
 #include <stop_token>
 #include <utility>
 
+#include "calib/base/error_place.h"
 #include "calib/base/instruction_set.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
@@ -224,7 +225,8 @@ void run_jobs(const Study& study,
   for (const StudyCell& cell : study.file.cells) {
     auto& shared = looks[looks_key(cell.experiment)];
     if (!shared && !jobs.empty() && !run.stop.stop_requested()) {
-      shared = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, cell.experiment));
+      shared = std::make_shared<MapViews>(with_errors_of(
+          study.file.world, [&] { return map_views(visibility, study.rig.rig, cell.experiment); }));
     }
   }
   std::mutex mutex;
@@ -236,10 +238,12 @@ void run_jobs(const Study& study,
     const Job& job = jobs[i];
     const LocalisationExperiment experiment(
         visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment);
-    StoredBlock block{job.key, job.block,
-                      experiment.run_block({.block = static_cast<std::uint32_t>(job.block),
-                                            .first = static_cast<std::uint32_t>(job.first),
-                                            .count = static_cast<std::uint32_t>(job.count)})};
+    const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
+                            .first = static_cast<std::uint32_t>(job.first),
+                            .count = static_cast<std::uint32_t>(job.count)};
+    const StoredBlock block{job.key, job.block, with_errors_of(study.file.world, [&] {
+                              return experiment.run_block(trials);
+                            })};
     const std::lock_guard lock(mutex);
     store.put(block);
     if (run.progress) run.progress(++done, total);

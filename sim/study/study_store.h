@@ -27,8 +27,8 @@ using StoreNotes = std::map<std::string, std::string>;
 struct StoreContent {
   std::vector<StoredBlock> blocks;  ///< ascending by cell and block
   StoreNotes notes;
-  /// It cannot be read before its next run, which undoes a change that was cut short; only on disks
-  /// where changes are kept in a journal (DELETE).
+  /// It cannot be read before its next run, which undoes a change that was cut short, or makes the
+  /// index of a log that was copied without it.
   bool interrupted = false;
 };
 

@@ -101,7 +101,7 @@ class Evaluate(unittest.TestCase):
                           'with open(sys.argv[1], "wb") as f:\n'
                           '    f.write(b"Pf\\n%d %d\\n-1\\n" % (w, h))\n'
                           '    f.write(struct.pack("<%df" % (w * h), *[6.0] * (w * h)))\n')
-        done = self.run_it('--matcher', '', '--command',
+        done = self.run_it('--matcher', 'none', '--command',
                            f'{sys.executable} mine.py {{output}} {{left}} {{right}}', '--json')
         self.assertEqual(done.returncode, 0, done.stderr)
         score, = json.loads(done.stdout)['matchers'].values()
@@ -138,7 +138,7 @@ class Evaluate(unittest.TestCase):
         self.assertEqual(second, first + '-2')
         self.assertIn('no confidence', said['equal_density']['against'][first]['setting'])
         (self.folder / 'slow.py').write_text('import time\ntime.sleep(60)\n')
-        self.complains('--matcher', '', '--time-limit-s', '0.3', '--command',
+        self.complains('--matcher', 'none', '--time-limit-s', '0.3', '--command',
                        f'{sys.executable} slow.py {{output}} {{left}} {{right}}',
                        of='exceeded the time limit')
 

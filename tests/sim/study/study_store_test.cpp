@@ -171,11 +171,10 @@ TEST_F(Store, IsReadWhileItIsWritten) {
   }
 }
 
-TEST_F(Store, ALogWithoutItsIndexIsNamed) {
+TEST_F(Store, ALogWithoutItsIndexIsReadAfterTheNextRun) {
   write_and_die(folder_ / "a.sqlite", Journal::write_ahead);
   std::filesystem::remove(folder_ / "a.sqlite-shm");
-  EXPECT_NE(refusal([&] { read_store(folder_ / "a.sqlite"); }).find("a.sqlite-shm is missing"),
-            std::string::npos);
+  EXPECT_TRUE(read_store(folder_ / "a.sqlite").interrupted);
   EXPECT_EQ(StudyStore(folder_ / "a.sqlite").content().blocks.size(), 2u);
 }
 

@@ -53,6 +53,14 @@ struct PlaceLineOptions {
   double level_slope = 0.35;     ///< maximum rise over run of a line considered level
 };
 
+/// A corner seen by both cameras of a rig at one moment.
+struct StereoCorner {
+  Eigen::Vector2d left_px, right_px;  ///< in the images as taken
+  double sigma_px = 0.3;              ///< standard deviation of each of the four coordinates
+  /// Appearance, of unit length: the dot product of two is their similarity, in [-1, 1].
+  Eigen::VectorXf descriptor;
+};
+
 /// A robot's view of a place: lines in space and image lines.
 struct PlaceView {
   std::vector<PlaceLine> lines;                   ///< reliable lines only

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/place.h"
+
+namespace vernier::localise {
+
+/// The same corner at two moments: indices into the lists of both.
+struct CornerLink {
+  int from = 0, to = 0;
+};
+
+struct CornerLinkOptions {
+  double min_similarity = 0.8;
+  double min_margin = 0.02;  ///< least lead in similarity over the second best, both ways
+  double max_motion_px = std::numeric_limits<double>::infinity();  ///< of the left pixel
+};
+
+/// Links corners that are each other's most similar, more similar than any other by the margin.
+/// Corners whose descriptors differ in size are never linked.
+std::vector<CornerLink> link_corners(std::span<const StereoCorner> from,
+                                     std::span<const StereoCorner> to,
+                                     const CornerLinkOptions& options = {});
+
+struct StepOptions {
+  double gate_probability = 0.999;  ///< that a right link is taken for one
+  double confidence = 0.9999;       ///< of having drawn three right links
+  int max_draws = 1000;             ///< of three links
+  int min_inliers = 6;
+  std::uint64_t seed = 1;  ///< with the step, it fixes every draw
+  std::uint32_t step = 0;  ///< its number in a trajectory
+  bool with_rig = true;    ///< whether by_rig is computed
+};
+
+/// The motion of a rig between two moments.
+struct MotionStep {
+  Pose T_from_to;  ///< the later left camera's pose in the frame of the earlier
+  /// Of T_from_to in the tangent of retract() (rad, m), from the noise of the corners, whose
+  /// variance is measured by the residuals.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Derivative of T_from_to by the rig's parameters (calib/rig.h): 6 x parameters. An error of the
+  /// calibration is common to all steps of a trajectory.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
+  std::vector<CornerLink> inliers;
+  int links = 0;    ///< that were given
+  double chi2 = 0;  ///< of the inliers, by their sigma_px
+  int dof = 0;      ///< five for each inlier, less six
+};
+
+/// The motion that explains the links, by three steps:
+///
+///  1. consensus: motions of three links each, drawn until three right ones are among them with the
+///     wanted confidence (Fischler and Bolles 1981); the best has the least sum of truncated
+///     squares (MSAC, Torr and Zisserman 2000) of
+///
+///         d² = rᵀ (J C Jᵀ + σ² I)⁻¹ r,   r = z_to − π(T⁻¹ x)
+///
+///     with x the point triangulated at the earlier moment, C its covariance and J = ∂π / ∂x;
+///  2. refinement: the motion and the points of all links within the gate, jointly, by
+///     Levenberg and Marquardt on the eight pixel coordinates of each, the points eliminated (Schur
+///     complement); the gate is applied again until the links stay the same;
+///  3. covariance: the inverse of the reduced normal equations, times χ² / dof.
+///
+/// std::nullopt if fewer than min_inliers links agree. Throws Error unless the rig has two cameras,
+/// the links are indices of corners, and the options are in range.
+std::optional<MotionStep> estimate_step(const Rig& rig,
+                                        std::span<const StereoCorner> from,
+                                        std::span<const StereoCorner> to,
+                                        std::span<const CornerLink> links,
+                                        const StepOptions& options = {});
+
+}  // namespace vernier::localise

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/odometry.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/odometry/step_consensus.h"
+#include "localise/odometry/step_refinement.h"
+#include "localise/place.h"
+
+namespace vernier::localise {
+
+using namespace internal;
+
+namespace {
+
+void check(const Rig& rig,
+           std::span<const StereoCorner> from,
+           std::span<const StereoCorner> to,
+           std::span<const CornerLink> links,
+           const StepOptions& options) {
+  if (rig.cameras.size() != 2 || rig.T_camera_first.size() != 2) {
+    throw Error("rig", "does not have two cameras", "give a stereo rig");
+  }
+  const auto is_probability = [](double p) { return p > 0 && p < 1; };
+  if (!is_probability(options.gate_probability) || !is_probability(options.confidence) ||
+      options.max_draws < 1 || options.min_inliers < 4) {
+    throw Error("odometry", "an option is out of range",
+                "give probabilities between 0 and 1, a draw or more, and 4 inliers or more");
+  }
+  for (const auto corners : {from, to}) {
+    for (const StereoCorner& corner : corners) {
+      if (corner.sigma_px > 0 && std::isfinite(corner.sigma_px) && corner.left_px.allFinite() &&
+          corner.right_px.allFinite()) {
+        continue;
+      }
+      throw Error("odometry", "a corner has a pixel or sigma_px that is not a number, or not > 0",
+                  "give finite pixels and a sigma_px above 0");
+    }
+  }
+  for (const CornerLink& link : links) {
+    if (link.from >= 0 && static_cast<std::size_t>(link.from) < from.size() && link.to >= 0 &&
+        static_cast<std::size_t>(link.to) < to.size()) {
+      continue;
+    }
+    throw Error("odometry", "a link names a corner that is not there",
+                "give indices into the corners of both moments");
+  }
+}
+
+std::vector<LinkedCorner> corners_at(const std::vector<TriangulatedLink>& links,
+                                     const std::vector<int>& chosen) {
+  std::vector<LinkedCorner> corners;
+  corners.reserve(chosen.size());
+  for (const int i : chosen) corners.push_back(links[static_cast<std::size_t>(i)].corner);
+  return corners;
+}
+
+}  // namespace
+
+std::optional<MotionStep> estimate_step(const Rig& rig,
+                                        std::span<const StereoCorner> from,
+                                        std::span<const StereoCorner> to,
+                                        std::span<const CornerLink> links,
+                                        const StepOptions& options) {
+  check(rig, from, to, links, options);
+  const std::vector<TriangulatedLink> placed =
+      triangulated_links(rig, from, to, links, options.gate_probability);
+  const std::optional<Pose> agreed = consensus(rig, placed, options);
+  if (!agreed) return std::nullopt;
+
+  constexpr int max_rounds = 10, max_iterations = 50;
+  const auto fewest = static_cast<std::size_t>(options.min_inliers);
+  std::vector<int> chosen = agreeing_links(rig, placed, *agreed, options.gate_probability);
+  std::optional<RefinedStep> refined;
+  for (int round = 0; round < max_rounds; ++round) {
+    if (chosen.size() < fewest) return std::nullopt;
+    refined = refine_step(rig, corners_at(placed, chosen), refined ? refined->T_from_to : *agreed,
+                          max_iterations);
+    if (!refined) return std::nullopt;
+    std::vector<int> again =
+        agreeing_links(rig, placed, refined->T_from_to, options.gate_probability);
+    if (again == chosen || round + 1 == max_rounds) break;
+    chosen = std::move(again);
+  }
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(refined->information);
+  if (information.info() != Eigen::Success || !information.isPositive()) return std::nullopt;
+
+  MotionStep step;
+  step.T_from_to = refined->T_from_to;
+  step.links = static_cast<int>(links.size());
+  for (const int i : chosen) step.inliers.push_back(placed[static_cast<std::size_t>(i)].link);
+  step.chi2 = refined->total_chi2();
+  step.dof = 5 * static_cast<int>(chosen.size()) - 6;
+  const Eigen::Matrix<double, 6, 6> inverse =
+      information.solve(Eigen::Matrix<double, 6, 6>::Identity());
+  if (!inverse.allFinite()) return std::nullopt;
+  step.covariance = step.chi2 / step.dof * 0.5 * (inverse + inverse.transpose());
+  if (options.with_rig) step.by_rig = step_by_rig(rig, corners_at(placed, chosen), *refined);
+  return step;
+}
+
+}  // namespace vernier::localise

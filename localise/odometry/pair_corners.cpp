@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/pair_corners.h"
+
+#include <cmath>
+#include <vector>
+
+#include "calib/error.h"
+#include "calib/rig.h"
+#include "localise/place.h"
+#include "stereo/corners/described_corners.h"
+#include "stereo/grey_levels.h"
+
+namespace vernier::localise {
+
+std::vector<StereoCorner> corners_of_pair(const Rig& rig,
+                                          const Eigen::MatrixXd& covariance,
+                                          const stereo::GreyLevels& left,
+                                          const stereo::GreyLevels& right,
+                                          const PairCornersOptions& options) {
+  if (rig.cameras.size() != 2) {
+    throw Error("rig", "does not have two cameras", "give a stereo rig");
+  }
+  const int n = parameter_count(rig);
+  std::vector<StereoCorner> corners;
+  for (auto& [match, descriptor] : stereo::internal::described_corners(
+           rig, covariance.size() > 0 ? covariance : Eigen::MatrixXd::Zero(n, n), left, right,
+           {options.corners, options.cells, options.nearest_m})) {
+    corners.push_back({match.left_px, match.right_px,
+                       std::hypot(match.sigma_px, options.view_sigma_px), std::move(descriptor)});
+  }
+  return corners;
+}
+
+}  // namespace vernier::localise

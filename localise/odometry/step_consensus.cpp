@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/odometry/step_consensus.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "calib/triangulation.h"
+#include "localise/odometry.h"
+#include "localise/odometry/pair_projection.h"
+#include "localise/odometry/step_refinement.h"
+#include "localise/place.h"
+
+namespace vernier::localise::internal {
+
+using namespace vernier::internal;
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix4d;
+using Eigen::Vector3d;
+
+PairPixels pixels_of(const StereoCorner& corner) {
+  return {corner.left_px.x(), corner.left_px.y(), corner.right_px.x(), corner.right_px.y()};
+}
+
+struct TriangulatedCorner {
+  Vector3d x_m;
+  Matrix3d covariance_m2;
+};
+
+/// The point of a corner; none if its pixels do not meet within the gate (one degree of freedom).
+std::optional<TriangulatedCorner> triangulated(const Rig& rig,
+                                               PairProjector& projector,
+                                               const StereoCorner& corner,
+                                               double gate) {
+  const auto point = triangulate_point_with_jacobian(rig, {corner.left_px, corner.right_px});
+  if (!point) return std::nullopt;
+  PairPixels pixels;
+  PairByPoint by_point;
+  if (!projector.project(point->x_m, pixels, by_point)) return std::nullopt;
+  const double variance = corner.sigma_px * corner.sigma_px;
+  if ((pixels_of(corner) - pixels).squaredNorm() > gate * variance) return std::nullopt;
+  const Matrix3d covariance = variance * point->by_pixels * point->by_pixels.transpose();
+  if (!covariance.allFinite()) return std::nullopt;
+  return TriangulatedCorner{point->x_m, covariance};
+}
+
+/// Squared Mahalanobis distances of the later pixels from those that a motion predicts.
+class MotionDistance {
+ public:
+  MotionDistance(const Rig& rig, const Pose& T_from_to)
+      : projector_(rig), T_to_from_(T_from_to.inverse()) {}
+
+  double operator()(const TriangulatedLink& link) {
+    PairPixels pixels;
+    PairByPoint by_point;
+    if (!projector_.project(T_to_from_ * link.corner.x_from_m, pixels, by_point)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const PairByPoint J = by_point * T_to_from_.R;
+    Matrix4d S = J * link.covariance_from_m2 * J.transpose();
+    S.diagonal().array() += link.corner.to_sigma_px * link.corner.to_sigma_px;
+    const PairPixels r = link.corner.to_px - pixels;
+    return r.dot(S.llt().solve(r));
+  }
+
+ private:
+  PairProjector projector_;
+  Pose T_to_from_;
+};
+
+constexpr int drawn = 3;
+constexpr int pixel_dof = 4;
+
+/// Rigid transform between three points at both moments (Umeyama 1991), refined on their pixels.
+std::optional<Pose> motion_of(const Rig& rig,
+                              const std::vector<TriangulatedLink>& links,
+                              const std::array<std::size_t, drawn>& chosen) {
+  Matrix3d from, to;
+  std::vector<LinkedCorner> corners;
+  for (int k = 0; k < drawn; ++k) {
+    const TriangulatedLink& link = links[chosen[static_cast<std::size_t>(k)]];
+    from.col(k) = link.corner.x_from_m;
+    to.col(k) = link.x_to_m;
+    corners.push_back(link.corner);
+  }
+  const Matrix4d T = Eigen::umeyama(to, from, false);
+  if (!T.allFinite()) return std::nullopt;
+  constexpr int iterations = 5;
+  const Pose start{T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
+  const auto refined = refine_step(rig, corners, start, iterations);
+  if (!refined) return start;
+  return refined->T_from_to;
+}
+
+/// Draws needed to have three right links with the wanted confidence.
+double draws_needed(std::size_t agreeing, std::size_t links, double confidence) {
+  const double share = static_cast<double>(agreeing) / static_cast<double>(links);
+  const double all_right = std::pow(share, drawn);
+  if (all_right >= 1) return 1;
+  if (all_right <= 0) return std::numeric_limits<double>::infinity();
+  return std::log1p(-confidence) / std::log1p(-all_right);
+}
+
+std::array<std::size_t, drawn> three_of(std::size_t n, RandomStream& draws) {
+  std::array<std::size_t, drawn> chosen{};
+  for (std::size_t k = 0; k < drawn; ++k) {
+    const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(k);
+    do {
+      chosen[k] = draws.below(static_cast<std::uint32_t>(n));
+    } while (std::find(chosen.begin(), end, chosen[k]) != end);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
+                                                 std::span<const StereoCorner> from,
+                                                 std::span<const StereoCorner> to,
+                                                 std::span<const CornerLink> links,
+                                                 double gate_probability) {
+  const double gate = chi_squared_quantile(gate_probability, 1);
+  PairProjector projector(rig);
+  std::vector<TriangulatedLink> found;
+  for (const CornerLink& link : links) {
+    const StereoCorner& a = from[static_cast<std::size_t>(link.from)];
+    const StereoCorner& b = to[static_cast<std::size_t>(link.to)];
+    const auto earlier = triangulated(rig, projector, a, gate);
+    const auto later = triangulated(rig, projector, b, gate);
+    if (!earlier || !later) continue;
+    found.push_back({link,
+                     {pixels_of(a), pixels_of(b), a.sigma_px, b.sigma_px, earlier->x_m},
+                     later->x_m,
+                     earlier->covariance_m2});
+  }
+  return found;
+}
+
+std::optional<Pose> consensus(const Rig& rig,
+                              const std::vector<TriangulatedLink>& links,
+                              const StepOptions& options) {
+  if (links.size() < drawn) return std::nullopt;
+  const double gate = chi_squared_quantile(options.gate_probability, pixel_dof);
+  std::optional<Pose> best;
+  double least = std::numeric_limits<double>::infinity(), needed = options.max_draws;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(options.max_draws) && i < needed; ++i) {
+    RandomStream draws({.seed = options.seed,
+                        .trial = options.step,
+                        .feature = i,
+                        .source = static_cast<std::uint32_t>(DrawSource::odometry_links)});
+    const auto motion = motion_of(rig, links, three_of(links.size(), draws));
+    if (!motion) continue;
+    MotionDistance distance(rig, *motion);
+    double sum = 0;
+    std::size_t agreeing = 0;
+    for (const TriangulatedLink& link : links) {
+      const double d2 = distance(link);
+      agreeing += d2 <= gate;
+      sum += std::min(d2, gate);
+      if (sum >= least) break;
+    }
+    if (sum >= least) continue;
+    least = sum;
+    best = motion;
+    needed = draws_needed(agreeing, links.size(), options.confidence);
+  }
+  return best;
+}
+
+std::vector<int> agreeing_links(const Rig& rig,
+                                const std::vector<TriangulatedLink>& links,
+                                const Pose& T_from_to,
+                                double gate_probability) {
+  const double gate = chi_squared_quantile(gate_probability, pixel_dof);
+  MotionDistance distance(rig, T_from_to);
+  std::vector<int> agreeing;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (distance(links[i]) <= gate) agreeing.push_back(static_cast<int>(i));
+  }
+  return agreeing;
+}
+
+}  // namespace vernier::localise::internal

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/odometry/pair_projection.h"
+
+namespace vernier::localise::internal {
+
+/// A corner measured at two moments, with a first guess of its point.
+struct LinkedCorner {
+  PairPixels from_px, to_px;
+  double from_sigma_px = 0, to_sigma_px = 0;
+  Eigen::Vector3d x_from_m;  ///< left camera's frame at the earlier moment
+};
+
+struct RefinedStep {
+  Pose T_from_to;
+  std::vector<Eigen::Vector3d> x_from_m;  ///< one per corner
+  std::vector<double> chi2;               ///< one per corner
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();  ///< reduced
+
+  double total_chi2() const;
+};
+
+/// Minimises the reprojection error of the corners at both moments over the motion and their
+/// points. std::nullopt if a point gets behind a camera, or the corners do not determine the
+/// motion.
+std::optional<RefinedStep> refine_step(const Rig& rig,
+                                       const std::vector<LinkedCorner>& corners,
+                                       const Pose& T_from_to,
+                                       int max_iterations);
+
+/// Derivative of the minimum by the rig's parameters, with the measurements fixed: by the implicit
+/// function theorem, to first order in the residuals.
+Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,
+                                                     const std::vector<LinkedCorner>& corners,
+                                                     const RefinedStep& step);
+
+}  // namespace vernier::localise::internal

@@ -176,7 +176,8 @@ TEST(Odometry, PointsOnALineGiveNoMotionToRelyOn) {
   }
   const auto step = estimate_step(rig, scene.from, scene.to, scene.links);
   if (step) {
-    EXPECT_GT(std::sqrt(step->covariance.diagonal().maxCoeff()), 0.03);  // 1e-3 rad for 60 corners elsewhere
+    EXPECT_GT(std::sqrt(step->covariance.diagonal().maxCoeff()),
+              0.03);  // 1e-3 rad for 60 corners elsewhere
   }
 }
 

@@ -53,7 +53,7 @@ struct MotionStep {
   Eigen::Matrix<double, 6, Eigen::Dynamic> by_rig;
   std::vector<CornerLink> inliers;
   int links = 0;    ///< that were given
-  double chi2 = 0;  ///< of the inliers, by their sigma_px
+  double chi2 = 0;  ///< of the inliers, by their covariances
   int dof = 0;      ///< five for each inlier, less six
 };
 
@@ -63,9 +63,10 @@ struct MotionStep {
 ///     wanted confidence (Fischler and Bolles 1981); the best has the least sum of truncated
 ///     squares (MSAC, Torr and Zisserman 2000) of
 ///
-///         d² = rᵀ (J C Jᵀ + σ² I)⁻¹ r,   r = z_to − π(T⁻¹ x)
+///         d² = rᵀ (J C Jᵀ + C_z)⁻¹ r,   r = z_to − π(T⁻¹ x)
 ///
-///     with x the point triangulated at the earlier moment, C its covariance and J = ∂π / ∂x;
+///     with x the point triangulated at the earlier moment, C its covariance, J = ∂π / ∂x, and C_z
+///     that of z_to;
 ///  2. refinement: the motion and the points of all links within the gate, jointly, by
 ///     Levenberg and Marquardt on the eight pixel coordinates of each, the points eliminated (Schur
 ///     complement); the gate is applied again until the links stay the same;

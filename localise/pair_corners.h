@@ -15,8 +15,9 @@ struct PairCornersOptions {
   int corners = 1200;      ///< maximum in the left image
   int cells = 12;          ///< they are distributed evenly over a grid of cells x cells; 0: not
   double nearest_m = 0.5;  ///< nearer corners are not matched
-  /// Deviation of a corner's position from one view to the next, beyond the image noise.
-  double view_sigma_px = 0.25;
+  /// Standard deviations beyond the image noise: of a corner's position from one moment to the
+  /// next, in both images alike, and of the right pixel relative to the left one.
+  double view_sigma_px = 0.25, pair_sigma_px = 0.2;
 };
 
 /// The corners of a pair of images: Harris corners, matched within the epipolar bands of the rig

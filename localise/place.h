@@ -56,7 +56,9 @@ struct PlaceLineOptions {
 /// A corner seen by both cameras of a rig at one moment.
 struct StereoCorner {
   Eigen::Vector2d left_px, right_px;  ///< in the images as taken
-  double sigma_px = 0.3;              ///< standard deviation of each of the four coordinates
+  /// Of left u, v, right u, v, px². What moves the corner in both images alike, as its change of
+  /// appearance from one moment to the next, is in the off-diagonal blocks.
+  Eigen::Matrix4d covariance_px2 = 0.09 * Eigen::Matrix4d::Identity();
   /// Appearance, of unit length: the dot product of two is their similarity, in [-1, 1].
   Eigen::VectorXf descriptor;
 };

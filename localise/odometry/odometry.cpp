@@ -38,12 +38,14 @@ void check(const Rig& rig,
   }
   for (const auto corners : {from, to}) {
     for (const StereoCorner& corner : corners) {
-      if (corner.sigma_px > 0 && std::isfinite(corner.sigma_px) && corner.left_px.allFinite() &&
-          corner.right_px.allFinite()) {
+      if (corner.left_px.allFinite() && corner.right_px.allFinite() &&
+          corner.covariance_px2.allFinite() &&
+          corner.covariance_px2.llt().info() == Eigen::Success) {
         continue;
       }
-      throw Error("odometry", "a corner has a pixel or sigma_px that is not a number, or not > 0",
-                  "give finite pixels and a sigma_px above 0");
+      throw Error("odometry",
+                  "a corner has a pixel that is not a number, or a covariance that is none",
+                  "give finite pixels and positive definite covariances");
     }
   }
   for (const CornerLink& link : links) {

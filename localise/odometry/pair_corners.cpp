@@ -2,16 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/pair_corners.h"
 
-#include <cmath>
+#include <Eigen/Core>
 #include <vector>
 
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "localise/place.h"
+#include "stereo/corners/corner_match.h"
 #include "stereo/corners/described_corners.h"
 #include "stereo/grey_levels.h"
 
 namespace vernier::localise {
+
+namespace {
+
+/// The right pixel is matched to the left one with an error of its own; both share what moves the
+/// corner from view to view.
+Eigen::Matrix4d covariance_of(const stereo::internal::CornerMatch& match,
+                              const PairCornersOptions& options) {
+  const double common = options.view_sigma_px * options.view_sigma_px;
+  const double matching = 2 * match.sigma_px * match.sigma_px +  // of right less left
+                          options.pair_sigma_px * options.pair_sigma_px;
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  Eigen::Matrix4d C;
+  C << common * I, common * I, common * I, (common + matching) * I;
+  return C;
+}
+
+}  // namespace
 
 std::vector<StereoCorner> corners_of_pair(const Rig& rig,
                                           const Eigen::MatrixXd& covariance,
@@ -26,8 +44,8 @@ std::vector<StereoCorner> corners_of_pair(const Rig& rig,
   for (auto& [match, descriptor] : stereo::internal::described_corners(
            rig, covariance.size() > 0 ? covariance : Eigen::MatrixXd::Zero(n, n), left, right,
            {options.corners, options.cells, options.nearest_m})) {
-    corners.push_back({match.left_px, match.right_px,
-                       std::hypot(match.sigma_px, options.view_sigma_px), std::move(descriptor)});
+    corners.push_back(
+        {match.left_px, match.right_px, covariance_of(match, options), std::move(descriptor)});
   }
   return corners;
 }

@@ -39,6 +39,10 @@ PairPixels pixels_of(const StereoCorner& corner) {
   return {corner.left_px.x(), corner.left_px.y(), corner.right_px.x(), corner.right_px.y()};
 }
 
+Matrix4d whitening(const StereoCorner& corner) {
+  return corner.covariance_px2.llt().matrixL().solve(Matrix4d::Identity());
+}
+
 struct TriangulatedCorner {
   Vector3d x_m;
   Matrix3d covariance_m2;
@@ -54,9 +58,10 @@ std::optional<TriangulatedCorner> triangulated(const Rig& rig,
   PairPixels pixels;
   PairByPoint by_point;
   if (!projector.project(point->x_m, pixels, by_point)) return std::nullopt;
-  const double variance = corner.sigma_px * corner.sigma_px;
-  if ((pixels_of(corner) - pixels).squaredNorm() > gate * variance) return std::nullopt;
-  const Matrix3d covariance = variance * point->by_pixels * point->by_pixels.transpose();
+  const PairPixels misfit = whitening(corner) * (pixels_of(corner) - pixels);
+  if (misfit.squaredNorm() > gate) return std::nullopt;
+  const Matrix3d covariance =
+      point->by_pixels * corner.covariance_px2 * point->by_pixels.transpose();
   if (!covariance.allFinite()) return std::nullopt;
   return TriangulatedCorner{point->x_m, covariance};
 }
@@ -75,7 +80,7 @@ class MotionDistance {
     }
     const PairByPoint J = by_point * T_to_from_.R;
     Matrix4d S = J * link.covariance_from_m2 * J.transpose();
-    S.diagonal().array() += link.corner.to_sigma_px * link.corner.to_sigma_px;
+    S += link.to_covariance_px2;
     const PairPixels r = link.corner.to_px - pixels;
     return r.dot(S.llt().solve(r));
   }
@@ -146,9 +151,10 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
     const auto later = triangulated(rig, projector, b, gate);
     if (!earlier || !later) continue;
     found.push_back({link,
-                     {pixels_of(a), pixels_of(b), a.sigma_px, b.sigma_px, earlier->x_m},
+                     {pixels_of(a), pixels_of(b), whitening(a), whitening(b), earlier->x_m},
                      later->x_m,
-                     earlier->covariance_m2});
+                     earlier->covariance_m2,
+                     b.covariance_px2});
   }
   return found;
 }

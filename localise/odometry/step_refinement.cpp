@@ -42,15 +42,14 @@ bool linearise(PairProjector& projector,
   PairPixels pixels;
   PairByPoint by_point;
   if (!projector.project(x_from_m, pixels, by_point)) return false;
-  const double a = 1 / corner.from_sigma_px, b = 1 / corner.to_sigma_px;
-  out.residual.head<4>() = a * (corner.from_px - pixels);
-  out.by_point.topRows<4>() = a * by_point;
+  out.residual.head<4>() = corner.from_whitening * (corner.from_px - pixels);
+  out.by_point.topRows<4>() = corner.from_whitening * by_point;
   out.by_motion.topRows<4>().setZero();
   const Matrix3d Rt = T_from_to.R.transpose();
   const Vector3d from_t = x_from_m - T_from_to.t;
   if (!projector.project(Rt * from_t, pixels, by_point)) return false;
-  out.residual.tail<4>() = b * (corner.to_px - pixels);
-  const PairByPoint by_x = b * by_point * Rt;
+  out.residual.tail<4>() = corner.to_whitening * (corner.to_px - pixels);
+  const PairByPoint by_x = corner.to_whitening * by_point * Rt;
   out.by_point.bottomRows<4>() = by_x;
   out.by_motion.bottomRows<4>().leftCols<3>() = by_x * hat(from_t);
   out.by_motion.bottomRows<4>().rightCols<3>() = -by_x;
@@ -179,9 +178,9 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,
     PairPixels pixels;
     PairByPoint by_point;
     projector.project(step.x_from_m[i], pixels, by_point);
-    by_rig.topRows<4>() = projector.by_rig() / corners[i].from_sigma_px;
+    by_rig.topRows<4>() = corners[i].from_whitening * projector.by_rig();
     projector.project(T_to_from * step.x_from_m[i], pixels, by_point);
-    by_rig.bottomRows<4>() = projector.by_rig() / corners[i].to_sigma_px;
+    by_rig.bottomRows<4>() = corners[i].to_whitening * projector.by_rig();
     const EliminatedPoint p(c, 0);
     gradient += c.by_motion.transpose() * by_rig - p.W * p.V.solve(c.by_point.transpose() * by_rig);
   }

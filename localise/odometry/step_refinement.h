@@ -15,8 +15,8 @@ namespace vernier::localise::internal {
 /// A corner measured at two moments, with a first guess of its point.
 struct LinkedCorner {
   PairPixels from_px, to_px;
-  double from_sigma_px = 0, to_sigma_px = 0;
-  Eigen::Vector3d x_from_m;  ///< left camera's frame at the earlier moment
+  Eigen::Matrix4d from_whitening, to_whitening;  ///< W with Wᵀ W the inverse of the covariance
+  Eigen::Vector3d x_from_m;                      ///< left camera's frame at the earlier moment
 };
 
 struct RefinedStep {

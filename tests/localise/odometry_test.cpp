@@ -49,7 +49,8 @@ StereoCorner corner_at(const Rig& rig,
   const PixelPair pixels = *pixel_pair(rig, x);
   const auto noise = [&]() -> Eigen::Vector2d { return draws.normals(2) * sigma_px; };
   const Eigen::Vector2d left = pixels.first_px + noise(), right = pixels.other_px + noise();
-  return {left, right, std::max(sigma_px, 0.05), {}};
+  const double sigma = std::max(sigma_px, 0.05);
+  return {left, right, sigma * sigma * Eigen::Matrix4d::Identity(), {}};
 }
 
 Scene scene_of(const Rig& rig, int corners, double sigma_px, std::uint32_t trial) {
@@ -201,7 +202,7 @@ TEST(Odometry, ImpossibleInputIsRefused) {
 }
 
 StereoCorner looking_like(const Eigen::VectorXf& descriptor, double u = 0) {
-  return {{u, 0}, {u, 0}, 0.3, descriptor.normalized()};
+  return {{u, 0}, {u, 0}, Eigen::Matrix4d::Identity(), descriptor.normalized()};
 }
 
 TEST(CornerLinks, AreMutualAndClear) {

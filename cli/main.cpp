@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
   cli::add_study(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);
+  cli::add_odometry(app, session);
   cli::add_report(app, session);
   cli::check_numbers(app);
   try {

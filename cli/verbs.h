@@ -28,6 +28,7 @@ void add_simulate(CLI::App& app, Session& session);
 void add_study(CLI::App& app, Session& session);
 void add_map(CLI::App& app, Session& session);
 void add_localise(CLI::App& app, Session& session);
+void add_odometry(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 
 }  // namespace vernier::cli

@@ -22,6 +22,7 @@ struct SourceSettings {
   double stereo_mismatch = 0.01;    ///< psi_s: fraction of edges with a wrong partner
   double stereo_mismatch_px = 20;   ///< displacement along the epipolar line: U[-d, d]
   double corner_loss = 0.15;        ///< psi_cd: fraction of corner pairs lost
+  double corner_sigma_px = 0.15;    ///< psi_g of corners: isotropic, in each camera
   double corner_mismatch = 0.01;    ///< psi_cm: fraction of corner pairs with a wrong partner
   double corner_mismatch_px = 10;   ///< displacement: uniform in a disc of this radius
   /// Psi_c: factor on the standard deviations of the calibration covariance.

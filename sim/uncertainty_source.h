@@ -64,8 +64,8 @@ class UncertaintySource {
 };
 
 /// The sources enabled by these settings, in order: lateral shift, edge loss, end-point error,
-/// epipolar rejection, stereo mismatch, corner loss, corner mismatch. (The memo's seventh source,
-/// calibration, acts on the rig assumed by the estimator: see RigSampler.)
+/// epipolar rejection, stereo mismatch, corner loss, corner error, corner mismatch. (The memo's
+/// seventh source, calibration, acts on the rig assumed by the estimator: see RigSampler.)
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px);
 

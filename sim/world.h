@@ -114,4 +114,9 @@ std::vector<localise::Pose2D> map_poses(const std::vector<RouteLeg>& route,
                                         double spacing_m,
                                         int headings = 0);
 
+/// Poses of a robot that drives along a leg: at most `step_m` apart, and turning on the spot by at
+/// most `turn_rad` where the leg bends. Throws Error for steps that are not above 0, and more than
+/// 100,000 poses.
+std::vector<localise::Pose2D> drive_poses(const RouteLeg& leg, double step_m, double turn_rad);
+
 }  // namespace vernier::sim

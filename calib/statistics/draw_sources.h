@@ -28,7 +28,8 @@ enum class DrawSource : std::uint32_t {
   full_search = 23,        // blocks of stretch correlation that search everywhere
   cluster_bootstrap = 25,  // clusters of bootstrap intervals
   odometry_links = 26,     // links of three corners from which motions are drawn
-  corner_noise = 27,       // pixel noise of simulated corners
+  corner_noise = 27,       // psi_g of corners
+  corner_appearance = 28,  // descriptors of simulated corners
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

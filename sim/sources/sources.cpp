@@ -24,6 +24,8 @@ constexpr SourceParameter parameters[] = {
      "maximum displacement of a wrong match along the epipolar line"},
     {"corner_loss", &SourceSettings::corner_loss, 0, 1, true,
      "psi_cd: fraction of corner pairs lost"},
+    {"corner_sigma_px", &SourceSettings::corner_sigma_px, 0, 10, true,
+     "psi_g: Gaussian error of each corner"},
     {"corner_mismatch", &SourceSettings::corner_mismatch, 0, 1, true,
      "psi_cm: fraction of corner pairs matched wrongly"},
     {"corner_mismatch_px", &SourceSettings::corner_mismatch_px, 0, 500, false,

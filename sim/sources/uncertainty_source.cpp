@@ -236,6 +236,25 @@ class CornerLoss : public UncertaintySource {
   double share_;
 };
 
+/// psi_g, of corners.
+class CornerError : public UncertaintySource {
+ public:
+  explicit CornerError(const SourceSettings& s) : sigma_px_(s.corner_sigma_px) {}
+  std::string_view name() const override { return "corner_sigma_px"; }
+
+  void apply(const SensingContext& context, SensedView& view) const override {
+    for (SensedCorner& corner : view.corners) {
+      for (std::uint32_t eye = 0; eye < 2; ++eye) {
+        RandomStream draws = draws_of(context, DrawSource::corner_noise, corner.truth.feature, eye);
+        corner.pixel_px[eye] += sigma_px_ * Eigen::Vector2d(draws.normals(2));
+      }
+    }
+  }
+
+ private:
+  double sigma_px_;
+};
+
 /// psi_cm. The right corner is replaced by a point in a disc.
 class CornerMismatch : public UncertaintySource {
  public:
@@ -269,6 +288,7 @@ std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSet
   if (s.epipolar_reject_deg > 0) sources.push_back(std::make_unique<EpipolarRejection>(s));
   if (s.stereo_mismatch > 0) sources.push_back(std::make_unique<StereoMismatch>(s));
   if (s.corner_loss > 0) sources.push_back(std::make_unique<CornerLoss>(s));
+  if (s.corner_sigma_px > 0) sources.push_back(std::make_unique<CornerError>(s));
   if (s.corner_mismatch > 0) sources.push_back(std::make_unique<CornerMismatch>(s));
   return sources;
 }

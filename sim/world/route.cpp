@@ -104,4 +104,39 @@ std::vector<Pose2D> map_poses(const std::vector<RouteLeg>& route, double spacing
   return places;
 }
 
+std::vector<Pose2D> drive_poses(const RouteLeg& leg, double step_m, double turn_rad) {
+  if (!(step_m > 0) || !(turn_rad > 0)) {
+    throw Error("drive", "a step is not above 0", "use positive values");
+  }
+  std::vector<Pose2D> poses;
+  const auto add = [&](const Pose2D& pose) {
+    if (poses.size() == most_map_views) {
+      throw Error("drive", fmt::format("has more than {} poses", most_map_views),
+                  "use larger steps");
+    }
+    poses.push_back(pose);
+  };
+  for (std::size_t i = 1; i < leg.points_m.size(); ++i) {
+    const Eigen::Vector2d &a = leg.points_m[i - 1], &b = leg.points_m[i];
+    if (a == b) continue;
+    const Pose2D start{a.x(), a.y(), heading_of(a, b)};
+    if (poses.empty()) {
+      add(start);
+    } else {
+      const double turn = localise::heading_difference_rad(start, poses.back());
+      const double before = poses.back().heading_rad;
+      const double turns = std::ceil(std::abs(turn) / turn_rad);
+      for (double k = 1; k <= turns; ++k) {
+        add({start.x_m, start.y_m, before + turn * k / turns});
+      }
+    }
+    const double steps = std::ceil((b - a).norm() / step_m);
+    for (double k = 1; k <= steps; ++k) {
+      const Eigen::Vector2d at = a + (b - a) * (k / steps);
+      add({at.x(), at.y(), poses.back().heading_rad});
+    }
+  }
+  return poses;
+}
+
 }  // namespace vernier::sim

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "localise/odometry.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <ctime>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calib/base/atomic_file.h"
+#include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/statistics/distributions.h"
+#include "calib/statistics/quantile.h"
+#include "cli/localisation/odometry_drives.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
+#include "cli/program/session.h"
+#include "localise/trajectory.h"
+
+namespace vernier::cli {
+namespace {
+
+/// Figures of one or more drives, summed for their means.
+struct DriveFigures {
+  int steps = 0, found = 0;
+  double links = 0, inliers = 0, chi2 = 0, dof = 0, cpu_s = 0;
+  std::vector<double> nees;
+  std::vector<TrajectoryDrift> drifts;
+  std::vector<double> noise_sd_m, calibration_sd_m;  ///< predicted, of the end
+};
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Standard deviation of the distance to the end: the root of its mean square.
+double position_sd_m(const Eigen::Matrix<double, 6, 6>& covariance) {
+  return std::sqrt(covariance.diagonal().tail<3>().sum());
+}
+
+OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& figures) {
+  const double start = cpu_seconds();
+  OdometryPath path = odometry_path(drive.rig, drive.moments);
+  figures.cpu_s += cpu_seconds() - start;
+  figures.noise_sd_m.push_back(position_sd_m(path.end_covariance));
+  if (drive.calibration.size() > 0) {
+    figures.calibration_sd_m.push_back(
+        position_sd_m(path.end_by_rig * drive.calibration * path.end_by_rig.transpose()));
+  }
+  const std::vector<Pose>& truth = drive.T_world_left;
+  for (std::size_t i = 0; i < path.steps.size(); ++i) {
+    ++figures.steps;
+    const auto& step = path.steps[i];
+    if (!step) continue;
+    ++figures.found;
+    figures.links += step->links;
+    figures.inliers += static_cast<double>(step->inliers.size());
+    figures.chi2 += step->chi2;
+    figures.dof += step->dof;
+    if (truth.empty()) continue;
+    figures.nees.push_back(step_nees(*step, truth[i].inverse() * truth[i + 1], drive.calibration));
+  }
+  if (!truth.empty()) figures.drifts.push_back(drift_of(path.T_first_camera, truth, segment_m));
+  return path;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+/// Means over the drives; the root of the mean square for errors of the end.
+struct MeanDrift {
+  double length_m = 0, end_error_m = 0, end_error_rad = 0, share = 0, rad_per_m = 0;
+  int segments = 0;
+
+  explicit MeanDrift(const std::vector<TrajectoryDrift>& drifts) {
+    const auto n = static_cast<double>(drifts.size());
+    for (const TrajectoryDrift& d : drifts) {
+      length_m += d.length_m / n;
+      end_error_m += d.end_error_m * d.end_error_m / n;
+      end_error_rad += d.end_error_rad * d.end_error_rad / n;
+      share += d.translation_share * d.segments;
+      rad_per_m += d.rotation_rad_per_m * d.segments;
+      segments += d.segments;
+    }
+    end_error_m = std::sqrt(end_error_m);
+    end_error_rad = std::sqrt(end_error_rad);
+    if (segments > 0) share /= segments;
+    if (segments > 0) rad_per_m /= segments;
+  }
+};
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+void add_truth(const DriveFigures& figures, double segment_m, Json& json, std::string& text) {
+  const MeanDrift drift(figures.drifts);
+  const double median = quantile(figures.nees, 0.5, QuantileKind::linear);
+  const double bound = chi_squared_quantile(0.95, 6);
+  const auto inside = std::count_if(figures.nees.begin(), figures.nees.end(),
+                                    [&](double nees) { return nees <= bound; });
+  const double share_inside =
+      static_cast<double>(inside) / static_cast<double>(figures.nees.size());
+  json["truth"] = {
+      {"length_m", drift.length_m},
+      {"end_error_m", drift.end_error_m},
+      {"end_error_deg", drift.end_error_rad * degrees},
+      {"segment_m", segment_m},
+      {"segments", drift.segments},
+      {"drift_percent", drift.segments > 0 ? Json(100 * drift.share) : Json()},
+      {"drift_deg_per_m", drift.segments > 0 ? Json(drift.rad_per_m * degrees) : Json()},
+      {"nees_mean", mean(figures.nees)},
+      {"nees_median", median},
+      {"nees_inside_95", share_inside}};
+  text += fmt::format("error after {:.1f} m: {:.3f} m ({:.2f} %), {:.3f} deg\n", drift.length_m,
+                      drift.end_error_m, 100 * drift.end_error_m / drift.length_m,
+                      drift.end_error_rad * degrees);
+  if (drift.segments > 0) {
+    text += fmt::format("drift over segments of {:g} m: {:.3f} %, {:.4f} deg/m ({} segments)\n",
+                        segment_m, 100 * drift.share, drift.rad_per_m * degrees, drift.segments);
+  } else {
+    text += fmt::format("the path has no segment of {:g} m; see --segment-m\n", segment_m);
+  }
+  text += fmt::format(
+      "squared error of a step in units of its covariance: mean {:.2f}, median {:.2f} (6 and 5.35 "
+      "if it is true); {:.0f} % inside the 95 % region\n",
+      mean(figures.nees), median, 100 * share_inside);
+}
+
+void report(const DriveFigures& figures, const OdometryOptions& options, Session& session) {
+  Json json{
+      {"drives", figures.noise_sd_m.size()}, {"steps", figures.steps}, {"found", figures.found}};
+  if (figures.found < figures.steps) {
+    session.add_trust_warning(
+        fmt::format("{} of {} steps were not found, too few corners agree: the motion before them "
+                    "was repeated",
+                    figures.steps - figures.found, figures.steps));
+  }
+  const double found = std::max(1, figures.found);
+  json["links_per_step"] = figures.links / found;
+  json["inliers_per_step"] = figures.inliers / found;
+  json["chi2_per_dof"] = figures.dof > 0 ? Json(figures.chi2 / figures.dof) : Json();
+  json["cpu_ms_per_step"] = 1e3 * figures.cpu_s / figures.steps;
+  json["end_sd_m"] = {
+      {"corners", mean(figures.noise_sd_m)},
+      {"calibration",
+       figures.calibration_sd_m.empty() ? Json() : Json(mean(figures.calibration_sd_m))}};
+  std::string text = fmt::format(
+      "{} of {} steps found; {:.0f} links and {:.0f} inliers a step, chi2/dof {:.2f}; {:.1f} ms a "
+      "step\npredicted standard deviation of the end: {:.3f} m from corner noise",
+      figures.found, figures.steps, figures.links / found, figures.inliers / found,
+      figures.dof > 0 ? figures.chi2 / figures.dof : 0, 1e3 * figures.cpu_s / figures.steps,
+      mean(figures.noise_sd_m));
+  text += figures.calibration_sd_m.empty()
+              ? "; that from calibration is not known, the rig has no covariance\n"
+              : fmt::format(", {:.3f} m from calibration\n", mean(figures.calibration_sd_m));
+  if (!figures.nees.empty()) add_truth(figures, options.segment_m, json, text);
+  if (!options.output.empty()) {
+    json["output"] = options.output;
+    text += "written to " + options.output + "\n";
+  }
+  session.result(json, text);
+}
+
+void check(const OdometryOptions& options, const CLI::App& verb) {
+  const bool images = !options.left.empty() || !options.right.empty();
+  if (images == !options.world.empty()) {
+    throw Error("odometry", images ? "images and a world are given" : "no views are given",
+                "give --left and --right, or --world");
+  }
+  if (images && (options.left.empty() || options.right.empty())) {
+    throw Error("odometry", "images of one camera only", "give --left and --right");
+  }
+  if (images && options.rig.empty()) {
+    throw Error("odometry", "images need the rig that took them", "give --rig");
+  }
+  constexpr std::array of_robot{"--drives", "--leg",      "--step-m",    "--turn-deg",
+                                "--source", "--height-m", "--pitch-deg", "--seed"};
+  constexpr std::array of_images{"--truth", "--rate-hz", "--corners"};
+  if (images) refuse_options(verb, of_robot, "no robot is simulated");
+  if (!images) refuse_options(verb, of_images, "there are no images");
+  if (options.drives > 1 && !options.output.empty()) {
+    throw Error("--output", "several drives have several trajectories", "use --drives 1");
+  }
+  if (!options.output.empty() && !options.truth.empty()) {
+    check_output_is_not_input({options.truth}, options.output);
+  }
+}
+
+void run(const OdometryOptions& options, const CLI::App& verb, Session& session) {
+  check(options, verb);
+  DriveFigures figures;
+  OdometryPath path;
+  std::vector<OdometryDrive> drives;
+  if (options.world.empty()) {
+    drives.push_back(drive_of_images(options, session));
+  } else {
+    drives = simulated_drives(options, session);
+  }
+  for (const OdometryDrive& drive : drives) {
+    if (drive.moments.size() < 2) {
+      throw Error("odometry", "the drive has no step", "give smaller steps, or another leg");
+    }
+    path = follow(drive, options.segment_m, figures);
+  }
+  if (!options.output.empty()) {
+    std::vector<TimedPose> poses;
+    for (const Pose& T : path.T_first_camera) {
+      poses.push_back({static_cast<double>(poses.size()) / options.rate_hz, T});
+    }
+    write_atomically(options.output, tum_text(poses));
+  }
+  report(figures, options, session);
+}
+
+}  // namespace
+
+void add_odometry(CLI::App& app, Session& session) {
+  auto o = std::make_shared<OdometryOptions>();
+  CLI::App* verb = add_verb(
+      app, session, "odometry",
+      "estimate a rig's motion from the corners of its image pairs, with its uncertainty",
+      "vernier odometry --left 'left*.png' --right 'right*.png' --rig rig.json -o path.txt\n"
+      "  vernier odometry --world workshop --drives 20 --source calibration=3");
+  verb->add_option("--left", o->left, "left images (quoted pattern)");
+  verb->add_option("--right", o->right,
+                   "right images (quoted pattern); paired with left images by number");
+  verb->add_option("--world", o->world, "world file or shipped name, driven through by a robot");
+  verb->add_option("--rig", o->rig,
+                   "rig file or shipped name (simulated robot: nominal unless given)");
+  verb->add_option("--truth", o->truth,
+                   "true poses of the left camera, one for each pair of images: lines of "
+                   "time x y z qx qy qz qw (TUM), or of 3 x 4 matrices (KITTI)");
+  verb->add_option("--rate-hz", o->rate_hz, "pairs of images a second, for the times written")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  verb->add_option("--corners", o->corners, "maximum number of corners of an image")
+      ->check(CLI::Range(10, 20'000))
+      ->capture_default_str();
+  verb->add_option("--segment-m", o->segment_m, "length over which drift is measured, metres")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  verb->add_option("--drives", o->drives, "simulated drives, each with draws of its own")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  verb->add_option("--leg", o->leg, "leg of the world's route, from 1; 0: the longest")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
+  verb->add_option("--step-m", o->step_m, "distance between views of the simulated robot")
+      ->check(CLI::Range(0.001, 100.0))
+      ->capture_default_str();
+  verb->add_option("--turn-deg", o->turn_deg, "largest turn between views, where the leg bends")
+      ->check(CLI::Range(0.1, 90.0))
+      ->capture_default_str();
+  verb->add_option("--height-m", o->height_m, "camera height, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch, degrees; positive is down")
+      ->check(CLI::Range(-89.0, 89.0))
+      ->capture_default_str();
+  verb->add_option("--source", o->sources,
+                   "setting of an error source of the simulated robot, such as corner_loss=0.3, or "
+                   "none (repeatable)");
+  verb->add_option("--seed", o->seed, "random seed of the simulated robot")->capture_default_str();
+  verb->add_option("-o,--output", o->output, "trajectory, TUM format, as evo reads it");
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
+}
+
+}  // namespace vernier::cli

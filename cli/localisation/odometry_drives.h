@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "cli/program/namespaces.h"
+#include "cli/program/session.h"
+#include "localise/place.h"
+
+namespace vernier::cli {
+
+struct OdometryOptions {
+  std::string left, right, world, rig, truth, output;
+  double rate_hz = 1, segment_m = 10;
+  int corners = 1200;
+  // simulated robot
+  int drives = 1, leg = 0;
+  double step_m = 0.25, turn_deg = 5, height_m = 1.2, pitch_deg = 0;
+  std::vector<std::string> sources;
+  std::uint64_t seed = 1;
+};
+
+/// Corners along a path, the rig that the estimator is told, and the true poses where known.
+struct OdometryDrive {
+  Rig rig;
+  Eigen::MatrixXd calibration;  ///< covariance of the rig's parameters; empty if not known
+  std::vector<std::vector<StereoCorner>> moments;
+  std::vector<Pose> T_world_left;  ///< true; empty if not known
+};
+
+/// The drive of image pairs.
+OdometryDrive drive_of_images(const OdometryOptions& options, Session& session);
+
+/// Drives of a simulated robot, with draws of their own.
+std::vector<OdometryDrive> simulated_drives(const OdometryOptions& options, Session& session);
+
+}  // namespace vernier::cli

@@ -20,6 +20,9 @@
 namespace vernier::internal::rig_json {
 namespace {
 
+/// Of a rotation vector, whose length needs π only.
+constexpr double most_rotation_rad = 100;
+
 Json camera_json(const Camera& camera, const Pose& T_camera_first, bool first) {
   Json json;
   json["name"] = camera.name;
@@ -116,8 +119,9 @@ Rig parse_cameras(const Node& node) {
     Pose T;
     if (i > 0) {
       const Node pose = camera.at("from_first");
-      T = {rotation_from_vector(pose.at("rotation_rad").vector3()),
-           pose.at("translation_m").vector3()};
+      const Eigen::Vector3d rotation_rad = pose.at("rotation_rad").vector3();
+      T = {rotation_from_vector(rotation_rad), pose.at("translation_m").vector3()};
+      check_bounded(rotation_rad, most_rotation_rad, pose.at("rotation_rad"));
       check_bounded(T.t, most_value, pose.at("translation_m"));
     }
     rig.T_camera_first.push_back(T);

@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier odometry as a user calls it.
+
+    odometry_test.py PROGRAM [unittest's options]
+"""
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+from evaluate_test import write_pgm
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+SIZE = (320, 240)
+F_PX, BASELINE_M, DEPTH_M, STEP_M = 300, 0.2, 3.0, 0.05
+ROBOT = ['odometry', '--world', 'posts.world.toml', '--step-m', '0.05']
+
+
+def rig():
+    """Two parallel pinhole cameras."""
+    def camera(name, **more):
+        values = {'f_px': F_PX, 'ax': 1, 'ox_px': SIZE[0] / 2, 'oy_px': SIZE[1] / 2, 'k1': 0}
+        return {'name': name, 'model': 'radial1', 'size_px': list(SIZE), 'parameters': values, **more}
+    return {'format': 'vernier/rig', 'version': 1, 'cameras': [
+        camera('left'),
+        camera('right', from_first={'rotation_rad': [0, 0, 0], 'translation_m': [-BASELINE_M, 0, 0]})]}
+
+
+def wall(seed=1):
+    """Smooth random grey levels of a wall, for real coordinates in metres."""
+    chance = random.Random(seed)
+    waves = [(chance.uniform(-40, 40), chance.uniform(-40, 40), chance.uniform(0, 6.3))
+             for _ in range(24)]
+
+    def grey(x, y):
+        return 128 + 9 * sum(math.cos(a * x + b * y + c) for a, b, c in waves)
+    return grey
+
+
+def image(grey, at_x_m):
+    """What a camera at (at_x_m, 0, 0) sees of the wall at DEPTH_M."""
+    scale = DEPTH_M / F_PX
+    return [[max(0, min(255, round(grey((u - SIZE[0] / 2) * scale + at_x_m, (v - SIZE[1] / 2) * scale))))
+             for u in range(SIZE[0])] for v in range(SIZE[1])]
+
+
+class Odometry(unittest.TestCase):
+    def setUp(self):
+        keeper = tempfile.TemporaryDirectory()
+        self.addCleanup(keeper.cleanup)
+        self.folder = pathlib.Path(keeper.name)
+        verb_calls.write_inputs(self.folder)
+
+    def run_program(self, *words):
+        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=120)
+
+    def done(self, *words):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run.stdout
+
+    def refused(self, *words, says):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+        self.assertIn(says, run.stderr)
+
+    def test_images_of_a_rig_that_moves_sideways(self):
+        (self.folder / 'wall.json').write_text(json.dumps(rig()))
+        grey = wall()
+        for i in range(3):
+            write_pgm(self.folder / f'wl{i}.pgm', image(grey, i * STEP_M))
+            write_pgm(self.folder / f'wr{i}.pgm', image(grey, i * STEP_M + BASELINE_M))
+        (self.folder / 'true.txt').write_text(
+            ''.join(f'{i / 10} {5 + i * STEP_M} 0 1 0 0 0 1\n' for i in range(3)))
+        call = ['odometry', '--left', 'wl*.pgm', '--right', 'wr*.pgm', '--rig', 'wall.json']
+        found = json.loads(self.done(*call, '--truth', 'true.txt', '--segment-m', STEP_M * 0.99,
+                                     '--rate-hz', '10', '-o', 'path.txt', '--json'))
+        self.assertEqual((found['steps'], found['found']), (2, 2))
+        self.assertGreater(found['inliers_per_step'], 20)
+        self.assertLess(found['truth']['end_error_m'], 0.005)
+        self.assertLess(found['truth']['end_error_deg'], 0.1)
+        rows = [line.split() for line in (self.folder / 'path.txt').read_text().splitlines()
+                if line[0] != '#']
+        self.assertEqual([float(row[0]) for row in rows], [0, 0.1, 0.2])
+        self.assertAlmostEqual(float(rows[2][1]), 2 * STEP_M, delta=0.005)
+        (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0 1\n')
+        self.refused(*call, '--truth', 'true.txt', says='has 1 poses for 3 pairs')
+        (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0\n')
+        self.refused(*call, '--truth', 'true.txt', says='true.txt:1: has 7 fields')
+        self.refused(*call, '--truth', 'true.txt', '-o', 'true.txt', says='true.txt')
+        self.assertIn('0 0 0', (self.folder / 'true.txt').read_text())
+
+    def test_a_simulated_robot(self):
+        plain = json.loads(self.done(*ROBOT, '--source', 'calibration=0', '--source',
+                                     'corner_sigma_px=0', '--json', '-o', 'a.txt'))
+        self.assertEqual(plain['found'], plain['steps'])
+        again = json.loads(self.done(*ROBOT, '--source', 'calibration=5', '--drives', '4', '--json'))
+        self.assertEqual(again['drives'], 4)
+        self.assertGreater(again['end_sd_m']['calibration'], 0)
+        self.assertGreater(again['truth']['end_error_m'], plain['truth']['end_error_m'])
+
+    def test_the_same_to_the_bit(self):
+        self.done(*ROBOT, '-o', 'a.txt')
+        self.done(*ROBOT, '-o', 'b.txt')
+        self.done(*ROBOT, '-o', 'c.txt', '--seed', '2')
+        a, b, c = ((self.folder / f'{x}.txt').read_bytes() for x in 'abc')
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)
+
+    def test_bad_input(self):
+        self.refused('odometry', says='--world')
+        self.refused(*ROBOT, '--left', 'a*.png', says='images and a world')
+        self.refused('odometry', '--left', 'a*.png', '--rig', 'nominal', says='--right')
+        self.refused('odometry', '--left', 'a*.png', '--right', 'b*.png', says='give --rig')
+        self.refused(*ROBOT, '--truth', 'a.txt', says='--truth')
+        self.refused(*ROBOT, '--leg', '9', says='--leg')
+        self.refused(*ROBOT, '--drives', '2', '-o', 'a.txt', says='--output')
+        self.refused(*ROBOT, '--source', 'nonsense=1', says='nonsense')
+        self.refused('odometry', '--left', 'left.pgm', '--right', 'right.pgm', '--rig', 'rig.json',
+                     says='one pair of images')
+
+
+if __name__ == '__main__':
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

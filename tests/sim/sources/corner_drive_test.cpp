@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/corner_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/triangulation.h"
+#include "localise/odometry.h"
+#include "localise/place.h"
+#include "localise/trajectory.h"
+#include "sim/sources.h"
+#include "sim/world.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+namespace {
+
+using namespace vernier::localise;
+using namespace vernier::sim;
+
+CornerDrive office_drive(const SourceSettings& sources, std::uint64_t seed = 1) {
+  std::vector<Pose2D> poses = drive_poses(test::small_office().route.front(), 0.2, 0.08);
+  if (poses.size() > 12) poses.resize(12);
+  return drive_past_corners(test::small_office_visibility(), test::nominal_rig().rig, sources,
+                            {.height_m = 1.2}, poses, seed, 0);
+}
+
+TEST(CornerAppearance, RepeatsWithTheTemplate) {
+  const World& world = test::small_office();
+  const CornerAppearance appearance(world);
+  std::map<std::string, std::vector<std::vector<std::uint32_t>>> corners_of;
+  for (std::size_t o = 0; o < world.objects.size(); ++o) {
+    auto& objects = corners_of[world.objects[o].template_name];
+    objects.emplace_back();
+    for (std::uint32_t c = 0; c < world.corners.size(); ++c) {
+      if (world.corners[c].object == static_cast<std::int32_t>(o)) objects.back().push_back(c);
+    }
+  }
+  int repeated = 0;
+  for (const auto& [name, objects] : corners_of) {
+    for (std::size_t i = 1; i < objects.size(); ++i) {
+      ASSERT_EQ(objects[i].size(), objects[0].size()) << name;
+      for (std::size_t k = 0; k < objects[i].size(); ++k, ++repeated) {
+        EXPECT_EQ(appearance.of(objects[i][k]), appearance.of(objects[0][k])) << name;
+      }
+    }
+    for (std::size_t k = 1; k < objects[0].size(); ++k) {
+      EXPECT_LT(appearance.of(objects[0][k]).dot(appearance.of(objects[0][0])), 0.9F) << name;
+    }
+  }
+  EXPECT_GT(repeated, 50);
+}
+
+TEST(CornerDrive, WithoutErrorsItIsFollowedExactly) {
+  const CornerDrive seen = office_drive(no_sources());
+  const OdometryPath path = odometry_path(test::nominal_rig().rig, seen.moments);
+  int found = 0;
+  for (std::size_t i = 0; i < path.steps.size(); ++i) {
+    if (!path.steps[i]) continue;
+    ++found;
+    const Pose off = path.steps[i]->T_from_to.inverse() *
+                     (seen.T_world_left[i].inverse() * seen.T_world_left[i + 1]);
+    EXPECT_LT(off.t.norm() + vector_from_rotation(off.R).norm(), 1e-6);
+  }
+  EXPECT_GT(found, 5);
+}
+
+TEST(CornerDrive, NoiseHasTheStatedStandardDeviation) {
+  SourceSettings noisy = no_sources();
+  noisy.corner_sigma_px = 0.3;
+  const CornerDrive seen = office_drive(noisy), exact = office_drive(no_sources());
+  double sum = 0;
+  int values = 0;
+  for (std::size_t i = 0; i < seen.moments.size(); ++i) {
+    ASSERT_EQ(seen.moments[i].size(), exact.moments[i].size());
+    for (std::size_t k = 0; k < seen.moments[i].size(); ++k, values += 4) {
+      sum += (seen.moments[i][k].left_px - exact.moments[i][k].left_px).squaredNorm() +
+             (seen.moments[i][k].right_px - exact.moments[i][k].right_px).squaredNorm();
+      EXPECT_EQ(seen.moments[i][k].covariance_px2, 0.09 * Eigen::Matrix4d::Identity());
+    }
+  }
+  // Seed fixed; the estimate's standard deviation is 0.3 px / √(2 · 500) or less.
+  ASSERT_GT(values, 500);
+  EXPECT_NEAR(std::sqrt(sum / values), 0.3, 0.03);
+}
+
+TEST(CornerDrive, TheSameSeedGivesTheSameDrive) {
+  const CornerDrive a = office_drive(SourceSettings()), b = office_drive(SourceSettings()),
+                    c = office_drive(SourceSettings(), 2);
+  ASSERT_EQ(a.moments.size(), b.moments.size());
+  bool differs = false;
+  for (std::size_t i = 0; i < a.moments.size(); ++i) {
+    ASSERT_EQ(a.moments[i].size(), b.moments[i].size());
+    differs = differs || a.moments[i].size() != c.moments[i].size();
+    for (std::size_t k = 0; k < a.moments[i].size(); ++k) {
+      EXPECT_EQ(a.moments[i][k].left_px, b.moments[i][k].left_px);
+      EXPECT_EQ(a.moments[i][k].right_px, b.moments[i][k].right_px);
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
+}  // namespace
+}  // namespace vernier

@@ -32,6 +32,16 @@ std::vector<CornerLink> link_corners(std::span<const StereoCorner> from,
                                      std::span<const StereoCorner> to,
                                      const CornerLinkOptions& options = {});
 
+/// The same, among corners whose pixels a motion predicts to within `window_px` in both images.
+/// Corners that look alike, as those of repeated texture, are told apart by where they are. Corners
+/// whose pixels have no common point are not linked. Throws Error unless the rig has two cameras.
+std::vector<CornerLink> link_corners_near(const Rig& rig,
+                                          std::span<const StereoCorner> from,
+                                          std::span<const StereoCorner> to,
+                                          const Pose& T_from_to,
+                                          double window_px,
+                                          const CornerLinkOptions& options = {});
+
 struct StepOptions {
   double gate_probability = 0.999;  ///< that a right link is taken for one
   double confidence = 0.9999;       ///< of having drawn three right links
@@ -70,7 +80,7 @@ struct MotionStep {
 ///  2. refinement: the motion and the points of all links within the gate, jointly, by
 ///     Levenberg and Marquardt on the eight pixel coordinates of each, the points eliminated (Schur
 ///     complement); the gate is applied again until the links stay the same;
-///  3. covariance: the inverse of the reduced normal equations, times χ² / dof.
+///  3. covariance: the inverse of the reduced normal equations, times χ² / dof, 1e-6 at least.
 ///
 /// std::nullopt if fewer than min_inliers links agree. Throws Error unless the rig has two cameras,
 /// the links are indices of corners, and the options are in range.

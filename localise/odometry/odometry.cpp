@@ -3,6 +3,7 @@
 #include "localise/odometry.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -105,7 +106,10 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   const Eigen::Matrix<double, 6, 6> inverse =
       information.solve(Eigen::Matrix<double, 6, 6>::Identity());
   if (!inverse.allFinite()) return std::nullopt;
-  step.covariance = step.chi2 / step.dof * 0.5 * (inverse + inverse.transpose());
+  // Below, what remains of exact corners is the rounding of the minimum.
+  constexpr double least_variance_factor = 1e-6;
+  step.covariance =
+      std::max(step.chi2 / step.dof, least_variance_factor) * 0.5 * (inverse + inverse.transpose());
   if (options.with_rig) step.by_rig = step_by_rig(rig, corners_at(placed, chosen), *refined);
   return step;
 }

@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +43,31 @@ void check_together(std::span<const Pose> estimate, std::span<const Pose> truth)
               "give a true pose for each of two or more moments");
 }
 
+/// The step between two moments, from corners that look alike nowhere else, or else from those near
+/// where `expected` has them. Once found, the step itself says which of those that look alike
+/// belong together.
+std::optional<MotionStep> linked_step(const Rig& rig,
+                                      std::span<const StereoCorner> from,
+                                      std::span<const StereoCorner> to,
+                                      const Pose& expected,
+                                      const CornerLinkOptions& linking,
+                                      const StepOptions& options) {
+  constexpr std::array search_windows_px{8.0, 16.0, 32.0, 64.0};
+  constexpr double found_window_px = 4;
+  const auto near = [&](const Pose& T_from_to, double window_px) {
+    return estimate_step(rig, from, to,
+                         link_corners_near(rig, from, to, T_from_to, window_px, linking), options);
+  };
+  auto found = estimate_step(rig, from, to, link_corners(from, to, linking), options);
+  for (const double window_px : search_windows_px) {
+    if (found) break;
+    found = near(expected, window_px);
+  }
+  if (!found) return std::nullopt;
+  auto again = near(found->T_from_to, found_window_px);
+  return again && again->inliers.size() >= found->inliers.size() ? again : found;
+}
+
 }  // namespace
 
 OdometryPath odometry_path(const Rig& rig,
@@ -56,8 +83,8 @@ OdometryPath odometry_path(const Rig& rig,
   for (std::size_t i = 1; i < moments.size(); ++i) {
     StepOptions of_step = options;
     of_step.step = static_cast<std::uint32_t>(i);
-    path.steps.push_back(estimate_step(rig, moments[i - 1], moments[i],
-                                       link_corners(moments[i - 1], moments[i], linking), of_step));
+    path.steps.push_back(
+        linked_step(rig, moments[i - 1], moments[i], last_motion, linking, of_step));
     const Pose& T = path.T_first_camera.back();
     if (const auto& step = path.steps.back()) {
       last_motion = step->T_from_to;

@@ -21,7 +21,7 @@ from evaluate_test import write_pgm
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SIZE = (320, 240)
 F_PX, BASELINE_M, DEPTH_M, STEP_M = 300, 0.2, 3.0, 0.05
-ROBOT = ['odometry', '--world', 'posts.world.toml', '--step-m', '0.05']
+ROBOT = ['odometry', '--world', 'workshop', '--leg', '2']
 
 
 def rig():
@@ -123,7 +123,7 @@ class Odometry(unittest.TestCase):
         self.refused('odometry', '--left', 'a*.png', '--rig', 'nominal', says='--right')
         self.refused('odometry', '--left', 'a*.png', '--right', 'b*.png', says='give --rig')
         self.refused(*ROBOT, '--truth', 'a.txt', says='--truth')
-        self.refused(*ROBOT, '--leg', '9', says='--leg')
+        self.refused(*ROBOT[:-2], '--leg', '99', says='--leg')
         self.refused(*ROBOT, '--drives', '2', '-o', 'a.txt', says='--output')
         self.refused(*ROBOT, '--source', 'nonsense=1', says='nonsense')
         self.refused('odometry', '--left', 'left.pgm', '--right', 'right.pgm', '--rig', 'rig.json',

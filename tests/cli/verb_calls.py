@@ -141,7 +141,7 @@ def calls():
              ['out.map']),
         Call('localise', ['localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal', '-o',
                           'out.csv'], ['out.csv']),
-        Call('odometry', ['odometry', '--world', 'posts.world.toml', '--step-m', '0.05', '-o', 'out.txt'],
+        Call('odometry', ['odometry', '--world', 'workshop', '--leg', '2', '-o', 'out.txt'],
              ['out.txt']),
         Call('report', ['report', 'nominal', '-o', 'out.html'], ['out.html']),
     ]

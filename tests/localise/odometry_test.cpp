@@ -15,6 +15,7 @@
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/random.h"
 #include "calib/triangulation.h"
+#include "localise/trajectory.h"
 #include "tests/support/error_message.h"
 
 namespace vernier::localise {
@@ -223,6 +224,53 @@ TEST(CornerLinks, OfOtherSizesOrTooFarAreNone) {
   EXPECT_TRUE(link_corners(from, other).empty());
   EXPECT_EQ(link_corners(from, far).size(), 1u);
   EXPECT_TRUE(link_corners(from, far, {.max_motion_px = 50}).empty());
+}
+
+/// Corners that all look alike.
+Scene alike(const Rig& rig, double sigma_px) {
+  Scene scene = scene_of(rig, 25, sigma_px, 0);
+  for (auto* corners : {&scene.from, &scene.to}) {
+    for (StereoCorner& corner : *corners) corner.descriptor = Eigen::Vector2f(1, 0);
+  }
+  return scene;
+}
+
+TEST(CornerLinks, NearAPredictionTellWhatLooksAlike) {
+  const Rig rig = example_rig();
+  const Scene scene = alike(rig, 0.1);
+  EXPECT_TRUE(link_corners(scene.from, scene.to).empty());
+  const auto links = link_corners_near(rig, scene.from, scene.to, motion, 4);
+  EXPECT_GE(links.size(), 20u);
+  for (const CornerLink& link : links) EXPECT_EQ(link.from, link.to);
+  EXPECT_TRUE(link_corners_near(rig, scene.from, scene.to, Pose{}, 0.5).empty());
+}
+
+TEST(CornerLinks, ExactPredictionsLinkWithinAnyWindow) {
+  const Rig rig = example_rig();
+  const Scene scene = alike(rig, 0);
+  EXPECT_GE(link_corners_near(rig, scene.from, scene.to, motion, 1e-3).size(), 24u);
+}
+
+// Without a step before them, corners are expected where they were.
+TEST(CornerLinks, APathIsFollowedPastCornersThatLookAlike) {
+  const Rig rig = example_rig();
+  const Pose small{rotation_from_vector({0, 0.01, 0}), Vector3d(0.01, 0, 0.05)};
+  vernier::internal::RandomStream draws({.seed = 6});
+  std::vector<std::vector<StereoCorner>> moments(4);
+  for (int k = 0; k < 30; ++k) {
+    Vector3d x{0.5 * (k % 6) - 1.25, 0.4 * (k / 6) - 0.8, 4 + 0.05 * k};
+    for (auto& moment : moments) {
+      moment.push_back(corner_at(rig, x, 0.1, draws));
+      moment.back().descriptor = Eigen::Vector2f(1, 0);
+      x = small.inverse() * x;
+    }
+  }
+  const OdometryPath path = odometry_path(rig, moments);
+  for (const auto& step : path.steps) {
+    ASSERT_TRUE(step);
+    EXPECT_GE(step->inliers.size(), 25u);
+    EXPECT_LT((step->T_from_to.t - small.t).norm(), 0.01);
+  }
 }
 
 }  // namespace

@@ -38,10 +38,10 @@ std::vector<Pose> straight(int poses) {
 }
 
 TEST(Trajectory, WhatIsWrittenIsReadAgain) {
-  const std::vector<TimedPose> path{{0.5, {}},
-                                    {0.75,
-                                     {rotation_from_vector({0.3, -2.9, 0.4}), {1.25, -3, 1e-7}}},
-                                    {2, {rotation_from_vector({0, 3.1, 0}), {-4, 5, 6}}}};
+  const std::vector<TimedPose> path{
+      {0.5, {}},
+      {0.75, {rotation_from_vector({0.3, -2.9, 0.4}), {1.25, -3, 1e-7}}},
+      {2, {rotation_from_vector({0, 3.1, 0}), {-4, 5, 6}}}};
   const std::vector<TimedPose> again = read_trajectory(file_of(tum_text(path)));
   ASSERT_EQ(again.size(), path.size());
   for (std::size_t i = 0; i < path.size(); ++i) {

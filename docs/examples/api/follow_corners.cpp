@@ -1,5 +1,5 @@
-// Stereo odometry past the corners of a simulated building: its drift, and whether the covariance of
-// its steps is true.
+// Stereo odometry past the corners of a simulated building: its drift, and whether the covariance
+// of its steps is true.
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -42,6 +42,6 @@ int main(int, char** argv) {
   std::printf("%d of %zu steps, mean squared error in units of their covariance %.1f (6: true)\n",
               found, path.steps.size(), nees / found);
   std::printf("%.3f m off after %.1f m\n", drift.end_error_m, drift.length_m);
-  std::fputs(localise::tum_text(std::vector<localise::TimedPose>{{0, path.T_first_camera[0]}})
-                 .c_str(), stdout);
+  const std::vector<localise::TimedPose> end{{0, path.T_first_camera.back()}};
+  std::printf("%s", localise::tum_text(end).c_str());
 }

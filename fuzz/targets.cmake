@@ -28,6 +28,7 @@ set(vernier_fuzz_targets
   fuzz/targets/study_toml.cpp
   fuzz/targets/text_numbers.cpp
   fuzz/targets/toml.cpp
+  fuzz/targets/trajectory.cpp
   fuzz/targets/view_file.cpp
   fuzz/targets/world_toml.cpp
   fuzz/targets/yaml.cpp)

@@ -133,7 +133,7 @@ void add_truth(const DriveFigures& figures, double segment_m, Json& json, std::s
   }
   text += fmt::format(
       "squared error of a step in units of its covariance: mean {:.2f}, median {:.2f} (6 and 5.35 "
-      "if it is true); {:.0f} % inside the 95 % region\n",
+      "if it and the truth are right); {:.0f} % inside the 95 % region\n",
       mean(figures.nees), median, 100 * share_inside);
 }
 

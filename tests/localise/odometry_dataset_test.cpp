@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Odometry on real images. The corner errors of PairCornersOptions were chosen on these frames of
+// `drive`, so that their chi2 and the agreement of halves are not held out; drift was not tuned.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "localise/odometry.h"
+#include "localise/pair_corners.h"
+#include "localise/trajectory.h"
+#include "stereo/grey_levels.h"
+#include "tests/support/data_folder.h"
+
+namespace vernier::localise {
+namespace {
+
+/// KITTI's rectified cameras, as calib.txt beside the images has them.
+Rig rig_of_drive() {
+  constexpr double f_px = 707.0912, baseline_f_px_m = 379.8145;
+  Camera left;
+  left.model = Pinhole{};
+  left.size_px = {1226, 370};
+  left.parameters.resize(core_parameter_count);
+  left.parameters << f_px, 1, 601.8873, 183.1104;
+  Camera right = left;
+  right.name = "right";
+  return {{left, right}, {Pose{}, {Eigen::Matrix3d::Identity(), {-baseline_f_px_m / f_px, 0, 0}}}};
+}
+
+struct Drive {
+  Rig rig;
+  std::vector<Pose> T_first_left;
+  std::vector<std::vector<StereoCorner>> moments;
+};
+
+Drive read_drive(const std::filesystem::path& folder) {
+  Drive drive{rig_of_drive(), {}, {}};
+  PairCornersOptions how;
+  how.nearest_m = 2;
+  for (const TimedPose& pose : read_trajectory(folder / "poses.txt")) {
+    const std::string name = fmt::format("{:06}.png", drive.moments.size());
+    drive.T_first_left.push_back(pose.T_world_camera);
+    drive.moments.push_back(
+        corners_of_pair(drive.rig, {}, stereo::read_grey_levels(folder / "image_l" / name),
+                        stereo::read_grey_levels(folder / "image_r" / name), how));
+  }
+  return drive;
+}
+
+// Noise draws none here: the figures are those of one computation.
+TEST(OdometryOfRealImages, DriftsByAPercentAndKnowsItsNoise) {
+  const auto data = test::data_folder();
+  if (!data) GTEST_SKIP() << "VERNIER_DATA is not set";
+  const Drive drive = read_drive(*data / "sequences" / "drive");
+  const OdometryPath path = odometry_path(drive.rig, drive.moments);
+  double chi2 = 0, dof = 0;
+  for (const auto& step : path.steps) {
+    ASSERT_TRUE(step);
+    chi2 += step->chi2;
+    dof += step->dof;
+  }
+  EXPECT_GT(chi2 / dof, 0.8);
+  EXPECT_LT(chi2 / dof, 1.25);
+  const TrajectoryDrift drift = drift_of(path.T_first_camera, drive.T_first_left, 10);
+  EXPECT_LT(drift.translation_share, 0.013);
+  EXPECT_LT(drift.rotation_rad_per_m, 3e-4);
+
+  // Steps from the even and the odd links differ by what both state: chi2 with six degrees of
+  // freedom each. The bounds allow the covariance to be wrong by a factor of 1.5.
+  std::vector<double> nees;
+  for (std::size_t i = 0; i + 1 < drive.moments.size(); ++i) {
+    std::vector<CornerLink> halves[2];
+    for (const CornerLink& link : path.steps[i]->inliers) {
+      halves[link.from % 2].push_back(link);
+    }
+    const auto even = estimate_step(drive.rig, drive.moments[i], drive.moments[i + 1], halves[0]);
+    auto odd = estimate_step(drive.rig, drive.moments[i], drive.moments[i + 1], halves[1]);
+    ASSERT_TRUE(even && odd);
+    odd->covariance += even->covariance;
+    nees.push_back(step_nees(*odd, even->T_from_to));
+  }
+  std::nth_element(nees.begin(), nees.begin() + 25, nees.end());
+  EXPECT_GT(nees[25], 5.35 / 1.5);
+  EXPECT_LT(nees[25], 5.35 * 1.5);
+}
+
+}  // namespace
+}  // namespace vernier::localise

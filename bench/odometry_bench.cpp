@@ -53,15 +53,21 @@ const Frames* frames() {
   return read ? &*read : nullptr;
 }
 
+Camera camera_of_drive(const char* name) {
+  Camera camera;
+  camera.name = name;
+  camera.model = Pinhole{};
+  camera.size_px = {1226, 370};
+  camera.parameters.resize(core_parameter_count);
+  camera.parameters << f_px, 1, u0_px, v0_px;
+  return camera;
+}
+
 Rig rig_of_drive() {
-  Camera left;
-  left.model = Pinhole{};
-  left.size_px = {1226, 370};
-  left.parameters.resize(core_parameter_count);
-  left.parameters << f_px, 1, u0_px, v0_px;
-  Camera right = left;
-  right.name = "right";
-  return {{left, right}, {Pose{}, {Eigen::Matrix3d::Identity(), {-baseline_m, 0, 0}}}};
+  Rig rig;
+  rig.cameras = {camera_of_drive("left"), camera_of_drive("right")};
+  rig.T_camera_first = {Pose{}, {Eigen::Matrix3d::Identity(), {-baseline_m, 0, 0}}};
+  return rig;
 }
 
 void count(benchmark::State& state, const std::vector<Pose>& path, const Frames& frames) {

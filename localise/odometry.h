@@ -50,6 +50,8 @@ struct StepOptions {
   std::uint64_t seed = 1;  ///< with the step, it fixes every draw
   std::uint32_t step = 0;  ///< its number in a trajectory
   bool with_rig = true;    ///< whether by_rig is computed
+  /// Covariance of the rig's parameters, which widens the gates; empty if it is not known.
+  Eigen::MatrixXd calibration;
 };
 
 /// The motion of a rig between two moments.
@@ -76,7 +78,7 @@ struct MotionStep {
 ///         d² = rᵀ (J C Jᵀ + C_z)⁻¹ r,   r = z_to − π(T⁻¹ x)
 ///
 ///     with x the point triangulated at the earlier moment, C its covariance, J = ∂π / ∂x, and C_z
-///     that of z_to;
+///     that of z_to and of what the rig's error does to its distance from a point's pixels;
 ///  2. refinement: the motion and the points of all links within the gate, jointly, by
 ///     Levenberg and Marquardt on the eight pixel coordinates of each, the points eliminated (Schur
 ///     complement); the gate is applied again until the links stay the same;

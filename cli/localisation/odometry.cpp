@@ -49,7 +49,9 @@ double position_sd_m(const Eigen::Matrix<double, 6, 6>& covariance) {
 
 OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& figures) {
   const double start = cpu_seconds();
-  OdometryPath path = odometry_path(drive.rig, drive.moments);
+  StepOptions options;
+  options.calibration = drive.calibration;
+  OdometryPath path = odometry_path(drive.rig, drive.moments, {}, options);
   figures.cpu_s += cpu_seconds() - start;
   figures.noise_sd_m.push_back(position_sd_m(path.end_covariance));
   if (drive.calibration.size() > 0) {

@@ -37,6 +37,13 @@ void check(const Rig& rig,
     throw Error("odometry", "an option is out of range",
                 "give probabilities between 0 and 1, a draw or more, and 4 inliers or more");
   }
+  const Eigen::Index parameters = options.calibration.rows();
+  if (options.calibration.size() > 0 &&
+      (parameters != parameter_count(rig) || options.calibration.cols() != parameters ||
+       !options.calibration.allFinite())) {
+    throw Error("odometry", "the covariance is not of the rig's parameters",
+                "give the covariance of the rig, or none");
+  }
   for (const auto corners : {from, to}) {
     for (const StereoCorner& corner : corners) {
       if (corner.left_px.allFinite() && corner.right_px.allFinite() &&
@@ -76,7 +83,7 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
                                         const StepOptions& options) {
   check(rig, from, to, links, options);
   const std::vector<TriangulatedLink> placed =
-      triangulated_links(rig, from, to, links, options.gate_probability);
+      triangulated_links(rig, from, to, links, options);
   const std::optional<Pose> agreed = consensus(rig, placed, options);
   if (!agreed) return std::nullopt;
 

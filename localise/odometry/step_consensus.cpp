@@ -33,6 +33,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Matrix4d;
+using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 PairPixels pixels_of(const StereoCorner& corner) {
@@ -46,24 +47,33 @@ Matrix4d whitening(const StereoCorner& corner) {
 struct TriangulatedCorner {
   Vector3d x_m;
   Matrix3d covariance_m2;
+  Matrix4d calibration_px2;  ///< of its pixels' distance from those of x, by the rig's error
 };
 
 /// The point of a corner; none if its pixels do not meet within the gate (one degree of freedom).
 std::optional<TriangulatedCorner> triangulated(const Rig& rig,
                                                PairProjector& projector,
                                                const StereoCorner& corner,
+                                               const MatrixXd& calibration,
                                                double gate) {
   const auto point = triangulate_point_with_jacobian(rig, {corner.left_px, corner.right_px});
   if (!point) return std::nullopt;
   PairPixels pixels;
   PairByPoint by_point;
   if (!projector.project(point->x_m, pixels, by_point)) return std::nullopt;
-  const PairPixels misfit = whitening(corner) * (pixels_of(corner) - pixels);
-  if (misfit.squaredNorm() > gate) return std::nullopt;
+  Matrix4d calibration_px2 = Matrix4d::Zero();
+  if (calibration.size() > 0) {
+    const Eigen::Matrix<double, 4, Eigen::Dynamic> by_rig =
+        projector.by_rig() + by_point * point->by_rig;
+    calibration_px2 = by_rig * calibration * by_rig.transpose();
+  }
+  const PairPixels misfit = pixels_of(corner) - pixels;
+  const Matrix4d S = corner.covariance_px2 + calibration_px2;
+  if (misfit.dot(S.llt().solve(misfit)) > gate) return std::nullopt;
   const Matrix3d covariance =
       point->by_pixels * corner.covariance_px2 * point->by_pixels.transpose();
   if (!covariance.allFinite()) return std::nullopt;
-  return TriangulatedCorner{point->x_m, covariance};
+  return TriangulatedCorner{point->x_m, covariance, calibration_px2};
 }
 
 /// Squared Mahalanobis distances of the later pixels from those that a motion predicts.
@@ -140,21 +150,21 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
                                                  std::span<const StereoCorner> from,
                                                  std::span<const StereoCorner> to,
                                                  std::span<const CornerLink> links,
-                                                 double gate_probability) {
-  const double gate = chi_squared_quantile(gate_probability, 1);
+                                                 const StepOptions& options) {
+  const double gate = chi_squared_quantile(options.gate_probability, 1);
   PairProjector projector(rig);
   std::vector<TriangulatedLink> found;
   for (const CornerLink& link : links) {
     const StereoCorner& a = from[static_cast<std::size_t>(link.from)];
     const StereoCorner& b = to[static_cast<std::size_t>(link.to)];
-    const auto earlier = triangulated(rig, projector, a, gate);
-    const auto later = triangulated(rig, projector, b, gate);
+    const auto earlier = triangulated(rig, projector, a, options.calibration, gate);
+    const auto later = triangulated(rig, projector, b, options.calibration, gate);
     if (!earlier || !later) continue;
     found.push_back({link,
                      {pixels_of(a), pixels_of(b), whitening(a), whitening(b), earlier->x_m},
                      later->x_m,
                      earlier->covariance_m2,
-                     b.covariance_px2});
+                     b.covariance_px2 + later->calibration_px2});
   }
   return found;
 }

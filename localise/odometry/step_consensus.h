@@ -19,7 +19,7 @@ struct TriangulatedLink {
   LinkedCorner corner;
   Eigen::Vector3d x_to_m;              ///< left camera's frame at the later moment
   Eigen::Matrix3d covariance_from_m2;  ///< of corner.x_from_m
-  Eigen::Matrix4d to_covariance_px2;   ///< of corner.to_px
+  Eigen::Matrix4d to_covariance_px2;   ///< of corner.to_px, for the gate: that of the rig's error included
 };
 
 /// The links whose pixels have points that project to them within the gate, at both moments.
@@ -27,7 +27,7 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
                                                  std::span<const StereoCorner> from,
                                                  std::span<const StereoCorner> to,
                                                  std::span<const CornerLink> links,
-                                                 double gate_probability);
+                                                 const StepOptions& options);
 
 /// The motion on which most links agree; std::nullopt if none of three links is found.
 std::optional<Pose> consensus(const Rig& rig,

@@ -23,17 +23,25 @@
 namespace vernier::localise {
 namespace {
 
-/// KITTI's rectified cameras, as calib.txt beside the images has them.
+// KITTI's rectified cameras, as calib.txt beside the images has them.
+constexpr double f_px = 707.0912, u0_px = 601.8873, v0_px = 183.1104;
+constexpr double baseline_m = 379.8145 / f_px;
+
+Camera camera_of_drive(const char* name) {
+  Camera camera;
+  camera.name = name;
+  camera.model = Pinhole{};
+  camera.size_px = {1226, 370};
+  camera.parameters.resize(core_parameter_count);
+  camera.parameters << f_px, 1, u0_px, v0_px;
+  return camera;
+}
+
 Rig rig_of_drive() {
-  constexpr double f_px = 707.0912, baseline_f_px_m = 379.8145;
-  Camera left;
-  left.model = Pinhole{};
-  left.size_px = {1226, 370};
-  left.parameters.resize(core_parameter_count);
-  left.parameters << f_px, 1, 601.8873, 183.1104;
-  Camera right = left;
-  right.name = "right";
-  return {{left, right}, {Pose{}, {Eigen::Matrix3d::Identity(), {-baseline_f_px_m / f_px, 0, 0}}}};
+  Rig rig;
+  rig.cameras = {camera_of_drive("left"), camera_of_drive("right")};
+  rig.T_camera_first = {Pose{}, {Eigen::Matrix3d::Identity(), {-baseline_m, 0, 0}}};
+  return rig;
 }
 
 struct Drive {

@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "calib/pose.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/statistics/distributions.h"
 #include "calib/triangulation.h"
 #include "localise/odometry.h"
 #include "localise/place.h"
@@ -25,11 +28,13 @@ namespace {
 using namespace vernier::localise;
 using namespace vernier::sim;
 
-CornerDrive office_drive(const SourceSettings& sources, std::uint64_t seed = 1) {
+CornerDrive office_drive(const SourceSettings& sources,
+                         std::uint64_t seed = 1,
+                         std::uint32_t trial = 0) {
   std::vector<Pose2D> poses = drive_poses(test::small_office().route.front(), 0.2, 0.08);
   if (poses.size() > 12) poses.resize(12);
   return drive_past_corners(test::small_office_visibility(), test::nominal_rig().rig, sources,
-                            {.height_m = 1.2}, poses, seed, 0);
+                            {.height_m = 1.2}, poses, seed, trial);
 }
 
 TEST(CornerAppearance, RepeatsWithTheTemplate) {
@@ -89,6 +94,35 @@ TEST(CornerDrive, NoiseHasTheStatedStandardDeviation) {
   // Seed fixed; the estimate's standard deviation is 0.3 px / √(2 · 500) or less.
   ASSERT_GT(values, 500);
   EXPECT_NEAR(std::sqrt(sum / values), 0.3, 0.03);
+}
+
+// 80 drives, each with a rig of its own: their ends' squared errors are a chi2 with 480 degrees of
+// freedom, both tails at 5e-5. The calibration's distance between a corner's pixels and its point's
+// enlarges chi2 / dof and so the covariance, by which the lower bound is wider: 0.7 times.
+TEST(CornerDrive, TheEndsErrorIsThatOfTheCornersAndTheCalibration) {
+  SourceSettings noisy = no_sources();
+  noisy.corner_sigma_px = 0.15;
+  const RigEstimate& nominal = test::nominal_rig();
+  const RigSampler sampler(nominal);
+  StepOptions options;
+  options.calibration = nominal.covariance->matrix;
+  constexpr std::uint32_t drives = 80;
+  double sum = 0;
+  for (std::uint32_t trial = 0; trial < drives; ++trial) {
+    const CornerDrive seen = office_drive(noisy, 3, trial);
+    const OdometryPath path =
+        odometry_path(sampler.sample(1, 4, trial), seen.moments, CornerLinkOptions{}, options);
+    for (const auto& step : path.steps) ASSERT_TRUE(step);
+    const Pose truth = seen.T_world_left.front().inverse() * seen.T_world_left.back();
+    MotionStep end;
+    end.T_from_to = path.T_first_camera.back();
+    end.covariance = path.end_covariance;
+    end.by_rig = path.end_by_rig;
+    sum += step_nees(end, truth, options.calibration);
+  }
+  using vernier::internal::chi_squared_quantile;
+  EXPECT_GT(sum, 0.7 * chi_squared_quantile(5e-5, 6 * drives));
+  EXPECT_LT(sum, chi_squared_quantile(1 - 5e-5, 6 * drives));
 }
 
 TEST(CornerDrive, TheSameSeedGivesTheSameDrive) {

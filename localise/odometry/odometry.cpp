@@ -82,8 +82,7 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
                                         std::span<const CornerLink> links,
                                         const StepOptions& options) {
   check(rig, from, to, links, options);
-  const std::vector<TriangulatedLink> placed =
-      triangulated_links(rig, from, to, links, options);
+  const std::vector<TriangulatedLink> placed = triangulated_links(rig, from, to, links, options);
   const std::optional<Pose> agreed = consensus(rig, placed, options);
   if (!agreed) return std::nullopt;
 

@@ -19,7 +19,8 @@ struct TriangulatedLink {
   LinkedCorner corner;
   Eigen::Vector3d x_to_m;              ///< left camera's frame at the later moment
   Eigen::Matrix3d covariance_from_m2;  ///< of corner.x_from_m
-  Eigen::Matrix4d to_covariance_px2;   ///< of corner.to_px, for the gate: that of the rig's error included
+  Eigen::Matrix4d
+      to_covariance_px2;  ///< of corner.to_px, for the gate: that of the rig's error included
 };
 
 /// The links whose pixels have points that project to them within the gate, at both moments.

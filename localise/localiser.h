@@ -60,13 +60,19 @@ class Localiser {
   virtual LocalisationAnswer localise_looks(std::span<const Look> looks) const;
 };
 
-/// Which stages of `lines` run; without all of them the best-ranked node is the answer.
+/// Which stages of `lines` run; without all of them the best-ranked node is the answer. Each can be
+/// studied alone.
 struct LocaliserStages {
   bool align = true;    ///< votes of vertical lines give each candidate's pose; else its node's
   bool refine = true;   ///< the candidate's lines are compared in the image, and its pose improved
   bool compare = true;  ///< the best are compared with the lines of neighbouring nodes merged
   bool deepen = true;   ///< where that leaves doubts, more candidates are tried
 };
+
+/// The stages in words: "align+refine+compare+deepen", or a part of it; "none" without any.
+std::string name(const LocaliserStages& stages);
+/// From words in any order. Throws Error for an unknown or repeated one.
+LocaliserStages localiser_stages(std::string_view words);
 
 struct LocaliserOptions {
   std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate

@@ -64,6 +64,9 @@ struct ExperimentSettings {
   std::uint64_t seed = 1;
 };
 
+/// An answer is right within this distance on the floor.
+inline constexpr double success_radius_m = 1;
+
 /// One localisation trial: true pose, answer and time.
 struct TrialResult {
   std::uint32_t trial = 0;
@@ -85,7 +88,7 @@ struct TrialResult {
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
 
   bool answered() const { return status == localise::LocalisationStatus::answered; }
-  bool success() const { return answered() && error_m <= 1.0; }
+  bool success() const { return answered() && error_m <= success_radius_m; }
 };
 
 /// Trials that share a recorded map: first, first + 1 …

@@ -36,6 +36,7 @@ struct LocaliseArguments {
   std::string map, method = "lines", protocol = "path", output;
   ViewOptions views;
   LocaliserOptions localiser;
+  std::string stages = name(LocaliserStages{});
   std::uint32_t queries = 20;
   int looks = 1;
 };
@@ -147,7 +148,9 @@ void check(const LocaliseArguments& options, const CLI::App& verb) {
 void run(const LocaliseArguments& options, const CLI::App& verb, Session& session) {
   check(options, verb);
   const TopologicalMap map = read_map(options.map);
-  const auto localiser = make_localiser(options.method, map, options.localiser);
+  LocaliserOptions localiser_options = options.localiser;
+  localiser_options.stages = localiser_stages(options.stages);
+  const auto localiser = make_localiser(options.method, map, localiser_options);
   const std::vector<LocalisedQuery> queries =
       options.views.world.empty() ? recorded_queries(options, map, *localiser, session)
                                   : simulated_queries(options, map, *localiser, session);
@@ -188,6 +191,8 @@ void add_localise(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--max-error-rate", o->localiser.max_error_rate,
                    "of lines: unsure where an error is more probable; 1: it always answers")
+      ->capture_default_str();
+  verb->add_option("--stages", o->stages, "of lines: those that run, or none")
       ->capture_default_str();
   verb->add_option("--command", o->localiser.command,
                    "of program: a program of your own and its arguments (docs/own-localiser.md)");

@@ -27,6 +27,7 @@
 #include "sim/experiment.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/world.h"
@@ -69,6 +70,31 @@ Json value_json(const std::string& text) {
   if (text == "true" || text == "false") return text == "true";
   const std::optional<double> value = to_real(text);
   return value ? Json(*value) : Json(text);
+}
+
+/// Stated against observed error rates; empty for a method that states none.
+Json reliability_json(const std::vector<TrialResult>& trials) {
+  Json json = Json::array();
+  for (const ReliabilityBin& bin : reliability(trials)) {
+    json.push_back({{"stated_error", bin.stated_error},
+                    {"error", static_cast<double>(bin.wrong) / bin.answers},
+                    {"error_interval_95", {bin.error_interval_95.low, bin.error_interval_95.high}},
+                    {"answers", bin.answers},
+                    {"wrong", bin.wrong}});
+  }
+  return json;
+}
+
+/// Coverage and errors at thresholds of the stated error rate.
+Json thresholds_json(const std::vector<TrialResult>& trials) {
+  Json json = Json::array();
+  for (const ThresholdFigures& at : thresholds(trials)) {
+    json.push_back({{"max_error_rate", at.max_error_rate},
+                    {"coverage", at.coverage},
+                    {"answered", at.answered},
+                    {"wrong", at.wrong}});
+  }
+  return json;
 }
 
 /// The kind of the rig's covariance, which psi_c scales; null if there is none.
@@ -136,7 +162,9 @@ Json cell_json(const CellResult& cell) {
           {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
           {"wall_ms_mean", of_trials(s.wall_ms_mean)},
           {"protocol", name(cell.cell.experiment.protocol)},
-          {"world_ceiling", json_number(cell.ceiling)}};
+          {"world_ceiling", json_number(cell.ceiling)},
+          {"reliability", reliability_json(cell.trials)},
+          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.trials) : Json()}};
 }
 
 Json comparisons_json(const StudyResults& results) {

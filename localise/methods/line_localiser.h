@@ -44,24 +44,17 @@ class LineLocaliser : public Localiser {
   /// Memory and intermediate results of one query.
   struct Query;
 
-  void candidates(const Seen& seen,
-                  std::span<const RankedNode> ranked,
-                  int from,
-                  int to,
-                  Query& query,
-                  std::vector<Hypothesis>& found) const;
-  void near_pose(const Pose2D& pose,
-                 const Seen& look,
-                 Query& query,
-                 std::vector<Hypothesis>& found) const;
+  void candidates(
+      const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
+  void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
   JointAgreement joint_agreement(const Pose2D& first,
                                  const AgreementOptions& options,
                                  Query& query) const;
   void compare(Hypothesis& hypothesis, Query& query) const;
-  void compare_best(std::vector<Hypothesis> candidates, int most, Query& query) const;
-  int finalists(const Query& query) const;
+  void compare_best(int most, Query& query) const;
+  bool is_plain(const Query& query) const;
   LocalisationAnswer answer(Query& query) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/localiser.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -50,6 +52,15 @@ void check(const TopologicalMap& map) {
     }
   }
 }
+
+struct StageWord {
+  std::string_view word;
+  bool LocaliserStages::*is_on;
+};
+constexpr StageWord stage_words[] = {{"align", &LocaliserStages::align},
+                                     {"refine", &LocaliserStages::refine},
+                                     {"compare", &LocaliserStages::compare},
+                                     {"deepen", &LocaliserStages::deepen}};
 
 template <class Method>
 LocaliserFactory factory() {
@@ -122,6 +133,36 @@ std::string_view name(LocalisationStatus status) {
       return "failed";
   }
   return "";
+}
+
+std::string name(const LocaliserStages& stages) {
+  std::string words;
+  for (const auto& [word, is_on] : stage_words) {
+    if (!(stages.*is_on)) continue;
+    if (!words.empty()) words += '+';
+    words += word;
+  }
+  return words.empty() ? "none" : words;
+}
+
+LocaliserStages localiser_stages(std::string_view words) {
+  LocaliserStages stages{false, false, false, false};
+  if (words == "none") return stages;
+  for (std::size_t from = 0; from <= words.size();) {
+    const std::size_t end = std::min(words.find('+', from), words.size());
+    const std::string_view word = words.substr(from, end - from);
+    const auto* found = std::find_if(std::begin(stage_words), std::end(stage_words),
+                                     [&](const StageWord& s) { return s.word == word; });
+    if (found == std::end(stage_words) || stages.*found->is_on) {
+      throw Error("localiser stages " + vernier::internal::in_quotes(std::string(words)),
+                  vernier::internal::in_quotes(std::string(word)) +
+                      (found == std::end(stage_words) ? " is not a stage" : " is there twice"),
+                  "use align+refine+compare+deepen, a part of it, or none");
+    }
+    stages.*found->is_on = true;
+    from = end + 1;
+  }
+  return stages;
 }
 
 LocalisationAnswer Localiser::localise_looks(std::span<const Look> looks) const {

@@ -32,9 +32,11 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   const double misfit = std::max(0.0, -best / std::max(1.0, observations));
   const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
   constexpr double usual_observations = 60;
+  const double seen = std::max(0.0, observations);
+  const double lost = std::exp(options.steepness * (misfit - options.lost_misfit) *
+                               std::sqrt(seen / usual_observations));
   double total =
-      options.never_certain + std::exp(options.steepness * (misfit - options.lost_misfit) *
-                                       std::sqrt(std::max(0.0, observations) / usual_observations));
+      options.never_certain + lost + options.thin * std::exp(-seen / options.thin_observations);
   for (const WeightedMode& m : modes) {
     weights.push_back(std::exp(share * (m.best.score - best)));
     total += weights.back();

@@ -27,26 +27,23 @@ std::vector<Pairing> pairings(std::span<const PlanUpright> query,
                               const VoteOptions& o) {
   constexpr float blur_m = 0.15f;  // a line whose distance is known worse votes less
   const auto cell = static_cast<float>(o.cell_m);
-  const auto reach =
-      1.5f * static_cast<float>(o.span_m);  // a translation changes the range by less
-  struct Placed {
-    float x, y, range;
-  };
-  std::vector<Placed> placed;  // the node's lines around the pose
-  placed.reserve(node.size());
-  for (const PlanUpright& n : node) {
-    const float x = n.x_m - static_cast<float>(around.x_m);
-    const float y = n.y_m - static_cast<float>(around.y_m);
-    placed.push_back({x / cell, y / cell, std::sqrt(x * x + y * y)});
-  }
+  const auto x0 = static_cast<float>(around.x_m), y0 = static_cast<float>(around.y_m);
+  const auto c = static_cast<float>(std::cos(around.heading_rad));
+  const auto s = static_cast<float>(std::sin(around.heading_rad));
+  // How far the turns move a line of the query, by its range, and the shifts at most.
+  const auto turned =
+      2 * std::sin(0.5f * static_cast<float>(o.turn_steps) * static_cast<float>(o.turn_step_rad));
+  const float shifted = static_cast<float>(o.span_m) + cell;
   std::vector<Pairing> pairs;
   for (std::size_t i = 0; i < query.size(); ++i) {
     const PlanUpright& q = query[i];
-    const float range = std::sqrt(q.x_m * q.x_m + q.y_m * q.y_m);
-    for (std::size_t k = 0; k < node.size(); ++k) {
-      if (std::abs(range - placed[k].range) > reach || !heights_agree(q, node[k])) continue;
-      pairs.push_back({static_cast<int>(i), q.x_m / cell, q.y_m / cell, placed[k].x, placed[k].y,
-                       1 / (1 + (q.sigma_m + node[k].sigma_m) / blur_m)});
+    const float x = x0 + c * q.x_m - s * q.y_m, y = y0 + s * q.x_m + c * q.y_m;
+    const float reach = shifted + turned * std::sqrt(q.x_m * q.x_m + q.y_m * q.y_m);
+    for (const PlanUpright& n : node) {
+      if (std::abs(n.x_m - x) > reach || std::abs(n.y_m - y) > reach) continue;
+      if (!heights_agree(q, n)) continue;
+      pairs.push_back({static_cast<int>(i), q.x_m / cell, q.y_m / cell, (n.x_m - x0) / cell,
+                       (n.y_m - y0) / cell, 1 / (1 + (q.sigma_m + n.sigma_m) / blur_m)});
     }
   }
   return pairs;

@@ -43,13 +43,13 @@ CellSummary summarise(const CellResult& cell) {
   for (const TrialResult& t : cell.trials) {
     cpu.push_back(t.cpu_ms);
     wall += t.wall_ms;
-    guesses += t.error_m <= 1;
+    guesses += t.error_m <= success_radius_m;
     s.failed += t.status == LocalisationStatus::failed;
     if (!t.answered()) continue;
     ++answered;
     const double turn = std::abs(t.heading_error_rad);
     successes += t.success();
-    node += t.node_error_m <= 1;
+    node += t.node_error_m <= success_radius_m;
     close += t.error_m <= 0.5 && turn <= 5 * degree;
     closer += t.error_m <= 0.25 && turn <= 2 * degree;
     errors.push_back(t.error_m);

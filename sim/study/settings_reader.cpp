@@ -102,7 +102,7 @@ void SettingsReader::read_map(const toml::table& table, ExperimentSettings& sett
 void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
   check_keys(table,
              {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "command", "time_limit_s"},
+              "stages", "command", "time_limit_s"},
              "[localiser]");
   if (const auto* method = table.get("method")) {
     settings.method = text(*method, "localiser.method");
@@ -135,6 +135,10 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
   }
   if (const auto* rate = table.get("max_error_rate")) {
     settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
+  }
+  if (const auto* stages = table.get("stages")) {
+    settings.localiser.stages =
+        word(*stages, "localiser.stages", [](const std::string& w) { return localiser_stages(w); });
   }
   if (const auto* looks = table.get("looks")) {
     const std::int64_t count = integer(*looks, "localiser.looks");

@@ -38,8 +38,8 @@ namespace {
 /// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
-/// The same of one method: `lines` since its posterior depends on how well views fit.
-constexpr int lines_version = 2;
+/// The same of one method: `lines` since candidates without hope are given up.
+constexpr int lines_version = 3;
 
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
@@ -95,6 +95,9 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   }
   if (s.localiser.max_error_rate != usual.max_error_rate) {
     all["localiser.max_error_rate"] = fmt::format("{}", s.localiser.max_error_rate);
+  }
+  if (name(s.localiser.stages) != name(usual.stages)) {
+    all["localiser.stages"] = name(s.localiser.stages);
   }
   if (s.method == "program") {
     all["localiser.command"] = s.localiser.command;

@@ -43,6 +43,7 @@ function sample_pages(folder, page) {
     ...gap_samples(study),
     "adjusted": [JSON.stringify({ title: "Adjusted", study: adjusted(study) }), true],
     "true-bound": [JSON.stringify({ title: "Bound", rigs: [true_bound(full.rigs[0])] }), true],
+    "reliability": [JSON.stringify({ title: "Reliability", study: with_reliability(study) }), true],
     "sweep-with-zero": [JSON.stringify({ title: "Zero", study: with_zero(study) }), true],
   };
   return Object.entries(made).map(([name, [report, plotly]]) => {
@@ -126,6 +127,19 @@ function adjusted(study) {
     test: "paired t over maps", p_value, p_value_holm })) };
 }
 
+/** One cell states probabilities; a range of them has no wrong answer. */
+function with_reliability(study) {
+  const bin = (stated_error, wrong, answers, interval) => ({ stated_error, wrong, answers,
+    error: wrong / answers, error_interval_95: interval });
+  const reliability = [bin(0.0001, 0, 700, [0, 0.0053]), bin(0.004, 1, 120, [0.0002, 0.0456]),
+    bin(0.3, 22, 80, [0.182, 0.3866])];
+  const thresholds = [[1, 900, 23], [0.1, 820, 1], [0.001, 700, 0]].map(
+    ([max_error_rate, answered, wrong]) =>
+      ({ max_error_rate, answered, wrong, coverage: answered / 900 }));
+  return { ...study, cells: study.cells.map((cell, i) =>
+    i ? cell : { ...cell, reliability, thresholds }) };
+}
+
 function with_zero(study) {
   const cells = study.cells.map((cell, i) => i ? cell
     : { ...cell, label: "ψ_c = 0", settings: { ...cell.settings, "sources.calibration": 0 } });
@@ -142,6 +156,7 @@ function inspect() {
   const { evaluation } = report;
   const wanted = [
     [cells.length, "headline"], [cells.length > 1, "sweep"], [cells.length, "cells"],
+    [cells.some((cell) => cell.reliability?.length), "reliability"],
     [cells.length && report.study.comparisons?.length, "comparisons"],
     [evaluation, "scores"], [evaluation?.curves, "density"],
     [evaluation?.scenes[0]?.matchers && typeof window.Plotly !== "undefined", "angles"],

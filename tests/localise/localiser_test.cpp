@@ -165,5 +165,16 @@ TEST(MakeLocaliser, UnknownMethodNamesTheKnown) {
   }
 }
 
+TEST(LocaliserStages, AreNamedInWords) {
+  EXPECT_EQ(name(LocaliserStages{}), "align+refine+compare+deepen");
+  for (const char* words : {"none", "align", "refine+compare", "align+refine+compare+deepen"}) {
+    EXPECT_EQ(name(localiser_stages(words)), words);
+  }
+  EXPECT_EQ(name(localiser_stages("deepen+align")), "align+deepen");
+  for (const char* wrong : {"", "+", "align+", "align+align", "all", "none+align"}) {
+    EXPECT_THROW(localiser_stages(wrong), Error) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace vernier

@@ -6,6 +6,7 @@ import { making_section } from "./making.js";
 import { evaluation_sections } from "./matchers.js";
 import { plan_section } from "./plan.js";
 import { draw_waiting_plots, fit_plots_to_paper, fit_plots_to_window, have_plots } from "./plot.js";
+import { reliability_section } from "./reliability.js";
 import { rigs_sections } from "./rig.js";
 import { cells_section, comparisons_section, headline } from "./study.js";
 import { sweep_section } from "./sweep.js";
@@ -40,6 +41,7 @@ function show(report) {
     headline(report);
     if (study.cells.length > 1) sweep_section(study);
     cells_section(report);
+    reliability_section(study);
     if (study.comparisons?.length) comparisons_section(study);
   }
   if (report.evaluation) evaluation_sections(report.evaluation);

@@ -11,11 +11,14 @@ const PROTOCOLS = {
   near_path: "queries up to 0.1 m from the recorded route, heading within ± 5° of it",
   path: "queries up to 0.3 m from the recorded route, heading within ± 15° of it",
   anywhere: "queries up to 0.6 m from the recorded route, any heading",
+  free: "queries anywhere on the free floor, any heading",
 };
 
 const METHODS = {
+  lines: "recorded lines compared in the image",
   pgh: "pairwise geometric histograms, verified",
   pgh_baseline: "pairwise geometric histograms, baseline",
+  pgh_baseline_vectorised: "pairwise geometric histograms, baseline with SIMD",
 };
 
 export const PSI_MEANING = "ψ_c is the scale factor for the standard deviations of the rig's"

@@ -94,11 +94,21 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   EXPECT_EQ(lines.settings.at("localiser.max_error_rate"), "0.05");
   EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
   EXPECT_EQ(cell("method = \"pgh\"\ncandidates = 4\n").settings.at("localiser.candidates"), "4");
+  const auto staged = cell("stages = \"compare+align\"\n");
+  EXPECT_TRUE(staged.experiment.localiser.stages.align);
+  EXPECT_FALSE(staged.experiment.localiser.stages.refine);
+  EXPECT_TRUE(staged.experiment.localiser.stages.compare);
+  EXPECT_FALSE(staged.experiment.localiser.stages.deepen);
+  EXPECT_EQ(staged.settings.at("localiser.stages"), "align+compare");
+  EXPECT_EQ(cell("stages = \"none\"\n").settings.at("localiser.stages"), "none");
+  EXPECT_EQ(cell("").settings.count("localiser.stages"), 0u);
   // Keys of older stores hold none of these.
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.candidates"), 0u);
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);
-  for (const char* wrong : {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n",
-                            "max_error_rate = 1.5\n", "looks = 13\n", "method = \"sift\"\n"}) {
+  for (const char* wrong :
+       {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n", "max_error_rate = 1.5\n",
+        "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
+        "stages = \"align+align\"\n", "stages = \"\"\n", "stages = 3\n"}) {
     EXPECT_THROW(cell(wrong), Error) << wrong;
   }
 }

@@ -75,7 +75,7 @@ Json report_study(const Study& study, const StudyResults& results) {
       {"protocol", name(first.experiment.protocol)},
       {"method", first.experiment.method},
       {"world_ceiling",
-       std::isfinite(results.cells[0].ceiling) ? Json(results.cells[0].ceiling) : Json(nullptr)},
+       results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr)},
       {"commands", results.commands},
       {"sweep", nullptr},
       {"cells", Json::array()},

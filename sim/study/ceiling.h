@@ -7,6 +7,7 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
+#include "sim/study/free_floor.h"
 #include "sim/study/look_alike_poses.h"
 #include "sim/study/wire_frame.h"
 #include "sim/visibility.h"
@@ -32,7 +33,8 @@ struct Aliases {
 /// Noise-free. A view is the edges that both cameras see, as lines in space: what a localiser gets,
 /// but for its corners. Of the poses that fit two edges of it to the world (look_alike_poses.h),
 /// those are taken that map the other edges onto the world's wire frame (to 2 cm, 95 % of the image
-/// length), and from where the view consists of the same edges (95 % again).
+/// length), where the robot can stand, and from where the view consists of the same edges (95 %
+/// again).
 class AliasFinder {
  public:
   /// Keeps a reference to `visibility`; `rig` is the true rig.
@@ -41,13 +43,21 @@ class AliasFinder {
   Aliases aliases(const localise::Pose2D& pose) const;
 
  private:
-  bool on_wire_frame(const std::vector<ViewEdge>& view, const localise::Pose2D& pose) const;
+  struct View {
+    explicit View(std::vector<ViewEdge> all);
+    std::vector<ViewEdge> edges;
+    /// 64 of more edges, of all lengths: a pose that explains less than half of them is not tried
+    /// further.
+    std::vector<ViewEdge> sample;
+  };
+  bool on_wire_frame(const View& view, const localise::Pose2D& pose) const;
   bool looks_like(const std::vector<ViewEdge>& view, const localise::Pose2D& pose) const;
 
   const Visibility& visibility_;
   Rig rig_;
   NoiseFreeViewOptions options_;
   WireFrame frame_;
+  Standing standing_;
 };
 
 }  // namespace vernier::sim::internal

@@ -24,6 +24,7 @@ constexpr double slack_m = 0.01;      ///< of distances
 constexpr double least_base_m = 0.3;  ///< between two uprights that give a pose
 constexpr std::size_t most_pairs = 6;
 constexpr int most_uprights = 48;  ///< the longest of a view, of which pairs are chosen
+constexpr double most_work = 1e7;  ///< tried edges of a view, after which no pair is added
 
 /// The pose that brings `seen_m` (robot frame) to `there_m`, after a turn.
 Pose2D pose_that_brings(const Eigen::Vector2d& seen_m,
@@ -95,9 +96,10 @@ void LookAlikePoses::pair_uprights(const std::vector<ViewEdge>& view,
     uprights.push_back(i);
     alike.push_back(world.count_around(*upright_of(view[i])));
   }
-  while (needed_px > 0 && pairs.size() < most_pairs) {
+  double done = 0;
+  while (needed_px > 0 && pairs.size() < most_pairs && done < most_work) {
     Pair best{-1, -1};
-    double least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity(), best_work = 0;
     for (std::size_t i = 0; i < uprights.size(); ++i) {
       if (used[uprights[i]]) continue;
       for (std::size_t j = i + 1; j < uprights.size(); ++j) {
@@ -110,6 +112,7 @@ void LookAlikePoses::pair_uprights(const std::vector<ViewEdge>& view,
             work * std::max(1.0, 1 / (apart * apart)) / std::min(q.length_px, needed_px);
         if (per_length >= least) continue;
         least = per_length;
+        best_work = work;
         best = alike[i] <= alike[j] ? Pair{uprights[i], uprights[j]}
                                     : Pair{uprights[j], uprights[i]};
       }
@@ -118,6 +121,7 @@ void LookAlikePoses::pair_uprights(const std::vector<ViewEdge>& view,
     used[best.first] = used[best.second] = 1;
     needed_px -= std::min(view[best.first].length_px, view[best.second].length_px);
     pairs.push_back(best);
+    done += best_work;
   }
 }
 

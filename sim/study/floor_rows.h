@@ -42,10 +42,12 @@ class FloorRows {
     const auto scan = [&](std::size_t first, std::size_t last, double x0, double x1) {
       const auto before = [](const Eigen::Vector2d& p, double x) { return p.x() < x; };
       const auto end = at_m_.begin() + static_cast<std::ptrdiff_t>(last);
-      auto p = std::lower_bound(at_m_.begin() + static_cast<std::ptrdiff_t>(first), end, x0, before);
+      auto p =
+          std::lower_bound(at_m_.begin() + static_cast<std::ptrdiff_t>(first), end, x0, before);
       for (; p != end && p->x() <= x1; ++p) {
         const double d2 = (*p - at_m).squaredNorm();
-        if (d2 >= inner2 && d2 <= outer2) visit(number_[static_cast<std::size_t>(p - at_m_.begin())]);
+        if (d2 >= inner2 && d2 <= outer2)
+          visit(number_[static_cast<std::size_t>(p - at_m_.begin())]);
       }
     };
     constexpr double slack = 1e-9;  // of rounding, relative and metres; the ring itself is exact
@@ -55,7 +57,8 @@ class FloorRows {
     for (; r != rows_.end() && r->row <= last; ++r) {
       const double low = row_m_ * static_cast<double>(r->row) - at_m.y(), high = low + row_m_;
       const double nearest = std::max({low, -high, 0.0}), farthest = std::max(-low, high);
-      const double wide = std::sqrt(std::max(0.0, outer2 - nearest * nearest)) * (1 + slack) + slack;
+      const double wide =
+          std::sqrt(std::max(0.0, outer2 - nearest * nearest)) * (1 + slack) + slack;
       const double hole =
           std::sqrt(std::max(0.0, inner2 - farthest * farthest)) * (1 - slack) - slack;
       const std::size_t first = r->first;

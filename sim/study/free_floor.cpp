@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/error.h"
+#include "calib/statistics/random.h"
 #include "localise/place.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
@@ -58,7 +59,9 @@ bool Standing::is_free(const Eigen::Vector2d& at_m) const {
 }
 
 FreeFloor::FreeFloor(const Visibility& visibility, double eye_height_m)
-    : visibility_(visibility), height_m_(eye_height_m), standing_(visibility.world(), eye_height_m) {
+    : visibility_(visibility),
+      height_m_(eye_height_m),
+      standing_(visibility.world(), eye_height_m) {
   spread();
 }
 

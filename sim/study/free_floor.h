@@ -39,9 +39,9 @@ class Standing {
 
 /// Where a robot can stand and get to from the route. Immutable.
 ///
-/// From the route a search spreads over a lattice of 0.15 m, from node to node, as long as the robot
-/// can stand at each (is_free) and no surface separates them at the camera's height. A place is
-/// reached if the robot can stand there and a reached node of the 3 x 3 around it is in sight.
+/// From the route a search spreads over a lattice of 0.15 m, from node to node, as long as the
+/// robot can stand at each (is_free) and no surface separates them at the camera's height. A place
+/// is reached if the robot can stand there and a reached node of the 3 x 3 around it is in sight.
 class FreeFloor {
  public:
   /// Keeps a reference to `visibility`.

@@ -11,6 +11,7 @@
 #include "localise/place.h"
 #include "sim/study/upright_edges.h"
 #include "sim/study/wire_frame.h"
+#include "sim/world.h"
 
 namespace vernier::sim::internal {
 
@@ -44,7 +45,10 @@ double left_of(const Eigen::Vector2d& at,
   return direction.x() * d.y() - direction.y() * d.x();
 }
 
-bool fit_uprights(const UprightEdges& world, const Upright& p, const Upright& q, const Visit& fits) {
+bool fit_uprights(const UprightEdges& world,
+                  const Upright& p,
+                  const Upright& q,
+                  const Visit& fits) {
   const Eigen::Vector2d between = q.at_m - p.at_m;
   const UprightEdges::Matches of_p = world.matches(p), of_q = world.matches(q);
   bool enough = false;
@@ -113,8 +117,8 @@ void LookAlikePoses::pair_uprights(const std::vector<ViewEdge>& view,
         if (per_length >= least) continue;
         least = per_length;
         best_work = work;
-        best = alike[i] <= alike[j] ? Pair{uprights[i], uprights[j]}
-                                    : Pair{uprights[j], uprights[i]};
+        best =
+            alike[i] <= alike[j] ? Pair{uprights[i], uprights[j]} : Pair{uprights[j], uprights[i]};
       }
     }
     if (best.first < 0) break;

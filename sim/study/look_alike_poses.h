@@ -18,10 +18,10 @@ namespace vernier::sim::internal {
 ///
 ///     turn = angle(b - a) - angle(q - p),   shift = a - R(turn) p
 ///
-/// An upright and a level edge of the view are fitted likewise to every upright with a level edge at
-/// that height and that distance from it. A view may differ somewhere from a place that looks like
-/// it, so several disjoint pairs are taken, until their shorter edges have `needed_share` of the
-/// image length of all edges together: a pose that none of them gives leaves more than that
+/// An upright and a level edge of the view are fitted likewise to every upright with a level edge
+/// at that height and that distance from it. A view may differ somewhere from a place that looks
+/// like it, so several disjoint pairs are taken, until their shorter edges have `needed_share` of
+/// the image length of all edges together: a pose that none of them gives leaves more than that
 /// unexplained. The quickest are taken first, and at most six; fewer where no edge is rare among
 /// very many.
 class LookAlikePoses {

@@ -37,9 +37,8 @@ std::string_view name(QueryProtocol protocol) {
 }
 
 QueryProtocol query_protocol(std::string_view name_of) {
-  for (const auto protocol :
-       {QueryProtocol::near_path, QueryProtocol::path, QueryProtocol::anywhere,
-        QueryProtocol::free}) {
+  for (const auto protocol : {QueryProtocol::near_path, QueryProtocol::path,
+                              QueryProtocol::anywhere, QueryProtocol::free}) {
     if (name(protocol) == name_of) return protocol;
   }
   throw Error("protocol " + vernier::internal::in_quotes(name_of), "unknown protocol",

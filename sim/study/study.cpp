@@ -120,8 +120,8 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
 /// A ceiling that no store of the folder has, and this shard's part of it.
 struct MissingCeiling {
   const ExperimentSettings* settings;
-  std::vector<int> of_query;     ///< as ceiling_part() stores them
-  std::vector<int> mine;         ///< the queries to compute
+  std::vector<int> of_query;  ///< as ceiling_part() stores them
+  std::vector<int> mine;      ///< the queries to compute
 };
 
 /// Where the queries of a cell's experiments stand, by places_key.

@@ -66,9 +66,9 @@ struct WorldCeiling {
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;  ///< ascending
-  std::vector<ClusterCount> maps;   ///< one entry per block
-  int trials_per_block = 50;        ///< trial t belongs to block t / trials_per_block
+  std::vector<TrialResult> trials;      ///< ascending
+  std::vector<ClusterCount> maps;       ///< one entry per block
+  int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
   std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
 };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "sim/study/floor_rows.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {

@@ -153,12 +153,13 @@ TEST(AliasFinder, AnEdgeThatMayDifferHidesNoAlias) {
   EXPECT_EQ(aliases_of(world, to_the_far_wall).elsewhere, 1);
 }
 
-/// A hall of 14.4 x 6 m whose long walls have a board at two of every three places, 0.6 m apart, but
-/// for a few that are missing.
+/// A hall of 14.4 x 6 m whose long walls have a board at two of every three places, 0.6 m apart,
+/// but for a few that are missing.
 World hall_of_boards() {
   WorldDescription d;
   for (const double side : {3.0, -3.0}) {
-    d.loose.surfaces_m.push_back({{0, side, 0}, {14.4, side, 0}, {14.4, side, 2.5}, {0, side, 2.5}});
+    d.loose.surfaces_m.push_back(
+        {{0, side, 0}, {14.4, side, 0}, {14.4, side, 2.5}, {0, side, 2.5}});
     for (int place = 0; place < 24; ++place) {
       if (place % 3 == 0 || (side > 0 && (place == 10 || place == 17))) continue;
       const double x = 0.6 * place;
@@ -239,7 +240,8 @@ TEST(AliasFinder, ManyUprightsInOneRoomAreSearched) {
   const auto cpu_s = [] {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+    return static_cast<double>(used.ru_utime.tv_sec) +
+           1e-6 * static_cast<double>(used.ru_utime.tv_usec);
   };
   const double before = cpu_s();
   const Aliases found = finder.aliases({10, 10, 0.3});

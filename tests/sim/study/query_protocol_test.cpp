@@ -225,7 +225,8 @@ TEST(QueryProtocol, FreeIsUniformOverTheFloorAndTheHeadings) {
     of_places += (count[i] - expected) * (count[i] - expected) / expected;
     ++cells;
   }
-  for (const double n : sectors) of_headings += (n - trials / 16.) * (n - trials / 16.) * 16 / trials;
+  for (const double n : sectors)
+    of_headings += (n - trials / 16.) * (n - trials / 16.) * 16 / trials;
   EXPECT_LT(of_places, limit(cells));
   EXPECT_LT(of_headings, limit(16));
   EXPECT_EQ(places.draw(5, 3).x_m, places.draw(5, 3).x_m);

@@ -21,21 +21,47 @@
 
 namespace vernier::sim {
 
+namespace internal {
+class FreeFloor;
+}
+
 /// How far from the recorded route queries are drawn. It affects results more than any other
 /// setting and is part of every result.
 enum class QueryProtocol {
   near_path,  ///< ± 0.1 m across the route, ± 5°
   path,       ///< ± 0.3 m, ± 15°
   anywhere,   ///< ± 0.6 m, any heading
+  free,       ///< all of the free floor that can be reached from the route, any heading
 };
 
 std::string_view name(QueryProtocol protocol);
-/// Throws Error for a name other than near_path, path, anywhere.
+/// Throws Error for a name other than near_path, path, anywhere, free.
 QueryProtocol query_protocol(std::string_view name);
 
-/// Pose of query `trial`: uniform along the route, across it and in heading; drawn again (from the
-/// same stream) where a robot of 0.12 m radius could not stand or a surface separates the position
-/// from the route. Throws Error after 1000 draws without success.
+/// Where queries stand in a world: poses by trial, for one protocol. Immutable.
+///
+/// Uniform along the route, across it and in heading; drawn again (from the same stream) where a
+/// robot of 0.12 m radius could not stand or a surface separates the position from the route. For
+/// QueryProtocol::free, uniform over the floor that such a robot can get to from the route, which
+/// takes a search of that floor at construction.
+class QueryPlaces {
+ public:
+  /// Keeps a reference to `visibility`. Throws Error if the world has no route.
+  QueryPlaces(const Visibility& visibility, QueryProtocol protocol, double eye_height_m);
+  ~QueryPlaces();
+  QueryPlaces(QueryPlaces&&) noexcept;
+
+  /// Throws Error after 1000 draws without success, or for a free floor that is not closed off.
+  localise::Pose2D draw(std::uint64_t seed, std::uint32_t trial) const;
+
+ private:
+  const Visibility& visibility_;
+  QueryProtocol protocol_;
+  double eye_height_m_;
+  std::unique_ptr<const internal::FreeFloor> floor_;  // of QueryProtocol::free
+};
+
+/// QueryPlaces::draw, for a single query.
 localise::Pose2D draw_query(const Visibility& visibility,
                             QueryProtocol protocol,
                             double eye_height_m,
@@ -110,11 +136,13 @@ MapViews map_views(const Visibility& visibility,
 class LocalisationExperiment {
  public:
   /// Keeps a reference to `visibility`; `looks` is needed for maps and blocks only. Throws Error
-  /// for settings out of range, or a rig without covariance if sources.calibration > 0.
+  /// for settings out of range, or a rig without covariance if sources.calibration > 0. `places`
+  /// are those of the settings' protocol and height; without, it makes its own.
   LocalisationExperiment(const Visibility& visibility,
                          const RigEstimate& rig,
                          std::shared_ptr<const MapViews> looks,
-                         ExperimentSettings settings);
+                         ExperimentSettings settings,
+                         std::shared_ptr<const QueryPlaces> places = nullptr);
 
   /// Runs the trials of one block: the map is recorded once, with draws of its own. With
   /// MapRig::same the map is recorded again for every trial. Results depend on (settings, block,
@@ -140,6 +168,7 @@ class LocalisationExperiment {
   const Visibility& visibility_;
   RigEstimate rig_;
   std::shared_ptr<const MapViews> map_views_;
+  std::shared_ptr<const QueryPlaces> places_;
   ExperimentSettings settings_;
   Sensor sensor_;
   std::unique_ptr<RigSampler> sampler_;  // null without calibration error

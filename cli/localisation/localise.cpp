@@ -175,7 +175,7 @@ void add_localise(CLI::App& app, Session& session) {
   verb->add_option("map", o->map, "map file")->required();
   add_view_options(*verb, o->views);
   verb->add_option("--protocol", o->protocol,
-                   "where the simulated robot asks: near_path, path or anywhere")
+                   "where the simulated robot asks: near_path, path, anywhere or free")
       ->capture_default_str();
   verb->add_option("-n", o->queries, "number of simulated queries")
       ->check(CLI::Range(1u, 1'000'000u))

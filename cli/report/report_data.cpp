@@ -68,18 +68,17 @@ std::string fill(const std::string& page,
 
 Json report_study(const Study& study, const StudyResults& results) {
   const StudyCell& first = study.file.cells[0];
-  Json json{
-      {"file", "study.toml"},
-      {"trials", study.file.trials},
-      {"seed", first.experiment.seed},
-      {"protocol", name(first.experiment.protocol)},
-      {"method", first.experiment.method},
-      {"world_ceiling",
-       std::isfinite(results.cells[0].ceiling) ? Json(results.cells[0].ceiling) : Json(nullptr)},
-      {"commands", results.commands},
-      {"sweep", nullptr},
-      {"cells", Json::array()},
-      {"comparisons", comparisons_json(results)}};
+  Json json{{"file", "study.toml"},
+            {"trials", study.file.trials},
+            {"seed", first.experiment.seed},
+            {"protocol", name(first.experiment.protocol)},
+            {"method", first.experiment.method},
+            {"world_ceiling",
+             results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr)},
+            {"commands", results.commands},
+            {"sweep", nullptr},
+            {"cells", Json::array()},
+            {"comparisons", comparisons_json(results)}};
   if (study.file.sweep_keys.size() == 1) {
     const std::string& key = study.file.sweep_keys[0];
     Json values = Json::array();

@@ -162,7 +162,13 @@ Json cell_json(const CellResult& cell) {
           {"cpu_ms_p95", json_number(s.cpu_ms_p95)},
           {"wall_ms_mean", of_trials(s.wall_ms_mean)},
           {"protocol", name(cell.cell.experiment.protocol)},
-          {"world_ceiling", json_number(cell.ceiling)},
+          {"world_ceiling", cell.ceiling ? Json(cell.ceiling->success) : Json()},
+          {"world_ceiling_interval_95",
+           cell.ceiling ? pair(cell.ceiling->success_interval_95) : Json()},
+          {"world_ceiling_queries", cell.ceiling ? Json(cell.ceiling->queries) : Json()},
+          {"unaliased_share", cell.ceiling ? Json(cell.ceiling->unaliased) : Json()},
+          {"unaliased_share_interval_95",
+           cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
           {"reliability", reliability_json(cell.trials)},
           {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.trials) : Json()}};
 }
@@ -208,10 +214,9 @@ Json study_json(const Study& study, const StudyResults& results) {
 
 namespace {
 
-std::string interval_text(const CellSummary& summary) {
-  if (!summary.success_interval_95) return "none";
-  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * summary.success_interval_95->low,
-                     100 * summary.success_interval_95->high);
+std::string interval_text(const std::optional<Interval>& interval) {
+  if (!interval) return "none";
+  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * interval->low, 100 * interval->high);
 }
 
 /// A number with its unit, a dash where there is none: shards have a part of a ceiling's queries
@@ -224,21 +229,26 @@ std::string figure(double value, int digits, const char* unit = "") {
 
 std::string study_table(const Study& study, const StudyResults& results) {
   const bool swept = !study.file.sweep_keys.empty();
-  std::string text = fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
-                                 swept ? "cell" : "", "trials", "success", "95 % interval",
-                                 "answered", "of these", "ceiling", "median m", "cpu ms", "p95 ms");
+  std::string text =
+      fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
+                  swept ? "cell" : "", "trials", "success", "95 % interval", "answered", "of these",
+                  "ceiling", "95 % interval", "unaliased", "median m", "cpu ms", "p95 ms");
   std::set<std::string> missing;
   for (const CellResult& cell : results.cells) {
     const CellSummary s = summarise(cell);
     if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    const double of_trials = s.trials > 0 ? 1 : std::numeric_limits<double>::quiet_NaN();
-    text += fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
-                        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "",
-                        s.trials, figure(of_trials * 100 * s.success, 2, " %"), interval_text(s),
-                        figure(of_trials * 100 * s.coverage, 1, " %"),
-                        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
-                        figure(100 * cell.ceiling, 1, " %"), figure(s.median_error_m, 3),
-                        figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const double of_trials = s.trials > 0 ? 1 : nan;
+    text += fmt::format(
+        "{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
+        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
+        figure(of_trials * 100 * s.success, 2, " %"), interval_text(s.success_interval_95),
+        figure(of_trials * 100 * s.coverage, 1, " %"),
+        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
+        figure(cell.ceiling ? 100 * cell.ceiling->success : nan, 1, " %"),
+        cell.ceiling ? interval_text(cell.ceiling->success_interval_95) : "-",
+        figure(cell.ceiling ? 100 * cell.ceiling->unaliased : nan, 1, " %"),
+        figure(s.median_error_m, 3), figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
   }
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();

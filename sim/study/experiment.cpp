@@ -90,12 +90,18 @@ MapViews map_views(const Visibility& visibility,
 LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
                                                const RigEstimate& rig,
                                                std::shared_ptr<const MapViews> looks,
-                                               ExperimentSettings settings)
+                                               ExperimentSettings settings,
+                                               std::shared_ptr<const QueryPlaces> places)
     : visibility_(visibility),
       rig_(rig),
       map_views_(std::move(looks)),
+      places_(std::move(places)),
       settings_(std::move(settings)),
       sensor_(rig.rig, settings_.sources) {
+  if (!places_ && settings_.protocol == QueryProtocol::free) {
+    places_ = std::make_shared<const QueryPlaces>(visibility, settings_.protocol,
+                                                  settings_.mount.height_m);
+  }
   if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
 }
 
@@ -132,8 +138,9 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
                                               const Localiser& localiser) const {
   TrialResult result;
   result.trial = trial;
-  result.truth =
-      draw_query(visibility_, settings_.protocol, settings_.mount.height_m, settings_.seed, trial);
+  result.truth = places_ ? places_->draw(settings_.seed, trial)
+                         : draw_query(visibility_, settings_.protocol, settings_.mount.height_m,
+                                      settings_.seed, trial);
   NoiseFreeViewOptions looking = look_options(settings_);
   looking.with_corners = true;
   std::vector<Look> looks;

@@ -36,30 +36,6 @@ class FloorGrid {
     return false;
   }
 
-  /// Sets `found` to the points of all cells that a ring around a point touches, ascending.
-  void find_in_ring(const Eigen::Vector2d& at_m,
-                    double inner_m,
-                    double outer_m,
-                    std::vector<int>& found) const {
-    found.clear();
-    const auto take = [&](int number) {
-      found.push_back(number);
-      return false;
-    };
-    const std::int64_t y1 = column(at_m.y() + outer_m);
-    for (std::int64_t y = column(at_m.y() - outer_m); y <= y1; ++y) {
-      const double low = cell_m_ * static_cast<double>(y) - at_m.y(), high = low + cell_m_;
-      const double nearest = std::max({low, -high, 0.0}), farthest = std::max(-low, high);
-      const double wide = std::sqrt(std::max(0.0, outer_m * outer_m - nearest * nearest));
-      const double hole = std::sqrt(std::max(0.0, inner_m * inner_m - farthest * farthest));
-      const std::int64_t x0 = column(at_m.x() - wide), x3 = column(at_m.x() + wide);
-      const std::int64_t x1 = column(at_m.x() - hole), x2 = column(at_m.x() + hole);
-      for (std::int64_t x = x0; x <= x1; ++x) any_in(x, y, take);
-      for (std::int64_t x = std::max(x1 + 1, x2); x <= x3; ++x) any_in(x, y, take);
-    }
-    std::sort(found.begin(), found.end());
-  }
-
  private:
   std::int64_t column(double coordinate_m) const {
     return static_cast<std::int64_t>(std::floor(coordinate_m / cell_m_));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
 
+#include <memory>
+#include <numbers>
 #include <string>
 
 #include "calib/base/shown_text.h"
@@ -9,6 +11,7 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
+#include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -27,17 +30,59 @@ std::string_view name(QueryProtocol protocol) {
       return "path";
     case QueryProtocol::anywhere:
       return "anywhere";
+    case QueryProtocol::free:
+      return "free";
   }
   return "";
 }
 
 QueryProtocol query_protocol(std::string_view name_of) {
-  for (const auto protocol :
-       {QueryProtocol::near_path, QueryProtocol::path, QueryProtocol::anywhere}) {
+  for (const auto protocol : {QueryProtocol::near_path, QueryProtocol::path,
+                              QueryProtocol::anywhere, QueryProtocol::free}) {
     if (name(protocol) == name_of) return protocol;
   }
   throw Error("protocol " + vernier::internal::in_quotes(name_of), "unknown protocol",
-              "use near_path, path or anywhere");
+              "use near_path, path, anywhere or free");
+}
+
+QueryPlaces::QueryPlaces(const Visibility& visibility, QueryProtocol protocol, double eye_height_m)
+    : visibility_(visibility), protocol_(protocol), eye_height_m_(eye_height_m) {
+  if (!(route_length_m(visibility.world().route) > 0)) {
+    throw Error("queries", "the world has no route", "add [[route]] to the world");
+  }
+  if (protocol == QueryProtocol::free) {
+    floor_ = std::make_unique<const FreeFloor>(visibility, eye_height_m);
+  }
+}
+
+QueryPlaces::~QueryPlaces() = default;
+QueryPlaces::QueryPlaces(QueryPlaces&&) noexcept = default;
+
+Pose2D QueryPlaces::draw(std::uint64_t seed, std::uint32_t trial) const {
+  const World& world = visibility_.world();
+  RandomStream draws(
+      {.seed = seed, .trial = trial, .source = static_cast<std::uint32_t>(DrawSource::query_pose)});
+  if (floor_) {
+    const Eigen::Vector2d at = floor_->draw(draws);
+    return {at.x(), at.y(), draws.uniform(-std::numbers::pi, std::numbers::pi)};
+  }
+  const double length = route_length_m(world.route);
+  const ProtocolSpan reach = span(protocol_);
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const Pose2D on_route = route_point(world.route, draws.uniform(0, length)).pose;
+    const double across = draws.uniform(-reach.across_m, reach.across_m);
+    const double turn = draws.uniform(-reach.heading_rad, reach.heading_rad);
+    const Pose2D query = compose(on_route, {0, across, turn});
+    if (!is_free(world, {query.x_m, query.y_m}, robot_radius_m, eye_height_m_ + robot_top_m))
+      continue;
+    if (!visibility_.sees({on_route.x_m, on_route.y_m, eye_height_m_},
+                          {query.x_m, query.y_m, eye_height_m_})) {
+      continue;
+    }
+    return query;
+  }
+  throw Error("queries", "no free position near the route in 1000 draws",
+              "move the route through free space");
 }
 
 Pose2D draw_query(const Visibility& visibility,
@@ -45,29 +90,7 @@ Pose2D draw_query(const Visibility& visibility,
                   double eye_height_m,
                   std::uint64_t seed,
                   std::uint32_t trial) {
-  const World& world = visibility.world();
-  const double length = route_length_m(world.route);
-  if (!(length > 0)) {
-    throw Error("queries", "the world has no route", "add [[route]] to the world");
-  }
-  const ProtocolSpan reach = span(protocol);
-  RandomStream draws(
-      {.seed = seed, .trial = trial, .source = static_cast<std::uint32_t>(DrawSource::query_pose)});
-  for (int attempt = 0; attempt < 1000; ++attempt) {
-    const Pose2D on_route = route_point(world.route, draws.uniform(0, length)).pose;
-    const double across = draws.uniform(-reach.across_m, reach.across_m);
-    const double turn = draws.uniform(-reach.heading_rad, reach.heading_rad);
-    const Pose2D query = compose(on_route, {0, across, turn});
-    if (!is_free(world, {query.x_m, query.y_m}, robot_radius_m, eye_height_m + robot_top_m))
-      continue;
-    if (!visibility.sees({on_route.x_m, on_route.y_m, eye_height_m},
-                         {query.x_m, query.y_m, eye_height_m})) {
-      continue;
-    }
-    return query;
-  }
-  throw Error("queries", "no free position near the route in 1000 draws",
-              "move the route through free space");
+  return QueryPlaces(visibility, protocol, eye_height_m).draw(seed, trial);
 }
 
 }  // namespace vernier::sim

@@ -48,35 +48,6 @@ bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& p
   return inside;
 }
 
-/// Bounding box of the poses that are accepted: of segments and surfaces, from the floor at 0 or
-/// lower, and of the route with the largest offset of a query.
-WorldExtent standing_box(const World& world) {
-  WorldExtent box{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
-                  Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  const auto take_in = [&](const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m) {
-    box.low_m = box.low_m.cwiseMin(low_m);
-    box.high_m = box.high_m.cwiseMax(high_m);
-  };
-  for (const WorldSegment& segment : world.segments) {
-    take_in(segment.a_m, segment.a_m);
-    take_in(segment.b_m, segment.b_m);
-  }
-  for (const WorldSurface& surface : world.surfaces) {
-    for (const Eigen::Vector3d& point : surface.polygon_m) take_in(point, point);
-  }
-  const double across_m = span(QueryProtocol::anywhere).across_m;
-  const Eigen::Vector3d about(across_m, across_m, 0);
-  for (const RouteLeg& leg : world.route) {
-    for (const Eigen::Vector2d& p : leg.points_m) {
-      const Eigen::Vector3d at(p.x(), p.y(), 0);
-      take_in(at - about, at + about);
-    }
-  }
-  if (box.low_m.x() > box.high_m.x()) return extent(world);  // an empty world
-  box.low_m.z() = std::min(0.0, box.low_m.z());
-  return box;
-}
-
 /// Height of the highest level surface over a point, such as a ceiling; infinite if there is none.
 double ceiling_height_m(const World& world, const Eigen::Vector2d& at_m) {
   double highest = -std::numeric_limits<double>::infinity();
@@ -179,26 +150,61 @@ ProtocolSpan span(QueryProtocol protocol) {
     case QueryProtocol::path:
       return {0.3, 15 * degree};
     case QueryProtocol::anywhere:
+    case QueryProtocol::free:  // has no span: farther is free too
       break;
   }
   return {0.6, 180 * degree};
 }
 
-bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
+WorldExtent standing_box(const World& world) {
+  WorldExtent box{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
+                  Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
+  const auto take_in = [&](const Eigen::Vector3d& low_m, const Eigen::Vector3d& high_m) {
+    box.low_m = box.low_m.cwiseMin(low_m);
+    box.high_m = box.high_m.cwiseMax(high_m);
+  };
+  for (const WorldSegment& segment : world.segments) {
+    take_in(segment.a_m, segment.a_m);
+    take_in(segment.b_m, segment.b_m);
+  }
   for (const WorldSurface& surface : world.surfaces) {
-    double low = surface.polygon_m[0].z(), high = low;
-    for (const auto& point : surface.polygon_m) {
-      low = std::min(low, point.z());
-      high = std::max(high, point.z());
-    }
-    if (low > height_m || high < floor_m) continue;
-    const auto& polygon = surface.polygon_m;
-    if (high - low < 1e-6 && inside_plan(at_m, polygon)) return false;
-    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-      if (plan_distance(at_m, polygon[i].head<2>(), polygon[j].head<2>()) < radius_m) return false;
+    for (const Eigen::Vector3d& point : surface.polygon_m) take_in(point, point);
+  }
+  const double across_m = span(QueryProtocol::anywhere).across_m;
+  const Eigen::Vector3d about(across_m, across_m, 0);
+  for (const RouteLeg& leg : world.route) {
+    for (const Eigen::Vector2d& p : leg.points_m) {
+      const Eigen::Vector3d at(p.x(), p.y(), 0);
+      take_in(at - about, at + about);
     }
   }
-  return true;
+  if (box.low_m.x() > box.high_m.x()) return extent(world);  // an empty world
+  box.low_m.z() = std::min(0.0, box.low_m.z());
+  return box;
+}
+
+bool blocks(const WorldSurface& surface,
+            const Eigen::Vector2d& at_m,
+            double radius_m,
+            double height_m) {
+  const auto& polygon = surface.polygon_m;
+  double low = polygon[0].z(), high = low;
+  for (const auto& point : polygon) {
+    low = std::min(low, point.z());
+    high = std::max(high, point.z());
+  }
+  if (low > height_m || high < floor_m) return false;
+  if (high - low < 1e-6 && inside_plan(at_m, polygon)) return true;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    if (plan_distance(at_m, polygon[i].head<2>(), polygon[j].head<2>()) < radius_m) return true;
+  }
+  return false;
+}
+
+bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m) {
+  return std::none_of(world.surfaces.begin(), world.surfaces.end(), [&](const auto& surface) {
+    return blocks(surface, at_m, radius_m, height_m);
+  });
 }
 
 std::string standing_fault(const Visibility& visibility, const Pose2D& pose, double eye_height_m) {

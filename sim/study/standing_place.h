@@ -21,6 +21,16 @@ struct ProtocolSpan {
 };
 ProtocolSpan span(QueryProtocol protocol);
 
+/// Bounding box of the poses that are accepted: of segments and surfaces, from the floor at 0 or
+/// lower, and of the route with 0.6 m around it.
+WorldExtent standing_box(const World& world);
+
+/// Whether a surface keeps a robot of the given radius and height from standing at a point.
+bool blocks(const WorldSurface& surface,
+            const Eigen::Vector2d& at_m,
+            double radius_m,
+            double height_m);
+
 /// Whether a robot of the given radius can stand at a point: no surface below `height_m` is closer
 /// than the radius.
 bool is_free(const World& world, const Eigen::Vector2d& at_m, double radius_m, double height_m);

@@ -120,29 +120,48 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
 /// A ceiling that no store of the folder has, and this shard's part of it.
 struct MissingCeiling {
   const ExperimentSettings* settings;
-  std::vector<double> of_query;  ///< NaN until it is known
-  std::vector<int> mine;         ///< the queries to compute
+  std::vector<int> of_query;  ///< as ceiling_part() stores them
+  std::vector<int> mine;      ///< the queries to compute
 };
+
+/// Where the queries of a cell's experiments stand, by places_key.
+using AllPlaces = std::map<std::string, std::shared_ptr<const QueryPlaces>>;
+
+std::string places_key(const ExperimentSettings& settings) {
+  return fmt::format("{} {}", name(settings.protocol), settings.mount.height_m);
+}
+
+AllPlaces all_places(const Study& study, const Visibility& visibility) {
+  AllPlaces all;
+  for (const StudyCell& cell : study.file.cells) {
+    const ExperimentSettings& settings = cell.experiment;
+    auto& places = all[places_key(settings)];
+    if (places) continue;
+    places = with_errors_of(study.file.world, [&] {
+      return std::make_shared<const QueryPlaces>(visibility, settings.protocol,
+                                                 settings.mount.height_m);
+    });
+  }
+  return all;
+}
 
 /// Computes this shard's queries of a ceiling until asked to stop; calls `one_done` after each.
 void compute_queries(const Study& study,
                      const Visibility& visibility,
+                     const QueryPlaces& places,
                      MissingCeiling& ceiling,
                      tbb::task_arena& arena,
                      const std::stop_token& stop,
                      const std::function<void()>& one_done) {
-  const ExperimentSettings& settings = *ceiling.settings;
   NoiseFreeViewOptions options;
-  options.mount = settings.mount;
+  options.mount = ceiling.settings->mount;
   const AliasFinder finder(visibility, study.rig.rig, options);
   in_parallel(arena, static_cast<int>(ceiling.mine.size()), [&](int i) {
     if (stop.stop_requested()) return;
     const int query = ceiling.mine[i];
-    ceiling.of_query[query] =
-        finder
-            .aliases(draw_query(visibility, settings.protocol, settings.mount.height_m,
-                                settings.seed, static_cast<std::uint32_t>(query)))
-            .ceiling();
+    const Aliases found =
+        finder.aliases(places.draw(ceiling.settings->seed, static_cast<std::uint32_t>(query)));
+    ceiling.of_query[query] = found.determined ? found.elsewhere : not_determined;
     one_done();
   });
 }
@@ -154,10 +173,10 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
   std::map<std::string, MissingCeiling> missing;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = ceiling_key(study, cell.experiment);
-    if (missing.count(key) > 0 || !std::isnan(noted_ceiling(study, notes, key))) continue;
+    if (missing.count(key) > 0 || noted_ceiling(study, notes, key)) continue;
     MissingCeiling ceiling{&cell.experiment, noted_queries(study, notes, key), {}};
-    for (int i = run.shard.index; i < ceiling_queries(study); i += run.shard.count) {
-      if (std::isnan(ceiling.of_query[i])) ceiling.mine.push_back(i);
+    for (int i = run.shard.index; i < ceiling_queries(study, key); i += run.shard.count) {
+      if (ceiling.of_query[i] == not_known) ceiling.mine.push_back(i);
     }
     if (!ceiling.mine.empty()) missing.emplace(key, std::move(ceiling));
   }
@@ -168,6 +187,7 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
 void add_ceilings(const Study& study,
                   const Visibility& visibility,
                   const StudyRun& run,
+                  const AllPlaces& places,
                   std::map<std::string, MissingCeiling> missing,
                   tbb::task_arena& arena,
                   StudyStore& store) {
@@ -183,16 +203,13 @@ void add_ceilings(const Study& study,
     if (run.ceiling_progress) run.ceiling_progress(done, total);
   };
   for (auto& [key, ceiling] : missing) {
-    compute_queries(study, visibility, ceiling, arena, run.stop, one_done);
-    const double whole = mean_of_queries(ceiling.of_query);
-    if (!std::isnan(whole)) {
-      store.set_note(key, fmt::format("{}", whole));
-      continue;
-    }
-    for (const int query : ceiling.mine) {
-      if (std::isnan(ceiling.of_query[query])) continue;  // stopped before it
-      store.set_note(query_key(key, query), fmt::format("{}", ceiling.of_query[query]));
-    }
+    compute_queries(study, visibility, *places.at(places_key(*ceiling.settings)), ceiling, arena,
+                    run.stop, one_done);
+    const auto& all = ceiling.of_query;
+    std::vector<int> mine(all.size(), not_known);
+    for (const int query : ceiling.mine) mine[query] = all[query];
+    const auto [part, text] = ceiling_part(key, mine);
+    if (!text.empty()) store.set_note(part, text);
   }
 }
 
@@ -208,15 +225,17 @@ void check_processor(const StoredResults& stored, const std::filesystem::path& f
 }
 
 /// Throws Error if a cell cannot be run, before anything is written.
-void check_cells(const Study& study, const Visibility& visibility) {
+void check_cells(const Study& study, const Visibility& visibility, const AllPlaces& places) {
   for (const StudyCell& cell : study.file.cells) {
-    const LocalisationExperiment tried(visibility, study.rig, nullptr, cell.experiment);
+    const LocalisationExperiment tried(visibility, study.rig, nullptr, cell.experiment,
+                                       places.at(places_key(cell.experiment)));
   }
 }
 
 /// Runs the blocks and stores each as soon as it is done.
 void run_jobs(const Study& study,
               const Visibility& visibility,
+              const AllPlaces& places,
               const StudyRun& run,
               const std::vector<Job>& jobs,
               tbb::task_arena& arena,
@@ -237,7 +256,8 @@ void run_jobs(const Study& study,
     if (run.stop.stop_requested()) return;
     const Job& job = jobs[i];
     const LocalisationExperiment experiment(
-        visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment);
+        visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment,
+        places.at(places_key(job.cell->experiment)));
     const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
                             .first = static_cast<std::uint32_t>(job.first),
                             .count = static_cast<std::uint32_t>(job.count)};
@@ -272,7 +292,8 @@ void run_study(const Study& study, const StudyRun& run) {
   }
   check_processor(stored, run.folder);
   const Visibility visibility(study.world);
-  check_cells(study, visibility);
+  const AllPlaces places = all_places(study, visibility);
+  check_cells(study, visibility, places);
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);
@@ -284,8 +305,9 @@ void run_study(const Study& study, const StudyRun& run) {
 
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  add_ceilings(study, visibility, run, missing_ceilings(study, run, stored.notes), arena, store);
-  run_jobs(study, visibility, run, jobs, arena, store);
+  add_ceilings(study, visibility, run, places, missing_ceilings(study, run, stored.notes), arena,
+               store);
+  run_jobs(study, visibility, places, run, jobs, arena, store);
 }
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {

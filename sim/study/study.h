@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -53,13 +54,22 @@ struct StudyRun {
 /// threads are asked for, never lowered, and a limit that the caller holds stays.
 void run_study(const Study& study, const StudyRun& run);
 
+/// The limit that a world sets for any localiser, for the queries of a cell (ceiling.h).
+struct WorldCeiling {
+  double success = 1;    ///< mean success of the best guess among poses that look the same
+  double unaliased = 1;  ///< share of the views that no other pose has
+  /// For further queries: Wilson's, for which guesses vary no more than trials that fail or do not.
+  Interval success_interval_95, unaliased_interval_95;
+  int queries = 0;
+};
+
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;  ///< ascending
-  std::vector<ClusterCount> maps;   ///< one entry per block
-  int trials_per_block = 50;        ///< trial t belongs to block t / trials_per_block
-  double ceiling = 1;               ///< of the world, for this cell's protocol and mount
+  std::vector<TrialResult> trials;      ///< ascending
+  std::vector<ClusterCount> maps;       ///< one entry per block
+  int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
+  std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
 };
 
 /// The part of a study that is stored in the folder.

@@ -8,18 +8,21 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/fingerprint.h"
 #include "calib/base/program_run.h"
-#include "calib/base/text_lines.h"
+#include "calib/error.h"
+#include "calib/interval.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
@@ -41,16 +44,21 @@ constexpr int results_version = 1;
 /// The same of one method: `lines` since candidates without hope are given up.
 constexpr int lines_version = 3;
 
+/// The same of ceilings: 2 since they are searched by several pairs of edges.
+constexpr int ceiling_version = 2;
+
 /// Block size that is not part of a cell's key: all stores had it before sizes could differ.
 constexpr int usual_block = 50;
 
-/// A ceiling of the notes, not a number where they have none.
-double noted(const StoreNotes& notes, const std::string& key) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto found = notes.find(key);
-  if (found == notes.end()) return nan;
-  const double value = to_real(found->second).value_or(nan);
-  return value > 0 && value <= 1 ? value : nan;
+/// "1:2 3:4 " as pairs; empty for other text.
+std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
+  std::vector<std::pair<int, int>> pairs;
+  std::istringstream in(text);
+  std::pair<int, int> pair;
+  char colon = 0;
+  while (in >> pair.first >> colon >> pair.second && colon == ':') pairs.push_back(pair);
+  if (!in.eof()) pairs.clear();
+  return pairs;
 }
 
 /// The content of the files that are words of a command: a program that has changed is another one.
@@ -135,37 +143,65 @@ std::string looks_key(const ExperimentSettings& s) {
                      s.map_headings);
 }
 
-int ceiling_queries(const Study& study) { return std::min(study.file.trials, 200); }
-
 std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
-  return fmt::format("ceiling {} {} {} {} {} {} {}", study.world_fingerprint, study.rig_fingerprint,
-                     name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed,
-                     ceiling_queries(study));
+  return fmt::format("ceiling {} {} {} {} {} {} {}", ceiling_version, study.world_fingerprint,
+                     study.rig_fingerprint, name(s.protocol), s.mount.height_m, s.mount.pitch_rad,
+                     s.seed);
 }
 
-std::string query_key(const std::string& ceiling, int query) {
-  return fmt::format("{} query {}", ceiling, query);
+int ceiling_queries(const Study& study, const std::string& ceiling) {
+  constexpr std::int64_t enough = 5000;
+  std::int64_t trials = 0;
+  for (const StudyCell& cell : study.file.cells) {
+    if (ceiling_key(study, cell.experiment) == ceiling) trials += study.file.trials;
+  }
+  return static_cast<int>(std::min(trials, enough));
 }
 
-std::vector<double> noted_queries(const Study& study,
-                                  const StoreNotes& notes,
-                                  const std::string& key) {
-  std::vector<double> of_query(static_cast<std::size_t>(ceiling_queries(study)));
+StoreNotes::value_type ceiling_part(const std::string& ceiling, const std::vector<int>& of_query) {
+  std::string text;
   for (std::size_t i = 0; i < of_query.size(); ++i) {
-    of_query[i] = noted(notes, query_key(key, static_cast<int>(i)));
+    if (of_query[i] != not_known) text += fmt::format("{}:{} ", i, of_query[i]);
+  }
+  return {fmt::format("{} part {}", ceiling, fingerprint(text)), text};
+}
+
+std::vector<int> noted_queries(const Study& study,
+                               const StoreNotes& notes,
+                               const std::string& ceiling) {
+  std::vector<int> of_query(static_cast<std::size_t>(ceiling_queries(study, ceiling)), not_known);
+  const std::string start = ceiling + " part ";
+  for (auto note = notes.lower_bound(start);
+       note != notes.end() && note->first.rfind(start, 0) == 0; ++note) {
+    for (const auto& [query, aliases] : number_pairs(note->second)) {
+      if (query < 0 || query >= static_cast<int>(of_query.size()) || aliases < not_determined) {
+        continue;
+      }
+      int& known = of_query[static_cast<std::size_t>(query)];
+      if (known != not_known && known != aliases) {
+        throw Error(fmt::format("query {} of the world ceiling", query),
+                    "two stores disagree on it",
+                    "the stores come from different builds or processors; run one again");
+      }
+      known = aliases;
+    }
   }
   return of_query;
 }
 
-double mean_of_queries(const std::vector<double>& of_query) {
-  double sum = 0;
-  for (const double ceiling : of_query) sum += ceiling;
-  return sum / static_cast<double>(of_query.size());
-}
-
-double noted_ceiling(const Study& study, const StoreNotes& notes, const std::string& key) {
-  const double whole = noted(notes, key);
-  return std::isnan(whole) ? mean_of_queries(noted_queries(study, notes, key)) : whole;
+std::optional<WorldCeiling> noted_ceiling(const Study& study,
+                                          const StoreNotes& notes,
+                                          const std::string& ceiling) {
+  double unaliased = 0, right = 0;
+  const std::vector<int> of_query = noted_queries(study, notes, ceiling);
+  for (const int aliases : of_query) {  // in their order, whichever was done first
+    if (aliases == not_known) return std::nullopt;
+    if (aliases == 0) ++unaliased;
+    if (aliases >= 0) right += 1.0 / (1 + aliases);
+  }
+  const auto all = static_cast<double>(of_query.size());
+  return WorldCeiling{right / all, unaliased / all, wilson_interval(right, all),
+                      wilson_interval(unaliased, all), static_cast<int>(of_query.size())};
 }
 
 std::string command_key(const std::string& command) { return "command " + command; }

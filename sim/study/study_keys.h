@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,19 +25,29 @@ std::string cell_key(const Study& study, const StudyCell& cell);
 /// Everything that the noise-free views of the map depend on.
 std::string looks_key(const ExperimentSettings& settings);
 
+/// What the ceiling of a cell depends on.
 std::string ceiling_key(const Study& study, const ExperimentSettings& settings);
-/// One query's share of a ceiling whose queries are shared among shards.
-std::string query_key(const std::string& ceiling, int query);
-/// The ceiling is the mean over this many of a cell's queries.
-int ceiling_queries(const Study& study);
 
-/// What the notes have of a ceiling's queries, not a number for the others.
-std::vector<double> noted_queries(const Study& study,
-                                  const StoreNotes& notes,
-                                  const std::string& key);
-/// The sum is in the order of the queries, whichever was done first.
-double mean_of_queries(const std::vector<double>& of_query);
-/// Not a number where the notes lack it or one of its queries.
-double noted_ceiling(const Study& study, const StoreNotes& notes, const std::string& key);
+/// Number of a ceiling's queries: as many as the trials of all cells that share it, up to 5,000, so
+/// that its cost stays a small part of the study's. They are the queries of trials 0, 1, ….
+int ceiling_queries(const Study& study, const std::string& ceiling);
+
+/// What is known of a query: the number of its aliases, or one of these.
+inline constexpr int not_determined = -1;  ///< its view fits poses in a continuum (ceiling.h)
+inline constexpr int not_known = -2;       ///< it is not computed yet
+
+/// Queries that one run has computed, as a note: under a key of its own, since shards and resumed
+/// runs have other parts.
+StoreNotes::value_type ceiling_part(const std::string& ceiling, const std::vector<int>& of_query);
+
+/// What the notes have of a ceiling's queries. Throws Error if two parts disagree on one.
+std::vector<int> noted_queries(const Study& study,
+                               const StoreNotes& notes,
+                               const std::string& ceiling);
+
+/// std::nullopt until all queries are stored.
+std::optional<WorldCeiling> noted_ceiling(const Study& study,
+                                          const StoreNotes& notes,
+                                          const std::string& ceiling);
 
 }  // namespace vernier::sim::internal

@@ -215,8 +215,24 @@ void ViewFrustum::bound_border() {
   }
 }
 
-Eigen::AlignedBox3d ViewFrustum::box(const Pose& T_camera_world) const {
+ViewVolume::ViewVolume(const Eigen::AlignedBox3d& around, const std::array<Plane, 4>& sides)
+    : around_(around) {
+  for (int i = 0; i < 4; ++i) {
+    normals_.row(i) = sides[static_cast<std::size_t>(i)].normal();
+    offsets_[i] = sides[static_cast<std::size_t>(i)].offset();
+  }
+  reach_ = normals_.cwiseAbs();
+}
+
+ViewVolume ViewFrustum::volume(const Pose& T_camera_world) const {
+  constexpr double margin_m = 1e-3;
   const Pose T_world_camera = T_camera_world.inverse();
+  const auto side = [&](double x, double y, double z) {
+    const Eigen::Vector3d normal = T_world_camera.R * Eigen::Vector3d(x, y, z).normalized();
+    return ViewVolume::Plane(normal, margin_m - normal.dot(T_world_camera.t));
+  };
+  const std::array<ViewVolume::Plane, 4> sides{side(1, 0, -outer_.x0), side(-1, 0, outer_.x1),
+                                               side(0, 1, -outer_.y0), side(0, -1, outer_.y1)};
   Eigen::AlignedBox3d box(T_world_camera.t);
   for (const double x : {outer_.x0, outer_.x1}) {
     for (const double y : {outer_.y0, outer_.y1}) {
@@ -225,10 +241,10 @@ Eigen::AlignedBox3d ViewFrustum::box(const Pose& T_camera_world) const {
   }
   if (!(box.max() - box.min()).allFinite()) {  // far_m is infinite
     const Eigen::Vector3d all = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-    return {-all, all};
+    return {{-all, all}, sides};
   }
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-3);
-  return {box.min() - margin, box.max() + margin};
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(margin_m);
+  return {{box.min() - margin, box.max() + margin}, sides};
 }
 
 bool ViewFrustum::clip(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Stretch& s) const {

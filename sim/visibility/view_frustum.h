@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "calib/camera.h"
@@ -18,6 +19,27 @@ struct ImageBox {
   bool contains(const Eigen::Vector2d& x) const {
     return x[0] >= x0 && x[0] <= x1 && x[1] >= y0 && x[1] <= y1;
   }
+};
+
+/// What a camera can see, from its eye on, wider by 1 mm: world frame.
+class ViewVolume {
+ public:
+  using Plane = Eigen::Hyperplane<double, 3>;  ///< positive inside
+  ViewVolume(const Eigen::AlignedBox3d& around, const std::array<Plane, 4>& sides);
+
+  /// False only for boxes outside; true for some of those too.
+  bool may_meet(const Eigen::AlignedBox3d& box) const {
+    if (!around_.intersects(box)) return false;
+    const Eigen::Vector3d centre = 0.5 * (box.min() + box.max());
+    const Eigen::Vector3d half = 0.5 * (box.max() - box.min());
+    // of each side, its distance from the box's innermost corner
+    return (normals_ * centre + reach_ * half + offsets_).minCoeff() >= 0;
+  }
+
+ private:
+  Eigen::AlignedBox3d around_;
+  Eigen::Matrix<double, 4, 3> normals_, reach_;  // reach_: their absolute values
+  Eigen::Vector4d offsets_;
 };
 
 /// The viewing volume of a camera: between two depths, and inside its image.
@@ -47,8 +69,8 @@ class ViewFrustum {
   /// Whether the point projects into the image, between near and far.
   bool contains(const Eigen::Vector3d& point) const;
 
-  /// Box (world frame) around the viewing volume and the eye, wider by 1 mm.
-  Eigen::AlignedBox3d box(const Pose& T_camera_world) const;
+  /// The eye and the volume in the world's frame.
+  ViewVolume volume(const Pose& T_camera_world) const;
 
   const ImageBox& outer() const { return outer_; }
   double near_m() const { return near_m_; }

@@ -138,8 +138,8 @@ struct Visibility::Index {
                const Pose& T,
                const BoxTree& features,
                double gap) const {
-    const AlignedBox3d box = frustum.box(T);
-    const auto meets = [&](const AlignedBox3d& other) { return box.intersects(other); };
+    const ViewVolume volume = frustum.volume(T);
+    const auto meets = [&](const AlignedBox3d& box) { return volume.may_meet(box); };
     pieces.find(meets, scratch.near_pieces);
     features.find(meets, scratch.near_features);
     scratch.grid.build(surfaces, scratch.near_pieces, T, frustum, gap);

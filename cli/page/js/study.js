@@ -11,7 +11,7 @@ const PROTOCOLS = {
   near_path: "queries up to 0.1 m from the recorded route, heading within ± 5° of it",
   path: "queries up to 0.3 m from the recorded route, heading within ± 15° of it",
   anywhere: "queries up to 0.6 m from the recorded route, any heading",
-  free: "queries anywhere on the free floor, any heading",
+  free: "queries anywhere on the floor that can be reached from the route, any heading",
 };
 
 const METHODS = {

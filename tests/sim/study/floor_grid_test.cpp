@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "sim/study/floor_rows.h"
+
 namespace vernier {
 
 using namespace vernier::sim::internal;
@@ -31,21 +33,21 @@ struct PointsOnFloor {
   FloorGrid grid;
 };
 
-TEST(FloorGrid, FindsEveryPointInARing) {
-  for (const double cell_m : {0.1, 1.0, 7.0}) {
-    const PointsOnFloor floor(-9980, 9975, cell_m);
+TEST(FloorRows, FindTheVeryPointsOfARing) {
+  for (const double row_m : {0.1, 1.0, 7.0}) {
+    const PointsOnFloor floor(-9980, 9975, 1);
+    const FloorRows rows(floor.points, row_m);
     for (const double outer : {0.05, 0.5, 3.0, 15.0, 60.0}) {
       for (const double inner : {0.0, 0.3 * outer, 0.98 * outer}) {
         const Vector2d& at = floor.points[7];
-        std::vector<int> found;
-        floor.grid.find_in_ring(at, inner, outer, found);
-        EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
-        EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "twice";
+        std::vector<int> found, expected;
+        rows.visit_ring(at, inner, outer, [&](int i) { found.push_back(i); });
+        std::sort(found.begin(), found.end());
         for (int i = 0; i < 2000; ++i) {
-          const double distance = (floor.points[i] - at).norm();
-          if (distance < inner || distance > outer) continue;
-          EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << distance;
+          const double d2 = (floor.points[i] - at).squaredNorm();
+          if (d2 >= inner * inner && d2 <= outer * outer) expected.push_back(i);
         }
+        EXPECT_EQ(found, expected) << inner << " to " << outer;
       }
     }
   }

@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/statistics/distributions.h"
 #include "localise/place.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
@@ -19,6 +22,7 @@
 
 namespace vernier {
 
+using namespace vernier::internal;
 using namespace vernier::localise;
 using namespace vernier::sim;
 using namespace vernier::sim::internal;
@@ -167,7 +171,91 @@ TEST(StandingFault, QueriesHaveNone) {
   }
 }
 
+/// A room of 6 x 4 m with a cupboard of 1 x 1 m, beside a closed room without a way to the route.
+World room_with_cupboard() {
+  WorldDescription description;
+  add_box(description, 0, 0, 6, 4, 2.5);
+  add_box(description, 4, 2, 1, 1, 2);
+  add_box(description, 6.2, 0, 4, 4, 2.5);
+  description.route.push_back({{{1, 1}, {3, 1}}});
+  return build_world(description);
+}
+
+/// Whether a robot of 0.12 m fits into the room, by its plan.
+bool fits_into_room(double x, double y) {
+  const double dx = std::max({4 - x, x - 5, 0.0}), dy = std::max({2 - y, y - 3, 0.0});
+  return x > 0.12 && x < 5.88 && y > 0.12 && y < 3.88 && std::hypot(dx, dy) > 0.12;
+}
+
+/// Pearson's statistic is beyond this by chance with a probability of 1e-6.
+double limit(std::size_t cells) {
+  return chi_squared_quantile(1 - 1e-6, static_cast<double>(cells) - 1);
+}
+
+// Seed 5. The free area of each square of 0.5 m is counted on a lattice of 5 mm.
+TEST(QueryProtocol, FreeIsUniformOverTheFloorAndTheHeadings) {
+  const World world = room_with_cupboard();
+  const Visibility visibility(world);
+  const QueryPlaces places(visibility, QueryProtocol::free, 1.2);
+  std::vector<double> area(12 * 8, 0), count(12 * 8, 0), sectors(16, 0);
+  const auto square = [](double x, double y) {
+    return static_cast<std::size_t>(std::floor(x / 0.5) + 12 * std::floor(y / 0.5));
+  };
+  double all = 0;
+  for (double x = 0.0025; x < 6; x += 0.005) {
+    for (double y = 0.0025; y < 4; y += 0.005) {
+      if (!fits_into_room(x, y)) continue;
+      ++area[square(x, y)];
+      ++all;
+    }
+  }
+  constexpr int trials = 20'000;
+  for (std::uint32_t trial = 0; trial < trials; ++trial) {
+    const Pose2D q = places.draw(5, trial);
+    ASSERT_TRUE(fits_into_room(q.x_m, q.y_m)) << q.x_m << ' ' << q.y_m;
+    ++count[square(q.x_m, q.y_m)];
+    const double turn = (q.heading_rad + std::numbers::pi) / (2 * std::numbers::pi);
+    ++sectors[std::min<std::size_t>(15, static_cast<std::size_t>(16 * turn))];
+  }
+  double of_places = 0, of_headings = 0;
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < area.size(); ++i) {
+    const double expected = trials * area[i] / all;
+    if (expected < 1) continue;  // within the cupboard
+    of_places += (count[i] - expected) * (count[i] - expected) / expected;
+    ++cells;
+  }
+  for (const double n : sectors)
+    of_headings += (n - trials / 16.) * (n - trials / 16.) * 16 / trials;
+  EXPECT_LT(of_places, limit(cells));
+  EXPECT_LT(of_headings, limit(16));
+  EXPECT_EQ(places.draw(5, 3).x_m, places.draw(5, 3).x_m);
+  EXPECT_NE(places.draw(5, 3).x_m, places.draw(6, 3).x_m);
+}
+
+TEST(QueryProtocol, FreePlacesInAnOfficeAreWhereARobotCanStand) {
+  const Visibility& visibility = test::small_office_visibility();
+  const QueryPlaces places(visibility, QueryProtocol::free, 1.2);
+  int far = 0;
+  for (std::uint32_t trial = 0; trial < 100; ++trial) {
+    const Pose2D q = places.draw(5, trial);
+    EXPECT_TRUE(is_free(test::small_office(), {q.x_m, q.y_m}, 0.12, 1.4));
+    EXPECT_EQ(standing_fault(visibility, q, 1.2), "");
+    far += from_route(q, 0.6).first > 0.62;
+  }
+  EXPECT_GT(far, 10);  // farther from the route than any other protocol asks
+}
+
+TEST(QueryProtocol, FreeNeedsAFloorWithAnEnd) {
+  WorldDescription description = low_world();
+  description.route = {{{{0, 0}, {1000, 1000}}}};
+  const World world = build_world(description);
+  const Visibility visibility(world);
+  EXPECT_THROW(QueryPlaces(visibility, QueryProtocol::free, 1.2).draw(5, 0), Error);
+}
+
 TEST(QueryProtocol, NamesRoundTrip) {
+  EXPECT_EQ(query_protocol("free"), QueryProtocol::free);
   EXPECT_EQ(query_protocol("anywhere"), QueryProtocol::anywhere);
   EXPECT_THROW(query_protocol("somewhere"), Error);
 }

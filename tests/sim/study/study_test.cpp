@@ -26,6 +26,7 @@
 #include "sim/study/cell_comparison.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
 #include "tests/support/small_office.h"
 
@@ -63,7 +64,7 @@ class StudyRuns : public testing::Test {
   static std::string words(const StudyResults& results) {
     std::string text;
     for (const CellResult& cell : results.cells) {
-      text += std::to_string(cell.ceiling) + "\n";
+      text += std::to_string(cell.ceiling ? cell.ceiling->success : -1) + "\n";
       for (TrialResult t : cell.trials) {
         char line[400];
         std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %a %d %a\n", t.trial,
@@ -149,14 +150,15 @@ TEST_F(StudyRuns, CeilingsReportHowFarTheyAre) {
   s.file.cells.push_back(s.file.cells[0]);  // shares the first one's ceiling
   StudyRun job{.folder = folder_ / "ceilings", .threads = 2};
   job.ceiling_progress = [&](int done, int total) {
-    EXPECT_EQ(total, 7);
+    EXPECT_EQ(total, 14);  // of both cells together
     reported.push_back(done);
   };
   run_study(s, job);
-  EXPECT_EQ(reported, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(reported.size(), 15u);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
   job.ceiling_progress = [](int, int) { FAIL() << "it is in the store"; };
   run_study(s, job);
-  EXPECT_GT(study_results(s, folder_ / "ceilings").cells[0].ceiling, 0);
+  EXPECT_GT(study_results(s, folder_ / "ceilings").cells[0].ceiling.value().success, 0);
 }
 
 TEST_F(StudyRuns, ShardsAndResumedRunsGiveTheSameBits) {
@@ -223,7 +225,8 @@ TEST_F(StudyRuns, ShardsShareTheCeiling) {
     return queries;
   };
   const auto ceiling_in = [&](const std::string& name) {
-    return study_results(s, folder_ / name).cells[0].ceiling;
+    const auto ceiling = study_results(s, folder_ / name).cells[0].ceiling;
+    return ceiling ? ceiling->success : std::nan("");
   };
   const int parts[] = {3, 2, 2};
   std::filesystem::create_directories(folder_ / "merged");
@@ -248,25 +251,41 @@ TEST_F(StudyRuns, ShardsShareTheCeiling) {
   }
 }
 
-// Thirds have no end in binary, so that their sum has one value in order only.
-TEST_F(StudyRuns, ASharedCeilingIsSummedInTheOrderOfQueries) {
+// Parts of a ceiling in any order and of any run make one: aliases of query i are i, the last view
+// determines nothing.
+TEST_F(StudyRuns, ACeilingIsMadeOfItsParts) {
   Study s = study(7);
   s.file = parse_study("[study]\ntrials = 7\n[map]\nspacing_m = 4\n", "s.toml");
-  run_study(s, {.folder = folder_ / "thirds", .threads = 2, .shard = {1, 2}});
-  double sum = 0;
-  for (int query = 0; query < 7; ++query) sum += 1.0 / (query + 3);
-  {
-    StudyStore store(folder_ / "thirds" / "results-1-of-2.sqlite");
-    for (const auto& [key, value] : store.content().notes) {
-      const std::size_t at = key.find(" query 1");
-      if (at == std::string::npos) continue;
-      for (int query = 0; query < 7; ++query) {
-        store.set_note(key.substr(0, at) + " query " + std::to_string(query),
-                       fmt::format("{}", 1.0 / (query + 3)));
-      }
-    }
-  }
-  EXPECT_EQ(study_results(s, folder_ / "thirds").cells[0].ceiling, sum / 7);
+  const std::string key = ceiling_key(s, s.file.cells[0].experiment);
+  std::vector<int> even(7, not_known), odd(7, not_known), other(7, not_known);
+  for (int query = 0; query < 6; ++query) (query % 2 == 0 ? even : odd)[query] = query;
+  even[6] = not_determined;
+  StoreNotes notes{ceiling_part(key, even)};
+  EXPECT_FALSE(noted_ceiling(s, notes, key));
+  EXPECT_EQ(noted_queries(s, notes, key), even);
+  notes.insert(ceiling_part(key, odd));
+  const auto ceiling = noted_ceiling(s, notes, key);
+  ASSERT_TRUE(ceiling);
+  EXPECT_EQ(ceiling->success, (1 + 1 / 2. + 1 / 3. + 1 / 4. + 1 / 5. + 1 / 6.) / 7);
+  EXPECT_EQ(ceiling->unaliased, 1 / 7.);
+  EXPECT_EQ(ceiling->queries, 7);
+  EXPECT_LT(ceiling->success_interval_95.low, ceiling->success);
+  EXPECT_GT(ceiling->success_interval_95.high, ceiling->success);
+  other[3] = 5;
+  notes.insert(ceiling_part(key, other));
+  EXPECT_THROW(noted_ceiling(s, notes, key), Error);
+}
+
+// As many as the trials of the cells that share it, 5,000 at most; another protocol has its own.
+TEST_F(StudyRuns, ACeilingHasTheQueriesOfAllCellsThatShareIt) {
+  const auto queries = [](const std::string& trials, const std::string& sweep) {
+    Study s = study(7);
+    s.file = parse_study("[study]\ntrials = " + trials + "\n[sweep]\n" + sweep, "s.toml");
+    return ceiling_queries(s, ceiling_key(s, s.file.cells[0].experiment));
+  };
+  EXPECT_EQ(queries("300", "\"sources.calibration\" = [0.1, 1, 10]"), 900);
+  EXPECT_EQ(queries("300", "\"study.protocol\" = [\"path\", \"free\"]"), 300);
+  EXPECT_EQ(queries("10000", "\"sources.calibration\" = [0.1, 1]"), 5000);
 }
 
 TEST_F(StudyRuns, CellsAreComparedOnTheSameTrials) {

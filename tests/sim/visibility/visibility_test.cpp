@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <thread>
 
@@ -12,6 +13,10 @@
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/statistics/random.h"
+#include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/shadow.h"
+#include "sim/visibility/shadow_grid.h"
+#include "sim/visibility/view_frustum.h"
 #include "sim/world.h"
 #include "tests/support/walls_and_boxes.h"
 
@@ -19,6 +24,7 @@ namespace vernier {
 
 using namespace vernier::internal;
 using namespace vernier::sim;
+using namespace vernier::sim::internal;
 
 namespace {
 
@@ -286,6 +292,65 @@ TEST(Visibility, ALineThatBowsOutOfTheImageIsSeenTwice) {
   EXPECT_EQ(runs[0].run, 0);
   EXPECT_EQ(runs[1].run, 1);
   expect_same({world, camera, T, options}, runs, 500);
+}
+
+/// The visible runs with the shadows of all surfaces and a look at all segments.
+std::vector<VisibleInterval> runs_among_all(const World& world,
+                                            const ViewFrustum& frustum,
+                                            const Pose& T,
+                                            double gap_m) {
+  const ConvexSurfaces surfaces = convex_surfaces(world);
+  std::vector<int> pieces(surfaces.pieces.size());
+  std::iota(pieces.begin(), pieces.end(), 0);
+  ShadowGrid grid;
+  grid.build(surfaces, pieces, T, frustum, gap_m);
+  std::vector<VisibleInterval> runs;
+  std::vector<OccludedInterval> hidden;
+  std::vector<Stretch> inside, unhidden;
+  for (int i = 0; i < static_cast<int>(world.segments.size()); ++i) {
+    const Vector3d a = T * world.segments[i].a_m, b = T * world.segments[i].b_m;
+    Stretch open;
+    if (!frustum.clip(a, b, open) || !grid.hide(a, b, open, hidden)) continue;
+    frustum.in_image(a, b, open, inside);
+    subtract_intervals(open, hidden, unhidden);
+    int run = 0;
+    for (const Stretch& u : unhidden) {
+      for (const Stretch& v : inside) {
+        const double t0 = std::max(u.t0, v.t0), t1 = std::min(u.t1, v.t1);
+        if (t1 - t0 > min_stretch) runs.push_back({i, run++, t0, t1});
+      }
+    }
+  }
+  return runs;
+}
+
+TEST(Visibility, LeavingOutWhatIsOutsideTheViewChangesNoBit) {
+  RandomStream draws({.seed = 43});
+  int left_out = 0, runs = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    const World world = random_world(draws);
+    const Camera camera = camera_with(450, trial % 3 == 0 ? 0 : trial % 3 == 1 ? -0.2 : 0.15);
+    const VisibilityOptions options{.far_m = 6, .min_length_px = 0};
+    const ViewFrustum frustum(camera, options.near_m, options.far_m);
+    const Vector3d eye = random_point(draws, {-3, -3, 0.5}, {3, 3, 2});
+    const Pose T = looking_at(eye, random_point(draws, {-2, -2, 0.5}, {2, 2, 1.5}));
+    const ViewVolume volume = frustum.volume(T);
+    for (const WorldSegment& s : world.segments) {
+      left_out += !volume.may_meet({s.a_m.cwiseMin(s.b_m), s.a_m.cwiseMax(s.b_m)});
+    }
+    const auto expected = runs_among_all(world, frustum, T, options.surface_gap_m);
+    const auto found = Visibility(world).visible_intervals(camera, T, options);
+    ASSERT_EQ(found.size(), expected.size());
+    runs += static_cast<int>(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].segment, expected[i].segment);
+      EXPECT_EQ(found[i].run, expected[i].run);
+      EXPECT_EQ(found[i].t0, expected[i].t0);
+      EXPECT_EQ(found[i].t1, expected[i].t1);
+    }
+  }
+  EXPECT_GT(left_out, 1000);
+  EXPECT_GT(runs, 1000);
 }
 
 TEST(Visibility, ThreadsMayShareIt) {

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""The table of localisation: success, answers at a stated error rate and time, by protocol.
+
+    bench/localisation_table.py build/release/vernier -o out/table                 # workshop
+    bench/localisation_table.py build/release/vernier -o out/table --worlds 201-220 --trials 500
+
+Runs one study a row (and world) and continues those that the folder holds. Of generated worlds it
+prints means over worlds with their 95 % interval by a bootstrap that resamples whole worlds. Needs
+only the Python standard library. Times are CPU times of one thread a query.
+"""
+import argparse
+import json
+import pathlib
+import random
+import subprocess
+import sys
+
+# Name, protocol, headings a node (0: along the route), looks, stated error rate of the answers.
+ROWS = (
+    ("near_path, one look", "near_path", 0, 1, 0.001),
+    ("near_path, a second look where unsure", "near_path", 0, 2, 0.0005),
+    ("path, one look", "path", 0, 1, 0.005),
+    ("anywhere, one look, eight headings", "anywhere", 8, 1, 0.01),
+    ("anywhere, four looks, eight headings", "anywhere", 8, 4, 0.001),
+    ("free, one look, eight headings", "free", 8, 1, 0.01),
+)
+STUDY = """[study]
+trials = {trials}
+seed = {seed}
+protocol = "{protocol}"
+[world]
+file = "{world}"
+[rig]
+file = "nominal"
+[map]
+headings = {headings}
+[localiser]
+looks = {looks}
+max_error_rate = {rate}
+[sources]
+calibration = {psi_c}
+{sources}
+"""
+FIGURES = ("best_guess_success", "coverage", "success_when_answered", "median_error_m",
+           "recall_0_5m_5deg", "recall_0_25m_2deg", "cpu_ms_mean", "cpu_ms_p95", "world_ceiling",
+           "unaliased_share")
+
+
+def study_of(row, world, options):
+    name, protocol, headings, looks, rate = row
+    return STUDY.format(trials=options.trials, seed=options.seed, protocol=protocol, world=world,
+                        headings=headings or '"path"', looks=looks, rate=rate,
+                        psi_c=options.psi_c, sources=options.sources.replace(",", "\n"))
+
+
+def run_study(program, text, folder, threads):
+    """The cell of a study that is run, or gone on with, in a folder."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    file = folder.with_suffix(".toml")
+    file.write_text(text, encoding="utf-8")
+    run = subprocess.run([program, "study", file, "-o", folder, "--threads", str(threads), "--json",
+                          "-q"], capture_output=True, text=True, check=False)
+    if run.returncode not in (0, 3):
+        sys.exit(f"{folder}: {run.stderr.strip()}")
+    return json.loads(run.stdout)["cells"][0]
+
+
+def world_files(program, options):
+    """Name and file of each world."""
+    if not options.worlds:
+        return [(options.world, options.world)]
+    first, last = (int(x) for x in options.worlds.split("-"))
+    made = []
+    for seed in range(first, last + 1):
+        file = options.output.resolve() / f"world{seed}.world.toml"
+        if not file.exists():
+            subprocess.run([program, "world", "make", "--seed", str(seed), "--size-m", options.size_m,
+                            "-o", file, "-q"], check=True)
+        made.append((f"world{seed}", str(file)))
+    return made
+
+
+def mean_and_interval(values, draws=4000):
+    """Mean over worlds; percentiles of the means of worlds drawn with replacement, fixed seed."""
+    generator = random.Random(1)
+    means = sorted(sum(generator.choices(values, k=len(values))) / len(values) for _ in range(draws))
+    return sum(values) / len(values), means[int(0.025 * draws)], means[int(0.975 * draws)]
+
+
+def print_row(name, cells):
+    trials = sum(cell["trials"] for cell in cells)
+    answered = sum(round(cell["coverage"] * cell["trials"]) for cell in cells)
+    right = sum(round(cell["success_when_answered"] * round(cell["coverage"] * cell["trials"]))
+                for cell in cells)
+    parts = []
+    for figure in FIGURES:
+        values = [cell[figure] for cell in cells if cell.get(figure) is not None]
+        if not values:
+            continue
+        scale = 100 if figure not in ("median_error_m", "cpu_ms_mean", "cpu_ms_p95") else 1
+        mean, low, high = mean_and_interval([scale * x for x in values])
+        text = f"{figure} {mean:.4g}"
+        if len(values) > 1:
+            text += f" [{low:.4g}, {high:.4g}]"
+        elif figure == "best_guess_success":
+            text += f" ({100 * cells[0]['success_interval_95'][0]:.2f} to "
+            text += f"{100 * cells[0]['success_interval_95'][1]:.2f} for those answered)"
+        parts.append(text)
+    relative = [100 * cell["best_guess_success"] / cell["world_ceiling"] for cell in cells
+                if cell.get("world_ceiling")]
+    if relative:
+        mean, low, high = mean_and_interval(relative)
+        parts.append(f"÷ ceiling {mean:.2f}" + (f" [{low:.2f}, {high:.2f}]" if len(cells) > 1 else ""))
+    print(f"{name}: {trials} queries, {right} of {answered} answers right\n    " + "; ".join(parts),
+          flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    parser.add_argument("--world", default="workshop")
+    parser.add_argument("--worlds", help="seeds of generated offices, as 201-220")
+    parser.add_argument("--size-m", default="20,15,2.5", help="of generated offices")
+    parser.add_argument("--trials", type=int, default=10000, help="queries a row and world")
+    parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--psi-c", type=float, default=1)
+    parser.add_argument("--sources", default="", help="further settings, as 'edge_loss = 0.2'")
+    parser.add_argument("--rows", default="", help="numbers of rows, as 1,3; default: all")
+    parser.add_argument("--threads", type=int, default=2)
+    options = parser.parse_args()
+    options.output.mkdir(parents=True, exist_ok=True)
+    worlds = world_files(options.program, options)
+    chosen = [int(x) for x in options.rows.split(",")] if options.rows else range(1, len(ROWS) + 1)
+    for number in chosen:
+        row = ROWS[number - 1]
+        cells = [run_study(options.program, study_of(row, file, options),
+                           options.output / f"row{number}_{name}", options.threads)
+                 for name, file in worlds]
+        print_row(row[0], cells)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/look_alike_poses.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "localise/place.h"
+#include "sim/study/upright_edges.h"
+#include "sim/study/wire_frame.h"
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
+
+using namespace localise;
+
+namespace {
+
+using Visit = std::function<bool(const Pose2D&)>;
+
+constexpr double slack_m = 0.01;      ///< of distances
+constexpr double least_base_m = 0.3;  ///< between two uprights that give a pose
+constexpr std::size_t most_pairs = 6;
+constexpr int most_uprights = 48;  ///< the longest of a view, of which pairs are chosen
+constexpr double most_work = 1e7;  ///< tried edges of a view, after which no pair is added
+
+/// The pose that brings `seen_m` (robot frame) to `there_m`, after a turn.
+Pose2D pose_that_brings(const Eigen::Vector2d& seen_m,
+                        const Eigen::Vector2d& there_m,
+                        double turn) {
+  const Eigen::Vector2d at = there_m - Eigen::Rotation2Dd(turn) * seen_m;
+  return {at.x(), at.y(), turn};
+}
+
+double angle(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
+
+/// Distance of a point from a line on the floor, positive on its left.
+double left_of(const Eigen::Vector2d& at,
+               const Eigen::Vector2d& on_line,
+               const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d d = at - on_line;
+  return direction.x() * d.y() - direction.y() * d.x();
+}
+
+bool fit_uprights(const UprightEdges& world,
+                  const Upright& p,
+                  const Upright& q,
+                  const Visit& fits) {
+  const Eigen::Vector2d between = q.at_m - p.at_m;
+  const UprightEdges::Matches of_p = world.matches(p), of_q = world.matches(q);
+  bool enough = false;
+  world.visit_all(of_p, [&](const Upright& a) {
+    if (enough) return;
+    world.visit_at_distance(q, of_q, a.at_m, between.norm(), slack_m, [&](const Upright& b) {
+      const double turn = angle(b.at_m - a.at_m) - angle(between);
+      enough = enough || fits(pose_that_brings(p.at_m, a.at_m, turn));
+    });
+  });
+  return enough;
+}
+
+bool fit_level(const WireFrame& frame, const Upright& p, const ViewEdge& level, const Visit& fits) {
+  const Eigen::Vector2d along = (level.b_m - level.a_m).head<2>().normalized();
+  const double apart = left_of(p.at_m, level.a_m.head<2>(), along);
+  const Eigen::Vector2d to_a = level.a_m.head<2>() - p.at_m, to_b = level.b_m.head<2>() - p.at_m;
+  const double reach = std::max(to_a.norm(), to_b.norm()) + slack_m;
+  const Eigen::Vector3d around(reach, reach, UprightEdges::tolerance_m);
+  bool enough = false;
+  frame.uprights().visit_all(frame.uprights().matches(p), [&](const Upright& a) {
+    if (enough) return;
+    const Eigen::Vector3d centre(a.at_m.x(), a.at_m.y(), level.a_m.z());
+    frame.visit_level({centre - around, centre + around}, [&](const WorldSegment& segment) {
+      const Eigen::Vector2d forward = (segment.b_m - segment.a_m).head<2>().normalized();
+      for (const Eigen::Vector2d& direction : {forward, Eigen::Vector2d(-forward)}) {
+        const double there = left_of(a.at_m, segment.a_m.head<2>(), direction);
+        if (enough || std::abs(there - apart) > slack_m) continue;
+        enough = fits(pose_that_brings(p.at_m, a.at_m, angle(direction) - angle(along)));
+      }
+    });
+  });
+  return enough;
+}
+
+}  // namespace
+
+/// Takes the pair that is quickest to fit for its length, again and again. Below 1 m of distance
+/// headings become inexact.
+void LookAlikePoses::pair_uprights(const std::vector<ViewEdge>& view,
+                                   double needed_px,
+                                   std::vector<Pair>& pairs,
+                                   std::vector<char>& used) const {
+  const UprightEdges& world = frame_.uprights();
+  std::vector<int> uprights;
+  std::vector<double> alike;
+  for (int i = 0; i < static_cast<int>(view.size()); ++i) {
+    if (!view[i].upright || uprights.size() == most_uprights) continue;
+    uprights.push_back(i);
+    alike.push_back(world.count_around(*upright_of(view[i])));
+  }
+  double done = 0;
+  while (needed_px > 0 && pairs.size() < most_pairs && done < most_work) {
+    Pair best{-1, -1};
+    double least = std::numeric_limits<double>::infinity(), best_work = 0;
+    for (std::size_t i = 0; i < uprights.size(); ++i) {
+      if (used[uprights[i]]) continue;
+      for (std::size_t j = i + 1; j < uprights.size(); ++j) {
+        const ViewEdge &p = view[uprights[i]], &q = view[uprights[j]];  // q is the shorter one
+        const double apart = (p.a_m - q.a_m).head<2>().norm();
+        if (used[uprights[j]] || apart < least_base_m) continue;
+        const double few = std::min(alike[i], alike[j]), many = std::max(alike[i], alike[j]);
+        const double work = (1 + few) * (10 + std::min(many, world.ring_cost(apart)));
+        const double per_length =
+            work * std::max(1.0, 1 / (apart * apart)) / std::min(q.length_px, needed_px);
+        if (per_length >= least) continue;
+        least = per_length;
+        best_work = work;
+        best =
+            alike[i] <= alike[j] ? Pair{uprights[i], uprights[j]} : Pair{uprights[j], uprights[i]};
+      }
+    }
+    if (best.first < 0) break;
+    used[best.first] = used[best.second] = 1;
+    needed_px -= std::min(view[best.first].length_px, view[best.second].length_px);
+    pairs.push_back(best);
+    done += best_work;
+  }
+}
+
+std::vector<LookAlikePoses::Pair> LookAlikePoses::pairs(const std::vector<ViewEdge>& view,
+                                                        double needed_share) const {
+  double needed_px = 0;
+  for (const ViewEdge& edge : view) needed_px += needed_share * edge.length_px;
+  std::vector<Pair> pairs;
+  std::vector<char> used(view.size(), 0);
+  pair_uprights(view, needed_px, pairs, used);
+  for (const Pair& pair : pairs) {
+    needed_px -= std::min(view[pair.first].length_px, view[pair.second].length_px);
+  }
+  // Uprights that found no partner: each with the longest level edge that is left.
+  std::size_t level = 0;
+  for (std::size_t i = 0; i < view.size() && needed_px > 0 && pairs.size() < most_pairs; ++i) {
+    if (!view[i].upright || used[i]) continue;
+    while (level < view.size() && !view[level].level) ++level;
+    if (level == view.size()) break;
+    pairs.push_back({static_cast<int>(i), static_cast<int>(level)});
+    needed_px -= std::min(view[i].length_px, view[level].length_px);
+    ++level;
+  }
+  return pairs;
+}
+
+bool LookAlikePoses::visit(const std::vector<ViewEdge>& view,
+                           double needed_share,
+                           const Visit& visit) const {
+  const std::vector<Pair> chosen = pairs(view, needed_share);
+  for (const Pair& pair : chosen) {
+    const Upright p = *upright_of(view[pair.first]);
+    const auto q = upright_of(view[pair.second]);
+    if (q ? fit_uprights(frame_.uprights(), p, *q, visit)
+          : fit_level(frame_, p, view[pair.second], visit)) {
+      break;
+    }
+  }
+  return !chosen.empty();
+}
+
+}  // namespace vernier::sim::internal

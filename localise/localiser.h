@@ -22,6 +22,7 @@ enum class LocalisationStatus {
   no_match,       ///< no node of the map matches
   unsure,  ///< an error is more probable than max_error_rate; the answer holds the best guess
   failed,  ///< the localiser itself failed, as a program that died; see `failure`
+  too_few_corners,  ///< fewer than min_corners corners
 };
 
 std::string_view name(LocalisationStatus status);
@@ -81,6 +82,11 @@ struct LocaliserOptions {
   /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
   double max_error_rate = 0.01;
   LocaliserStages stages;
+  /// `corners` answers if so many corners agree at least; from 4.
+  int min_corners = 8;
+  /// Simulated robots and pairs of images give views their corners, which cost time and memory: for
+  /// a method that does not say so itself (needs_corners).
+  bool corners = false;
   PghOptions histograms;     ///< of `pgh` and the rankers by histograms
   std::string command;       ///< of `program`: a program and its arguments, quoted as in a shell
   double time_limit_s = 10;  ///< of `program`, for a query; above 0
@@ -97,6 +103,10 @@ struct LocaliserOptions {
 ///    eliminates the lowest node until one is left. For comparison only;
 ///  - `pgh_baseline_vectorised`: the same method on stored roots with SIMD dot products. For
 ///    comparison of times;
+///  - `corners`: descriptors of corners rank the nodes by a vocabulary and are matched with those
+///  of
+///    the best ones; corners in space that agree on a pose on the floor give it, by consensus and
+///    least squares on pixels. States no probability (docs/localisation.md);
 ///  - `program`: a program of one's own, which reads the map and the queries as lines of JSON and
 ///    answers in lines of JSON (docs/own-localiser.md). A query that it does not answer, not in
 ///    time or with nonsense has the status `failed`, and the program is started again, three times
@@ -114,8 +124,17 @@ std::vector<std::string> localiser_names();
 using LocaliserFactory =
     std::function<std::unique_ptr<Localiser>(const TopologicalMap&, const LocaliserOptions&)>;
 
+/// What a method needs of views that not every view holds.
+struct ViewNeeds {
+  bool corners = false;  ///< PlaceView::corners, of the map and of queries
+};
+
 /// Makes a method known to make_localiser, and so to studies of this process. Safe with threads.
 /// Throws Error for a name that is empty or taken.
-void register_localiser(const std::string& method, LocaliserFactory factory);
+void register_localiser(const std::string& method, LocaliserFactory factory, ViewNeeds needs = {});
+
+/// Whether views should hold corners: for a method that needs them, or if the options say so.
+/// False for an unknown method otherwise.
+bool needs_corners(std::string_view method, const LocaliserOptions& options = {});
 
 }  // namespace vernier::localise

@@ -9,15 +9,15 @@
 
 namespace vernier::localise {
 
-/// Writes a map as a file of format "vernier map", version 1 (docs/file-formats.md), complete or
-/// not at all. Nodes that follow each other with the same rig and mount share one copy of them.
-/// Throws Error for a node that is not finite or beyond the limits of read_map(), and if the file
-/// cannot be written.
+/// Writes a map as a file of format "vernier map" (docs/file-formats.md), version 1, or 2 if a node
+/// has corners, complete or not at all. Nodes that follow each other with the same rig and mount
+/// share one copy of them. Throws Error for a node that is not finite or beyond the limits of
+/// read_map(), and if the file cannot be written.
 void write_map(const std::filesystem::path& file, const TopologicalMap& map);
 
 /// Reads a map; the file is mapped into memory, not copied first. Throws Error naming the file for
 /// another format or version, a part that does not have its checksum, a file cut short, a number
-/// that is not finite, and more than 1,000,000 nodes or 10,000 lines in one.
+/// that is not finite, and more than 1,000,000 nodes, 10,000 lines or corners in one.
 TopologicalMap read_map(const std::filesystem::path& file);
 
 /// Adds nodes to a map in a file: the parts that it holds are checked and kept to the byte. Throws

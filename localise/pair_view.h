@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 
 #include "calib/rig.h"
+#include "localise/pair_corners.h"
 #include "localise/place.h"
 #include "stereo/grey_levels.h"
 
@@ -15,6 +17,9 @@ struct PairViewOptions {
   int max_disparity_px = 0;  ///< 0: a quarter of the image's width
   int threads = 1;           ///< for rectification; 0: all
   PlaceLineOptions lines;
+  bool with_corners = false;  ///< PlaceView::corners, by corners_of_pair()
+  PairCornersOptions corners;
+  Eigen::MatrixXd calibration;  ///< of corners: covariance of the rig's parameters; empty: unknown
 };
 
 /// The view that a pair of images of the rig gives: rectified, edges found and matched by the

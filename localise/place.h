@@ -63,12 +63,13 @@ struct StereoCorner {
   Eigen::VectorXf descriptor;
 };
 
-/// A robot's view of a place: lines in space and image lines.
+/// A robot's view of a place: lines in space and image lines, and corners where they are asked for.
 struct PlaceView {
   std::vector<PlaceLine> lines;                   ///< reliable lines only
   std::vector<stereo::ImageSegment> image_lines;  ///< of the left image, all
   std::shared_ptr<const Rig> rig = nullptr;  ///< the estimated rig, from which lines are computed
   CameraMount mount = {};
+  std::vector<StereoCorner> corners = {};  ///< for methods on points; mostly left out
 };
 
 /// One of several views from the same position.

@@ -20,7 +20,8 @@ struct RecordedLooks {
 };
 
 /// Reads views, one position a line of JSON (docs/file-formats.md): lines in space in the robot
-/// frame and image lines, or matched segments of both images, from which the rig gives both.
+/// frame and image lines, or matched segments of both images, from which the rig gives both; and
+/// corners of both images.
 /// `rig` is that of views that name no cameras; null: these have none, and segments are refused.
 /// Throws Error naming file, line and key for what is malformed, not finite, in another unit
 /// (lines beyond 1,000 m, headings beyond a turn, pixels far off the image) or of no length, and

@@ -9,7 +9,6 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/place.h"
-#include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -22,25 +21,10 @@ struct CornerDrive {
   std::vector<std::vector<localise::StereoCorner>> moments;  ///< one per pose
 };
 
-/// The appearance of a corner: a random direction that all instances of a template share, so that
-/// repeated furniture looks alike.
-class CornerAppearance {
- public:
-  explicit CornerAppearance(const World& world);
-  const Eigen::VectorXf& of(std::uint32_t corner) const { return descriptors_[corner]; }
-
- private:
-  std::vector<Eigen::VectorXf> descriptors_;
-};
-
-/// The corners that a look of the sensor gave, as an estimator gets them. Their covariance is that
-/// of the pixel noise, at least (0.02 px)².
-std::vector<localise::StereoCorner> stereo_corners(const StereoObservation& observation,
-                                                   const CornerAppearance& appearance,
-                                                   const SourceSettings& sources);
-
-/// Corners seen from each pose of a drive by the true rig, through the corners' error sources. The
-/// same seed and trial give the same drive to the bit. Throws Error as Sensor does.
+/// Corners seen from each pose of a drive by the true rig, through the corners' error sources.
+/// Their appearance is that of CornerAppearance with its default options: moments of a drive follow
+/// each other closely, and it is the same in all. The same seed and trial give the same drive to
+/// the bit. Throws Error as Sensor does.
 CornerDrive drive_past_corners(const Visibility& visibility,
                                const Rig& true_rig,
                                const SourceSettings& sources,

@@ -14,6 +14,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
+#include "sim/corner_appearance.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -82,7 +83,10 @@ struct ExperimentSettings {
   double map_spacing_m = 0.5;
   int map_headings = 0;  ///< per node; 0: along the route
   std::string method = "lines";
+  /// Views hold corners if the method needs them (localise::needs_corners); other methods' results
+  /// and draws are the same with and without.
   localise::LocaliserOptions localiser;
+  AppearanceOptions appearance{.view_change = 1, .noise = 0.3};  ///< of corners
   /// Views of a query at most, from one position: another one is taken as long as the localiser
   /// does not answer, turned as it asks for (next_turn_rad), or away from those taken.
   int looks = 1;
@@ -164,6 +168,9 @@ class LocalisationExperiment {
 
  private:
   Rig draw_rig(std::uint32_t trial, bool of_map) const;
+  std::vector<localise::StereoCorner> described(const StereoObservation& sighting,
+                                                const localise::Pose2D& pose,
+                                                const SensingDraw& draw) const;
 
   const Visibility& visibility_;
   RigEstimate rig_;
@@ -171,7 +178,8 @@ class LocalisationExperiment {
   std::shared_ptr<const QueryPlaces> places_;
   ExperimentSettings settings_;
   Sensor sensor_;
-  std::unique_ptr<RigSampler> sampler_;  // null without calibration error
+  std::unique_ptr<RigSampler> sampler_;           // null without calibration error
+  std::unique_ptr<CornerAppearance> appearance_;  // null if views hold no corners
 };
 
 }  // namespace vernier::sim

@@ -34,6 +34,7 @@ struct WorldSurface {
 struct WorldObject {
   std::string template_name;
   Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  ///< mean of its segments' ends
+  double yaw_rad = 0;                                  ///< of the instance
 };
 
 /// One leg of a map route: a polyline on the floor.

@@ -30,6 +30,8 @@ enum class DrawSource : std::uint32_t {
   odometry_links = 26,     // links of three corners from which motions are drawn
   corner_noise = 27,       // psi_g of corners
   corner_appearance = 28,  // descriptors of simulated corners
+  corner_sighting = 29,    // noise of their descriptors, a sighting
+  corner_consensus = 30,   // pairs of corners from which poses on a map are drawn
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

@@ -79,7 +79,7 @@ std::vector<LocalisedQuery> recorded_queries(const LocaliseArguments& options,
     const PlaceView& first = seen.looks[0].view;
     if (first.rig) {
       check_same_rig(map, *first.rig, options.map);
-    } else if (options.method == "lines") {
+    } else if (options.method == "lines" || options.method == "corners") {
       throw Error(options.views.features, recorded.names[i] + " has no cameras",
                   "give --rig, or \"cameras\" with each view");
     }
@@ -103,6 +103,7 @@ std::vector<LocalisedQuery> simulated_queries(const LocaliseArguments& options,
   ExperimentSettings settings;
   settings.protocol = query_protocol(options.protocol);
   settings.looks = options.looks;
+  settings.method = options.method;
   const SimulatedRobot robot(options.views, settings, session);
   check_same_rig(map, robot.rig().rig, options.map);
   std::vector<LocalisedQuery> queries;
@@ -145,12 +146,22 @@ void check(const LocaliseArguments& options, const CLI::App& verb) {
   }
 }
 
-void run(const LocaliseArguments& options, const CLI::App& verb, Session& session) {
+void check_corners(const TopologicalMap& map, const LocaliseArguments& options) {
+  if (options.method != "corners" || map.nodes.empty()) return;
+  for (const MapNode& node : map.nodes) {
+    if (!node.view.corners.empty()) return;
+  }
+  throw Error(options.map, "has no corners, which --method corners looks for",
+              "make it with map make --corners");
+}
+
+void run(LocaliseArguments options, const CLI::App& verb, Session& session) {
   check(options, verb);
+  options.views.corners = options.views.corners || needs_corners(options.method, options.localiser);
   const TopologicalMap map = read_map(options.map);
-  LocaliserOptions localiser_options = options.localiser;
-  localiser_options.stages = localiser_stages(options.stages);
-  const auto localiser = make_localiser(options.method, map, localiser_options);
+  check_corners(map, options);
+  options.localiser.stages = localiser_stages(options.stages);
+  const auto localiser = make_localiser(options.method, map, options.localiser);
   const std::vector<LocalisedQuery> queries =
       options.views.world.empty() ? recorded_queries(options, map, *localiser, session)
                                   : simulated_queries(options, map, *localiser, session);
@@ -193,6 +204,10 @@ void add_localise(CLI::App& app, Session& session) {
                    "of lines: unsure where an error is more probable; 1: it always answers")
       ->capture_default_str();
   verb->add_option("--stages", o->stages, "of lines: those that run, or none")
+      ->capture_default_str();
+  verb->add_option("--min-corners", o->localiser.min_corners,
+                   "of corners: so many must agree for an answer")
+      ->check(CLI::Range(4, 10'000))
       ->capture_default_str();
   verb->add_option("--command", o->localiser.command,
                    "of program: a program of your own and its arguments (docs/own-localiser.md)");

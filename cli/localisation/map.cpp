@@ -59,7 +59,7 @@ Json figures(const TopologicalMap& map, const std::filesystem::path& file) {
   std::set<std::pair<double, double>> positions;
   std::set<const Rig*> rigs;
   Pose2D low, high;
-  std::size_t empty = 0;
+  std::size_t empty = 0, corners = 0;
   for (std::size_t i = 0; i < map.nodes.size(); ++i) {
     const MapNode& node = map.nodes[i];
     const Pose2D& at = node.pose;
@@ -70,6 +70,7 @@ Json figures(const TopologicalMap& map, const std::filesystem::path& file) {
     rigs.insert(node.view.rig.get());
     lines.push_back(static_cast<double>(node.view.lines.size()));
     empty += node.view.lines.empty();
+    corners += node.view.corners.size();
   }
   const double bytes = static_cast<double>(std::filesystem::file_size(file));
   const double nodes = static_cast<double>(map.nodes.size());
@@ -78,6 +79,7 @@ Json figures(const TopologicalMap& map, const std::filesystem::path& file) {
           {"positions", positions.size()},
           {"lines_median", lines.empty() ? 0 : quantile(lines, 0.5, QuantileKind::linear)},
           {"nodes_without_lines", empty},
+          {"corners_mean", nodes > 0 ? static_cast<double>(corners) / nodes : 0},
           {"rigs", rigs.size()},
           {"low_m", {low.x_m, low.y_m}},
           {"high_m", {high.x_m, high.y_m}},
@@ -90,7 +92,7 @@ void report(const std::filesystem::path& file, Session& session) {
   const Json json = figures(map, file);
   if (map.nodes.empty()) {
     session.add_trust_warning("the map has no nodes: nothing can be found on it");
-  } else if (json["nodes_without_lines"] == map.nodes.size()) {
+  } else if (json["nodes_without_lines"] == map.nodes.size() && json["corners_mean"] == 0.0) {
     session.add_trust_warning("no node of the map has lines in space: nothing can be found on it");
   }
   std::string text = fmt::format(
@@ -102,6 +104,9 @@ void report(const std::filesystem::path& file, Session& session) {
       json["high_m"][1].get<double>(), 1e-3 * json["bytes_per_node"].get<double>());
   if (const auto empty = json["nodes_without_lines"].get<std::size_t>(); empty > 0) {
     text += fmt::format("  {} nodes without lines\n", empty);
+  }
+  if (const auto corners = json["corners_mean"].get<double>(); corners > 0) {
+    text += fmt::format("  {:.0f} corners each (mean)\n", corners);
   }
   session.result(json, text);
 }

@@ -9,10 +9,12 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include "calib/base/error_place.h"
 #include "calib/error.h"
 #include "calib/rig.h"
+#include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "cli/localisation/place_poses.h"
 #include "cli/program/camera_images.h"
@@ -28,18 +30,19 @@
 namespace vernier::cli {
 namespace {
 
-std::shared_ptr<const Rig> stereo_rig(const std::string& name, Session& session) {
-  const RigFile file = read_rig(find_rig(name));
+RigEstimate stereo_rig(const std::string& name, Session& session) {
+  RigFile file = read_rig(find_rig(name));
   for (const std::string& warning : file.warnings) session.warn(warning);
   if (file.estimate.rig.cameras.size() != 2) {
     throw Error(name, "does not have two cameras", "give a stereo rig");
   }
-  return std::make_shared<const Rig>(file.estimate.rig);
+  return std::move(file.estimate);
 }
 
 NamedViews views_of_file(const ViewOptions& options, Session& session) {
   const std::shared_ptr<const Rig> rig =
-      options.rig.empty() ? nullptr : stereo_rig(options.rig, session);
+      options.rig.empty() ? nullptr
+                          : std::make_shared<const Rig>(stereo_rig(options.rig, session).rig);
   NamedViews read{read_views(options.features, rig), {}};
   for (std::size_t i = 0; i < read.views.size(); ++i) {
     read.names.push_back("view " + std::to_string(i + 1));
@@ -48,12 +51,15 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
 }
 
 NamedViews views_of_images(const ViewOptions& options, Session& session) {
-  const std::shared_ptr<const Rig> rig = stereo_rig(options.rig, session);
+  const RigEstimate estimate = stereo_rig(options.rig, session);
+  const auto rig = std::make_shared<const Rig>(estimate.rig);
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
   std::map<std::string, Pose2D> poses;
   if (!options.poses.empty()) poses = read_place_poses(options.poses);
   PairViewOptions how;
   how.max_disparity_px = options.max_disparity_px;
+  how.with_corners = options.corners;
+  if (estimate.covariance) how.calibration = estimate.covariance->matrix;
   NamedViews read;
   constexpr std::size_t few = 5;
   std::optional<Progress> progress;
@@ -108,6 +114,8 @@ void add_view_options(CLI::App& verb, ViewOptions& o) {
   verb.add_option("--source", o.sources,
                   "setting of an error source of the simulated robot, such as edge_loss=0.2, or "
                   "none (repeatable)");
+  verb.add_flag("--corners", o.corners,
+                "views hold corners, for methods on points (which see to it themselves)");
   verb.add_option("--seed", o.seed, "random seed of the simulated robot")->capture_default_str();
 }
 
@@ -132,6 +140,8 @@ void check(const ViewOptions& options, const CLI::App& verb) {
   if (options.world.empty()) refuse_options(verb, of_robot, "no robot is simulated");
   if (!options.features.empty()) {
     refuse_options(verb, of_camera, "the file of views says how the camera is mounted");
+    constexpr std::array of_views{"--corners"};
+    refuse_options(verb, of_views, "views of a file hold the corners that they hold");
   }
 }
 

@@ -19,6 +19,7 @@ struct ViewOptions {
   int max_disparity_px = 0;
   std::vector<std::string> sources;
   std::uint64_t seed = 1;
+  bool corners = false;  ///< of a simulated robot or images: views hold corners
 
   CameraMount mount() const;
   /// The rig's name; "nominal" for a simulated robot if none is given.

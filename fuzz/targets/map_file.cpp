@@ -49,6 +49,13 @@ void require_same_nodes(const TopologicalMap& a, const TopologicalMap& b) {
     require(p.view.lines.size() == q.view.lines.size() &&
                 p.view.image_lines.size() == q.view.image_lines.size(),
             "lines are kept");
+    require(p.view.corners.size() == q.view.corners.size(), "corners are kept");
+    for (std::size_t k = 0; k < p.view.corners.size(); ++k) {
+      const StereoCorner &c = p.view.corners[k], &d = q.view.corners[k];
+      require(c.left_px == d.left_px && c.right_px == d.right_px &&
+                  c.covariance_px2 == d.covariance_px2 && c.descriptor == d.descriptor,
+              "corners are kept as they are");
+    }
     for (std::size_t k = 0; k < p.view.lines.size(); ++k) {
       require(p.view.lines[k].a_m == q.view.lines[k].a_m &&
                   p.view.lines[k].b_m == q.view.lines[k].b_m &&
@@ -74,7 +81,7 @@ std::vector<std::string> map_file_seeds() {
   std::vector<std::string> seeds;
   TopologicalMap map;
   const auto rig = std::make_shared<const Rig>(datasets::nominal().rig);
-  for (int nodes = 0; nodes < 3; ++nodes) {
+  for (int nodes = 0; nodes < 4; ++nodes) {
     const std::filesystem::path file = input_folder() / "seed.map";
     write_map(file, map);
     seeds.push_back(file_bytes(file));
@@ -83,6 +90,12 @@ std::vector<std::string> map_file_seeds() {
     node.view.lines = {{{2, 0.5, 0.25}, {2, 0.5, 1.5}, LineKind::vertical, 0.02},
                        {{3, -1, 0.5}, {3, 1, 0.5}, LineKind::level, 0.05}};
     node.view.image_lines = {{{10, 20}, {10.5, 200}}};
+    if (nodes > 0) {
+      node.view.corners = {{{100, 50},
+                            {90, 50.5},
+                            0.1 * Eigen::Matrix4d::Identity(),
+                            Eigen::VectorXf::LinSpaced(5, -1, 1)}};
+    }
     map.nodes.push_back(node);
   }
   return seeds;

@@ -38,6 +38,13 @@ void require_same_views(const std::vector<RecordedLooks>& a, const std::vector<R
       const PlaceView &p = a[i].looks[k].view, &q = b[i].looks[k].view;
       require(p.lines.size() == q.lines.size() && p.image_lines.size() == q.image_lines.size(),
               "lines are kept");
+      require(p.corners.size() == q.corners.size(), "corners are kept");
+      for (std::size_t n = 0; n < p.corners.size(); ++n) {
+        require(p.corners[n].left_px == q.corners[n].left_px &&
+                    p.corners[n].covariance_px2 == q.corners[n].covariance_px2 &&
+                    p.corners[n].descriptor == q.corners[n].descriptor,
+                "corners are kept as they are");
+      }
       for (std::size_t n = 0; n < p.lines.size(); ++n) {
         require(p.lines[n].kind == q.lines[n].kind && p.lines[n].sigma_m == q.lines[n].sigma_m,
                 "lines are kept as they are");
@@ -77,6 +84,10 @@ std::vector<std::string> view_file_seeds() {
   write_views(file, views);
   seeds.push_back(file_bytes(file));
   view.rig = fuzz_rig();
+  view.corners = {{{100, 50},
+                   {90, 50.5},
+                   0.1 * Eigen::Matrix4d::Identity(),
+                   Eigen::VectorXf::LinSpaced(5, -1, 1)}};
   views.push_back({{{view, 0}, {view, 1.5}}, {}});
   write_views(file, views);
   seeds.push_back(file_bytes(file));

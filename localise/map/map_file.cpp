@@ -13,6 +13,8 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,7 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "localise/map/corner_part.h"
 #include "localise/map/part_checksum.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -29,7 +32,7 @@
 
 namespace vernier::localise {
 
-using internal::part_checksum;
+using namespace internal;
 using vernier::internal::FileInProgress;
 
 namespace {
@@ -41,8 +44,11 @@ namespace {
 //   rig before: their number (8), then each: x_m, y_m, heading_rad,
 //     number of lines (4) and of image lines (4), lines of kind (8), a_m, b_m, sigma_m (doubles),
 //     image lines of a_px, b_px (doubles)
+//   kind 3, corners of the nodes of the part after it, if any has some: localise/map/corner_part.h
 constexpr std::string_view magic{"VERNMAP\0", 8};
-constexpr std::uint32_t version = 1, rig_part = 1, node_part = 2;
+// The version is 1 without corners, so that older programs read it.
+constexpr std::uint32_t version = 1, version_with_corners = 2;
+constexpr std::uint32_t rig_part = 1, node_part = 2, corner_part = 3;
 constexpr std::size_t head_bytes = 16, part_head_bytes = 24;
 constexpr std::size_t line_bytes = 64, image_line_bytes = 32, node_bytes = 32;
 constexpr std::uint64_t most_nodes = 1'000'000, most_lines = 10'000;
@@ -153,9 +159,12 @@ void check(const MapNode& node, std::size_t index) {
             beyond(line.a_px.cwiseAbs().maxCoeff(), most_pixels) ||
             beyond(line.b_px.cwiseAbs().maxCoeff(), most_pixels);
   }
-  if (wrong) {
+  if (wrong || !writable(node.view.corners)) {
     throw Error("map node " + std::to_string(index),
-                "holds a number that is not finite or beyond all limits, or more than 10000 lines",
+                wrong ? "holds a number that is not finite or beyond all limits, or more than "
+                        "10000 lines"
+                      : "holds a corner that is none, more than 10000, or descriptors of more "
+                        "than one length",
                 "leave the node out");
   }
 }
@@ -216,14 +225,17 @@ void append_nodes(FileInProgress& out, std::span<const MapNode> nodes, std::stri
     }
     std::string part;
     put<std::uint64_t>(part, end - begin);
+    // Before the nodes: a file cut between the two has too few nodes.
+    const auto written = nodes.subspan(begin, end - begin);
+    if (have_corners(written)) append_part(out, corner_part, corner_bytes(written));
     append_part(out, node_part, part + bytes);
     begin = end;
   }
 }
 
-std::string head_of(std::uint64_t nodes) {
+std::string head_of(std::uint64_t nodes, bool with_corners) {
   std::string head(magic);
-  put(head, version);
+  put(head, with_corners ? version_with_corners : version);
   put(head, static_cast<std::uint32_t>(nodes));
   return head;
 }
@@ -238,9 +250,9 @@ std::uint64_t visit_parts(std::string_view bytes, const std::string& place, cons
   Bytes after_magic(bytes.substr(magic.size()), place);
   const auto of_file = after_magic.take<std::uint32_t>();
   const auto nodes = after_magic.take<std::uint32_t>();
-  if (of_file != version) {
+  if (of_file != version && of_file != version_with_corners) {
     throw Error(place, "is a map of version " + std::to_string(of_file),
-                "this program reads version 1: make the map again");
+                "this program reads versions 1 and 2: make the map again");
   }
   std::size_t at = head_bytes;
   while (at < bytes.size()) {
@@ -249,7 +261,9 @@ std::uint64_t visit_parts(std::string_view bytes, const std::string& place, cons
     const auto zero = head.take<std::uint32_t>();
     const auto length = head.take<std::uint64_t>();
     const auto sum = head.take<std::uint64_t>();
-    if (zero != 0 || (kind != rig_part && kind != node_part)) head.fail("a part has no known kind");
+    if (zero != 0 || kind < rig_part || kind > (of_file == version ? node_part : corner_part)) {
+      head.fail("a part has no known kind");
+    }
     if (length > head.rest().size() || filled(length) > head.rest().size()) {
       head.fail("it is cut off");
     }
@@ -273,7 +287,7 @@ void write_map(const std::filesystem::path& file, const TopologicalMap& map) {
     throw Error(file.string(), "would have more than 1000000 nodes", "write several maps");
   }
   FileInProgress out(file);
-  out.append(head_of(map.nodes.size()));
+  out.append(head_of(map.nodes.size(), have_corners(map.nodes)));
   append_nodes(out, map.nodes, "");
   out.commit();
 }
@@ -284,8 +298,14 @@ TopologicalMap read_map(const std::filesystem::path& file) {
   TopologicalMap map;
   std::shared_ptr<const Rig> rig;
   CameraMount mount;
+  std::optional<std::string_view> corners;  // of the nodes that come next
   const auto read_part = [&](std::uint32_t kind, std::string_view content) {
     Bytes bytes(content, place);
+    if (corners && kind != node_part) bytes.fail("its corners belong to no nodes");
+    if (kind == corner_part) {
+      corners = content;
+      return;
+    }
     if (kind == rig_part) {
       mount.height_m = bytes.number(most_metres);
       mount.pitch_rad = bytes.number(most_metres);
@@ -331,8 +351,13 @@ TopologicalMap read_map(const std::filesystem::path& file) {
       map.nodes.push_back(std::move(node));
     }
     if (!bytes.rest().empty()) bytes.fail("a part is longer than what it should hold");
+    if (!corners) return;
+    read_corners(*std::exchange(corners, std::nullopt), std::span(map.nodes).last(count),
+                 [&](const std::string& how) { bytes.fail(how); });
   };
-  if (visit_parts(mapped.bytes(), place, read_part) != map.nodes.size()) fail_count(place);
+  if (visit_parts(mapped.bytes(), place, read_part) != map.nodes.size() || corners) {
+    fail_count(place);
+  }
   return map;
 }
 
@@ -341,7 +366,9 @@ void extend_map(const std::filesystem::path& file, std::span<const MapNode> node
   std::string rig;
   const std::string place = file.string();
   std::uint64_t count = 0;
+  bool with_corners = have_corners(nodes);
   const auto look_at = [&](std::uint32_t kind, std::string_view content) {
+    with_corners = with_corners || kind == corner_part;
     if (kind == rig_part) rig = content;
     if (kind == node_part) count += Bytes(content, place).take<std::uint64_t>();
   };
@@ -350,7 +377,7 @@ void extend_map(const std::filesystem::path& file, std::span<const MapNode> node
     throw Error(file.string(), "would have more than 1000000 nodes", "begin another map");
   }
   FileInProgress out(file);
-  out.append(head_of(count + nodes.size()));
+  out.append(head_of(count + nodes.size(), with_corners));
   out.append(mapped.bytes().substr(head_bytes));
   append_nodes(out, nodes, rig);
   out.commit();

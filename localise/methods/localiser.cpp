@@ -13,6 +13,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "localise/methods/baseline_localiser.h"
+#include "localise/methods/corner_localiser.h"
 #include "localise/methods/line_localiser.h"
 #include "localise/methods/pgh_localiser.h"
 #include "localise/methods/program_localiser.h"
@@ -30,6 +31,9 @@ void check(const LocaliserOptions& options) {
   if (options.candidates < 1 || options.candidates > most_candidates || options.min_lines < 1) {
     throw Error("localiser options", "candidates or min_lines is out of range",
                 "use 1 to 10000 candidates and at least 1 line");
+  }
+  if (options.min_corners < 4) {
+    throw Error("localiser options", "min_corners is below 4", "use 8");
   }
   if (!(options.time_limit_s > 0 && options.time_limit_s <= 1e6)) {
     throw Error("localiser options", "time_limit_s is not above 0 and at most 1e6",
@@ -77,13 +81,13 @@ class Registry {
     return registry;
   }
 
-  void add(const std::string& method, LocaliserFactory factory) {
+  void add(const std::string& method, LocaliserFactory factory, ViewNeeds needs) {
     const std::lock_guard lock(mutex_);
     if (!factory && factories_.count(method) == 0) {
       throw Error("localiser " + vernier::internal::in_quotes(method), "has no factory",
                   "give a function that makes one");
     }
-    if (method.empty() || !factories_.emplace(method, std::move(factory)).second) {
+    if (method.empty() || !factories_.emplace(method, Method{std::move(factory), needs}).second) {
       throw Error("localiser " + vernier::internal::in_quotes(method),
                   method.empty() ? "has no name" : "is already registered", "choose another name");
     }
@@ -97,22 +101,29 @@ class Registry {
     return names;
   }
 
-  LocaliserFactory find(std::string_view method) const {
+  struct Method {
+    LocaliserFactory factory;
+    ViewNeeds needs;
+  };
+
+  /// Without a factory for an unknown name.
+  Method find(std::string_view method) const {
     const std::lock_guard lock(mutex_);
     const auto found = factories_.find(std::string(method));
-    return found == factories_.end() ? LocaliserFactory{} : found->second;
+    return found == factories_.end() ? Method{} : found->second;
   }
 
  private:
   Registry()
-      : factories_{{"lines", factory<LineLocaliser>()},
-                   {"pgh", factory<PghLocaliser>()},
-                   {"pgh_baseline", factory<BaselineLocaliser>()},
-                   {"pgh_baseline_vectorised", factory<VectorisedBaselineLocaliser>()},
-                   {"program", factory<ProgramLocaliser>()}} {}
+      : factories_{{"corners", {factory<CornerLocaliser>(), {.corners = true}}},
+                   {"lines", {factory<LineLocaliser>(), {}}},
+                   {"pgh", {factory<PghLocaliser>(), {}}},
+                   {"pgh_baseline", {factory<BaselineLocaliser>(), {}}},
+                   {"pgh_baseline_vectorised", {factory<VectorisedBaselineLocaliser>(), {}}},
+                   {"program", {factory<ProgramLocaliser>(), {}}}} {}
 
   mutable std::mutex mutex_;
-  std::map<std::string, LocaliserFactory> factories_;
+  std::map<std::string, Method> factories_;
 };
 
 }  // namespace
@@ -131,6 +142,8 @@ std::string_view name(LocalisationStatus status) {
       return "unsure";
     case LocalisationStatus::failed:
       return "failed";
+    case LocalisationStatus::too_few_corners:
+      return "too_few_corners";
   }
   return "";
 }
@@ -174,14 +187,18 @@ LocalisationAnswer Localiser::localise_looks(std::span<const Look> looks) const 
 
 std::vector<std::string> localiser_names() { return Registry::instance().names(); }
 
-void register_localiser(const std::string& method, LocaliserFactory factory) {
-  Registry::instance().add(method, std::move(factory));
+void register_localiser(const std::string& method, LocaliserFactory factory, ViewNeeds needs) {
+  Registry::instance().add(method, std::move(factory), needs);
+}
+
+bool needs_corners(std::string_view method, const LocaliserOptions& options) {
+  return options.corners || Registry::instance().find(method).needs.corners;
 }
 
 std::unique_ptr<Localiser> make_localiser(std::string_view method,
                                           const TopologicalMap& map,
                                           const LocaliserOptions& options) {
-  const LocaliserFactory factory = Registry::instance().find(method);
+  const LocaliserFactory factory = Registry::instance().find(method).factory;
   if (!factory) {
     throw Error("localiser " + vernier::internal::in_quotes(method), "unknown method",
                 "use " + vernier::internal::alternatives(localiser_names()));

@@ -45,13 +45,13 @@ std::string map_lines(const TopologicalMap& map) {
 
 LocalisationStatus parse_status(const JsonNode& node) {
   const std::string word = node.text();
-  for (const auto status :
-       {LocalisationStatus::answered, LocalisationStatus::unsure, LocalisationStatus::too_few_lines,
-        LocalisationStatus::tie, LocalisationStatus::no_match}) {
+  for (const auto status : {LocalisationStatus::answered, LocalisationStatus::unsure,
+                            LocalisationStatus::too_few_lines, LocalisationStatus::too_few_corners,
+                            LocalisationStatus::tie, LocalisationStatus::no_match}) {
     if (word == name(status)) return status;
   }
   throw Error(node.place(), in_quotes(word) + " is no status",
-              "use answered, unsure, too_few_lines, tie or no_match");
+              "use answered, unsure, too_few_lines, too_few_corners, tie or no_match");
 }
 
 /// What went wrong, with what the program itself says of it.

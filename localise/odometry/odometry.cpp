@@ -66,14 +66,6 @@ void check(const Rig& rig,
   }
 }
 
-std::vector<LinkedCorner> corners_at(const std::vector<TriangulatedLink>& links,
-                                     const std::vector<int>& chosen) {
-  std::vector<LinkedCorner> corners;
-  corners.reserve(chosen.size());
-  for (const int i : chosen) corners.push_back(links[static_cast<std::size_t>(i)].corner);
-  return corners;
-}
-
 }  // namespace
 
 std::optional<MotionStep> estimate_step(const Rig& rig,
@@ -86,28 +78,17 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   const std::optional<Pose> agreed = consensus(rig, placed, options);
   if (!agreed) return std::nullopt;
 
-  constexpr int max_rounds = 10, max_iterations = 50;
-  const auto fewest = static_cast<std::size_t>(options.min_inliers);
-  std::vector<int> chosen = agreeing_links(rig, placed, *agreed, options.gate_probability);
-  std::optional<RefinedStep> refined;
-  for (int round = 0; round < max_rounds; ++round) {
-    if (chosen.size() < fewest) return std::nullopt;
-    refined = refine_step(rig, corners_at(placed, chosen), refined ? refined->T_from_to : *agreed,
-                          max_iterations);
-    if (!refined) return std::nullopt;
-    std::vector<int> again =
-        agreeing_links(rig, placed, refined->T_from_to, options.gate_probability);
-    if (again == chosen || round + 1 == max_rounds) break;
-    chosen = std::move(again);
-  }
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(refined->information);
+  const std::optional<SettledStep> settled = settled_step({rig, rig}, placed, *agreed, options);
+  if (!settled) return std::nullopt;
+  const auto& [refined, chosen] = *settled;
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> information(refined.information);
   if (information.info() != Eigen::Success || !information.isPositive()) return std::nullopt;
 
   MotionStep step;
-  step.T_from_to = refined->T_from_to;
+  step.T_from_to = refined.T_from_to;
   step.links = static_cast<int>(links.size());
   for (const int i : chosen) step.inliers.push_back(placed[static_cast<std::size_t>(i)].link);
-  step.chi2 = refined->total_chi2();
+  step.chi2 = refined.total_chi2();
   step.dof = 5 * static_cast<int>(chosen.size()) - 6;
   const Eigen::Matrix<double, 6, 6> inverse =
       information.solve(Eigen::Matrix<double, 6, 6>::Identity());
@@ -116,7 +97,7 @@ std::optional<MotionStep> estimate_step(const Rig& rig,
   constexpr double least_variance_factor = 1e-6;
   step.covariance =
       std::max(step.chi2 / step.dof, least_variance_factor) * 0.5 * (inverse + inverse.transpose());
-  if (options.with_rig) step.by_rig = step_by_rig(rig, corners_at(placed, chosen), *refined);
+  if (options.with_rig) step.by_rig = step_by_rig(rig, corners_at(placed, chosen), refined);
   return step;
 }
 

@@ -18,6 +18,7 @@ class PairProjector {
   /// The rig must outlive it.
   explicit PairProjector(const Rig& rig) : rig_(rig) {}
 
+  const Rig& rig() const { return rig_; }
   /// False if the point is not in front of both cameras.
   bool project(const Eigen::Vector3d& x_m, PairPixels& pixels, PairByPoint& by_point);
   /// Derivative of the last projected point's pixels by the rig's parameters: 4 x parameters.

@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "calib/pose.h"
@@ -44,38 +44,6 @@ Matrix4d whitening(const StereoCorner& corner) {
   return corner.covariance_px2.llt().matrixL().solve(Matrix4d::Identity());
 }
 
-struct TriangulatedCorner {
-  Vector3d x_m;
-  Matrix3d covariance_m2;
-  Matrix4d calibration_px2;  ///< of its pixels' distance from those of x, by the rig's error
-};
-
-/// The point of a corner; none if its pixels do not meet within the gate (one degree of freedom).
-std::optional<TriangulatedCorner> triangulated(const Rig& rig,
-                                               PairProjector& projector,
-                                               const StereoCorner& corner,
-                                               const MatrixXd& calibration,
-                                               double gate) {
-  const auto point = triangulate_point_with_jacobian(rig, {corner.left_px, corner.right_px});
-  if (!point) return std::nullopt;
-  PairPixels pixels;
-  PairByPoint by_point;
-  if (!projector.project(point->x_m, pixels, by_point)) return std::nullopt;
-  Matrix4d calibration_px2 = Matrix4d::Zero();
-  if (calibration.size() > 0) {
-    const Eigen::Matrix<double, 4, Eigen::Dynamic> by_rig =
-        projector.by_rig() + by_point * point->by_rig;
-    calibration_px2 = by_rig * calibration * by_rig.transpose();
-  }
-  const PairPixels misfit = pixels_of(corner) - pixels;
-  const Matrix4d S = corner.covariance_px2 + calibration_px2;
-  if (misfit.dot(S.llt().solve(misfit)) > gate) return std::nullopt;
-  const Matrix3d covariance =
-      point->by_pixels * corner.covariance_px2 * point->by_pixels.transpose();
-  if (!covariance.allFinite()) return std::nullopt;
-  return TriangulatedCorner{point->x_m, covariance, calibration_px2};
-}
-
 /// Squared Mahalanobis distances of the later pixels from those that a motion predicts.
 class MotionDistance {
  public:
@@ -100,51 +68,91 @@ class MotionDistance {
   Pose T_to_from_;
 };
 
-constexpr int drawn = 3;
+constexpr std::size_t drawn = 3;
 constexpr int pixel_dof = 4;
 
 /// Rigid transform between three points at both moments (Umeyama 1991), refined on their pixels.
 std::optional<Pose> motion_of(const Rig& rig,
                               const std::vector<TriangulatedLink>& links,
-                              const std::array<std::size_t, drawn>& chosen) {
+                              std::span<const std::size_t> chosen) {
   Matrix3d from, to;
   std::vector<LinkedCorner> corners;
-  for (int k = 0; k < drawn; ++k) {
-    const TriangulatedLink& link = links[chosen[static_cast<std::size_t>(k)]];
-    from.col(k) = link.corner.x_from_m;
-    to.col(k) = link.x_to_m;
+  for (std::size_t k = 0; k < drawn; ++k) {
+    const TriangulatedLink& link = links[chosen[k]];
+    from.col(static_cast<Eigen::Index>(k)) = link.corner.x_from_m;
+    to.col(static_cast<Eigen::Index>(k)) = link.x_to_m;
     corners.push_back(link.corner);
   }
   const Matrix4d T = Eigen::umeyama(to, from, false);
   if (!T.allFinite()) return std::nullopt;
   constexpr int iterations = 5;
   const Pose start{T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
-  const auto refined = refine_step(rig, corners, start, iterations);
+  const auto refined = refine_step({rig, rig}, corners, start, iterations);
   if (!refined) return start;
   return refined->T_from_to;
 }
 
-/// Draws needed to have three right links with the wanted confidence.
-double draws_needed(std::size_t agreeing, std::size_t links, double confidence) {
+/// Draws needed to have so many right links with the wanted confidence.
+double draws_needed(std::size_t agreeing,
+                    std::size_t links,
+                    std::size_t drawn_links,
+                    double confidence) {
   const double share = static_cast<double>(agreeing) / static_cast<double>(links);
-  const double all_right = std::pow(share, drawn);
+  const double all_right = std::pow(share, static_cast<int>(drawn_links));
   if (all_right >= 1) return 1;
   if (all_right <= 0) return std::numeric_limits<double>::infinity();
   return std::log1p(-confidence) / std::log1p(-all_right);
 }
 
-std::array<std::size_t, drawn> three_of(std::size_t n, RandomStream& draws) {
-  std::array<std::size_t, drawn> chosen{};
-  for (std::size_t k = 0; k < drawn; ++k) {
+/// Different ones of n.
+void draw_few(std::size_t n, RandomStream& draws, std::vector<std::size_t>& chosen) {
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
     const auto end = chosen.begin() + static_cast<std::ptrdiff_t>(k);
     do {
       chosen[k] = draws.below(static_cast<std::uint32_t>(n));
     } while (std::find(chosen.begin(), end, chosen[k]) != end);
   }
-  return chosen;
 }
 
 }  // namespace
+
+std::optional<TriangulatedCorner> triangulated(PairProjector& projector,
+                                               const StereoCorner& corner,
+                                               const MatrixXd& calibration,
+                                               double gate) {
+  const auto point =
+      triangulate_point_with_jacobian(projector.rig(), {corner.left_px, corner.right_px});
+  if (!point) return std::nullopt;
+  PairPixels pixels;
+  PairByPoint by_point;
+  if (!projector.project(point->x_m, pixels, by_point)) return std::nullopt;
+  Matrix4d calibration_px2 = Matrix4d::Zero();
+  if (calibration.size() > 0) {
+    const Eigen::Matrix<double, 4, Eigen::Dynamic> by_rig =
+        projector.by_rig() + by_point * point->by_rig;
+    calibration_px2 = by_rig * calibration * by_rig.transpose();
+  }
+  const PairPixels misfit = pixels_of(corner) - pixels;
+  const Matrix4d S = corner.covariance_px2 + calibration_px2;
+  if (misfit.dot(S.llt().solve(misfit)) > gate) return std::nullopt;
+  const Matrix3d covariance =
+      point->by_pixels * corner.covariance_px2 * point->by_pixels.transpose();
+  if (!covariance.allFinite()) return std::nullopt;
+  return TriangulatedCorner{point->x_m, covariance, calibration_px2};
+}
+
+TriangulatedLink triangulated_link(const CornerLink& link,
+                                   const StereoCorner& from,
+                                   const TriangulatedCorner& earlier,
+                                   const StereoCorner& to,
+                                   const TriangulatedCorner& later) {
+  return {link,
+          {pixels_of(from), pixels_of(to), whitening(from), whitening(to), earlier.x_m},
+          later.x_m,
+          earlier.covariance_m2,
+          to.covariance_px2 + later.calibration_px2,
+          later.covariance_m2};
+}
 
 std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
                                                  std::span<const StereoCorner> from,
@@ -157,33 +165,32 @@ std::vector<TriangulatedLink> triangulated_links(const Rig& rig,
   for (const CornerLink& link : links) {
     const StereoCorner& a = from[static_cast<std::size_t>(link.from)];
     const StereoCorner& b = to[static_cast<std::size_t>(link.to)];
-    const auto earlier = triangulated(rig, projector, a, options.calibration, gate);
-    const auto later = triangulated(rig, projector, b, options.calibration, gate);
+    const auto earlier = triangulated(projector, a, options.calibration, gate);
+    const auto later = triangulated(projector, b, options.calibration, gate);
     if (!earlier || !later) continue;
-    found.push_back({link,
-                     {pixels_of(a), pixels_of(b), whitening(a), whitening(b), earlier->x_m},
-                     later->x_m,
-                     earlier->covariance_m2,
-                     b.covariance_px2 + later->calibration_px2});
+    found.push_back(triangulated_link(link, a, *earlier, b, *later));
   }
   return found;
 }
 
-std::optional<Pose> consensus(const Rig& rig,
-                              const std::vector<TriangulatedLink>& links,
-                              const StepOptions& options) {
-  if (links.size() < drawn) return std::nullopt;
-  const double gate = chi_squared_quantile(options.gate_probability, pixel_dof);
-  std::optional<Pose> best;
+std::optional<AgreedMotion> consensus(const Rig& to_rig,
+                                      const std::vector<TriangulatedLink>& links,
+                                      const StepOptions& options,
+                                      const MinimalMotion& minimal) {
+  if (links.size() < minimal.links) return std::nullopt;
+  const double gate = link_gate(options.gate_probability);
+  std::optional<AgreedMotion> best;
   double least = std::numeric_limits<double>::infinity(), needed = options.max_draws;
+  std::vector<std::size_t> chosen(minimal.links);
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(options.max_draws) && i < needed; ++i) {
     RandomStream draws({.seed = options.seed,
                         .trial = options.step,
                         .feature = i,
-                        .source = static_cast<std::uint32_t>(DrawSource::odometry_links)});
-    const auto motion = motion_of(rig, links, three_of(links.size(), draws));
+                        .source = static_cast<std::uint32_t>(minimal.source)});
+    draw_few(links.size(), draws, chosen);
+    const auto motion = minimal.solve(chosen);
     if (!motion) continue;
-    MotionDistance distance(rig, *motion);
+    MotionDistance distance(to_rig, *motion);
     double sum = 0;
     std::size_t agreeing = 0;
     for (const TriangulatedLink& link : links) {
@@ -194,23 +201,79 @@ std::optional<Pose> consensus(const Rig& rig,
     }
     if (sum >= least) continue;
     least = sum;
-    best = motion;
-    needed = draws_needed(agreeing, links.size(), options.confidence);
+    best = AgreedMotion{*motion, sum};
+    needed = draws_needed(agreeing, links.size(), minimal.links, options.confidence);
   }
   return best;
 }
 
-std::vector<int> agreeing_links(const Rig& rig,
+std::optional<Pose> consensus(const Rig& rig,
+                              const std::vector<TriangulatedLink>& links,
+                              const StepOptions& options) {
+  const auto agreed = consensus(
+      rig, links, options,
+      {drawn, DrawSource::odometry_links,
+       [&](std::span<const std::size_t> chosen) { return motion_of(rig, links, chosen); }});
+  if (!agreed) return std::nullopt;
+  return agreed->T_from_to;
+}
+
+double link_gate(double gate_probability) {
+  return chi_squared_quantile(gate_probability, pixel_dof);
+}
+
+std::vector<int> agreeing_links(const Rig& to_rig,
                                 const std::vector<TriangulatedLink>& links,
                                 const Pose& T_from_to,
                                 double gate_probability) {
-  const double gate = chi_squared_quantile(gate_probability, pixel_dof);
-  MotionDistance distance(rig, T_from_to);
+  const double gate = link_gate(gate_probability);
+  MotionDistance distance(to_rig, T_from_to);
   std::vector<int> agreeing;
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (distance(links[i]) <= gate) agreeing.push_back(static_cast<int>(i));
   }
   return agreeing;
+}
+
+double support_of(const Rig& to_rig,
+                  const std::vector<TriangulatedLink>& links,
+                  const Pose& T_from_to,
+                  double gate_probability) {
+  const double gate = link_gate(gate_probability);
+  MotionDistance distance(to_rig, T_from_to);
+  double support = 0;
+  for (const TriangulatedLink& link : links) support += std::max(0.0, 1 - distance(link) / gate);
+  return support;
+}
+
+std::optional<SettledStep> settled_step(const StepRigs& rigs,
+                                        const std::vector<TriangulatedLink>& links,
+                                        const Pose& start,
+                                        const StepOptions& options,
+                                        const FloorBasis* within) {
+  constexpr int max_rounds = 10, max_iterations = 50;
+  const auto fewest = static_cast<std::size_t>(options.min_inliers);
+  std::vector<int> chosen = agreeing_links(rigs.to, links, start, options.gate_probability);
+  std::optional<RefinedStep> refined;
+  for (int round = 0; round < max_rounds; ++round) {
+    if (chosen.size() < fewest) return std::nullopt;
+    refined = refine_step(rigs, corners_at(links, chosen), refined ? refined->T_from_to : start,
+                          max_iterations, within);
+    if (!refined) return std::nullopt;
+    std::vector<int> again =
+        agreeing_links(rigs.to, links, refined->T_from_to, options.gate_probability);
+    if (again == chosen || round + 1 == max_rounds) break;
+    chosen = std::move(again);
+  }
+  return SettledStep{std::move(*refined), std::move(chosen)};
+}
+
+std::vector<LinkedCorner> corners_at(const std::vector<TriangulatedLink>& links,
+                                     const std::vector<int>& chosen) {
+  std::vector<LinkedCorner> corners;
+  corners.reserve(chosen.size());
+  for (const int i : chosen) corners.push_back(links[static_cast<std::size_t>(i)].corner);
+  return corners;
 }
 
 }  // namespace vernier::localise::internal

@@ -33,21 +33,28 @@ struct LinearisedCorner {
   double chi2() const { return residual.squaredNorm(); }
 };
 
+/// One for each moment.
+struct StepProjectors {
+  PairProjector from, to;
+
+  explicit StepProjectors(const StepRigs& rigs) : from(rigs.from), to(rigs.to) {}
+};
+
 /// With y = T⁻¹ x and T -> (exp(ω) R, t + τ): δy = Rᵀ [x − t]x ω − Rᵀ τ + Rᵀ δx.
-bool linearise(PairProjector& projector,
+bool linearise(StepProjectors& projectors,
                const LinkedCorner& corner,
                const Pose& T_from_to,
                const Vector3d& x_from_m,
                LinearisedCorner& out) {
   PairPixels pixels;
   PairByPoint by_point;
-  if (!projector.project(x_from_m, pixels, by_point)) return false;
+  if (!projectors.from.project(x_from_m, pixels, by_point)) return false;
   out.residual.head<4>() = corner.from_whitening * (corner.from_px - pixels);
   out.by_point.topRows<4>() = corner.from_whitening * by_point;
   out.by_motion.topRows<4>().setZero();
   const Matrix3d Rt = T_from_to.R.transpose();
   const Vector3d from_t = x_from_m - T_from_to.t;
-  if (!projector.project(Rt * from_t, pixels, by_point)) return false;
+  if (!projectors.to.project(Rt * from_t, pixels, by_point)) return false;
   out.residual.tail<4>() = corner.to_whitening * (corner.to_px - pixels);
   const PairByPoint by_x = corner.to_whitening * by_point * Rt;
   out.by_point.bottomRows<4>() = by_x;
@@ -78,11 +85,11 @@ struct StepState {
   std::vector<LinearisedCorner> corners;
   double chi2 = 0;
 
-  bool relinearise(PairProjector& projector, const std::vector<LinkedCorner>& measured) {
+  bool relinearise(StepProjectors& projectors, const std::vector<LinkedCorner>& measured) {
     corners.resize(measured.size());
     chi2 = 0;
     for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (!linearise(projector, measured[i], T_from_to, x_from_m[i], corners[i])) return false;
+      if (!linearise(projectors, measured[i], T_from_to, x_from_m[i], corners[i])) return false;
       chi2 += corners[i].chi2();
     }
     return std::isfinite(chi2);
@@ -107,12 +114,28 @@ struct ReducedSystem {
   }
 };
 
+/// The change of the motion that minimises the linearised system; false if there is none.
+bool change_of(const ReducedSystem& system, const FloorBasis* within, Vector6d& delta) {
+  if (within) {
+    const Eigen::LDLT<Matrix3d> H(within->transpose() * system.H * *within);
+    if (H.info() != Eigen::Success || !H.isPositive()) return false;
+    delta = *within * H.solve(within->transpose() * system.g);
+  } else {
+    const Eigen::LDLT<Matrix6d> H(system.H);
+    if (H.info() != Eigen::Success || !H.isPositive()) return false;
+    delta = H.solve(system.g);
+  }
+  return delta.allFinite();
+}
+
 /// The state after a step of the system; false if it has none.
-bool advance(const ReducedSystem& system, const StepState& from, StepState& to, double& largest) {
-  const Eigen::LDLT<Matrix6d> H(system.H);
-  if (H.info() != Eigen::Success || !H.isPositive()) return false;
-  const Vector6d delta = H.solve(system.g);
-  if (!delta.allFinite()) return false;
+bool advance(const ReducedSystem& system,
+             const FloorBasis* within,
+             const StepState& from,
+             StepState& to,
+             double& largest) {
+  Vector6d delta;
+  if (!change_of(system, within, delta)) return false;
   largest = delta.cwiseAbs().maxCoeff();
   to.T_from_to = retract(from.T_from_to, delta);
   to.x_from_m.resize(from.x_from_m.size());
@@ -127,15 +150,16 @@ bool advance(const ReducedSystem& system, const StepState& from, StepState& to, 
 
 double RefinedStep::total_chi2() const { return std::accumulate(chi2.begin(), chi2.end(), 0.0); }
 
-std::optional<RefinedStep> refine_step(const Rig& rig,
+std::optional<RefinedStep> refine_step(const StepRigs& rigs,
                                        const std::vector<LinkedCorner>& corners,
                                        const Pose& T_from_to,
-                                       int max_iterations) {
-  PairProjector projector(rig);
+                                       int max_iterations,
+                                       const FloorBasis* within) {
+  StepProjectors projectors(rigs);
   StepState state;
   state.T_from_to = T_from_to;
   for (const LinkedCorner& corner : corners) state.x_from_m.push_back(corner.x_from_m);
-  if (!state.relinearise(projector, corners)) return std::nullopt;
+  if (!state.relinearise(projectors, corners)) return std::nullopt;
   constexpr double first_damping = 1e-6, least = 1e-12, most = 1e6, factor = 10;
   constexpr double converged = 1e-10;       // rad and m
   constexpr double converged_chi2 = 1e-12;  // relative
@@ -144,8 +168,8 @@ std::optional<RefinedStep> refine_step(const Rig& rig,
   for (int i = 0; i < max_iterations; ++i) {
     const ReducedSystem system(state.corners, damping);
     double largest = 0;
-    const bool better = advance(system, state, next, largest) &&
-                        next.relinearise(projector, corners) && next.chi2 <= state.chi2;
+    const bool better = advance(system, within, state, next, largest) &&
+                        next.relinearise(projectors, corners) && next.chi2 <= state.chi2;
     if (!better) {
       damping *= factor;
       if (damping > most || largest < converged) break;
@@ -167,14 +191,15 @@ std::optional<RefinedStep> refine_step(const Rig& rig,
 Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,
                                                      const std::vector<LinkedCorner>& corners,
                                                      const RefinedStep& step) {
-  PairProjector projector(rig);
+  StepProjectors projectors({rig, rig});
+  PairProjector& projector = projectors.from;
   Eigen::Matrix<double, 6, Eigen::Dynamic> gradient =
       Eigen::MatrixXd::Zero(6, parameter_count(rig));
   Eigen::Matrix<double, 8, Eigen::Dynamic> by_rig(8, parameter_count(rig));
   const Pose T_to_from = step.T_from_to.inverse();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     LinearisedCorner c;
-    if (!linearise(projector, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
+    if (!linearise(projectors, corners[i], step.T_from_to, step.x_from_m[i], c)) continue;
     PairPixels pixels;
     PairByPoint by_point;
     projector.project(step.x_from_m[i], pixels, by_point);

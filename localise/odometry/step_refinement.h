@@ -19,6 +19,15 @@ struct LinkedCorner {
   Eigen::Vector3d x_from_m;                      ///< left camera's frame at the earlier moment
 };
 
+/// The rigs as they are believed to be at both moments: of a drive they are one.
+struct StepRigs {
+  const Rig& from;
+  const Rig& to;
+};
+
+/// The directions in which a motion may change: columns in the tangent of retract().
+using FloorBasis = Eigen::Matrix<double, 6, 3>;
+
 struct RefinedStep {
   Pose T_from_to;
   std::vector<Eigen::Vector3d> x_from_m;  ///< one per corner
@@ -29,12 +38,13 @@ struct RefinedStep {
 };
 
 /// Minimises the reprojection error of the corners at both moments over the motion and their
-/// points. std::nullopt if a point gets behind a camera, or the corners do not determine the
-/// motion.
-std::optional<RefinedStep> refine_step(const Rig& rig,
+/// points; over the motions of a basis only, if one is given. std::nullopt if a point gets behind a
+/// camera, or the corners do not determine the motion.
+std::optional<RefinedStep> refine_step(const StepRigs& rigs,
                                        const std::vector<LinkedCorner>& corners,
                                        const Pose& T_from_to,
-                                       int max_iterations);
+                                       int max_iterations,
+                                       const FloorBasis* within = nullptr);
 
 /// Derivative of the minimum by the rig's parameters, with the measurements fixed: by the implicit
 /// function theorem, to first order in the residuals.

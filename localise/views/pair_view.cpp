@@ -9,6 +9,7 @@
 
 #include "calib/error.h"
 #include "calib/rig.h"
+#include "localise/pair_corners.h"
 #include "localise/place.h"
 #include "stereo/canny_edges.h"
 #include "stereo/edge_matcher.h"
@@ -77,6 +78,9 @@ PlaceView view_of_pair(const std::shared_ptr<const Rig>& rig,
   }
   PlaceView view = select_lines(in_space, in_images, mount, options.lines);
   view.rig = rig;
+  if (options.with_corners) {
+    view.corners = corners_of_pair(*rig, options.calibration, left, right, options.corners);
+  }
   return view;
 }
 

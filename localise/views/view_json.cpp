@@ -17,6 +17,7 @@
 #include "calib/rig.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
+#include "localise/views/corner_json.h"
 #include "stereo/reconstruction/triangulate.h"
 #include "stereo/segment.h"
 
@@ -167,6 +168,9 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
                 "the rig does not have two cameras", "give a stereo rig");
   }
   if (node.has("mount")) view.mount = parse_mount(node.at("mount"));
+  if (entries(node, "corners", most_view_lines) > 0) {
+    view.corners = parse_corners(node.at("corners"), view.rig.get());
+  }
   if (node.has("segments")) {
     if (node.has("lines") || node.has("image_lines_px")) {
       throw Error(node.place(), "has segments and lines", "give one of them");
@@ -177,8 +181,8 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
     view.image_lines = lines.image_lines;
     return view;
   }
-  if (!node.has("lines")) {
-    throw Error(node.place(), "has neither \"lines\" nor \"segments\"",
+  if (!node.has("lines") && !node.has("corners")) {
+    throw Error(node.place(), "has neither \"lines\", \"segments\" nor \"corners\"",
                 "give \"lines\": [] for a view without any");
   }
   const std::size_t lines = entries(node, "lines", most_view_lines);
@@ -235,6 +239,7 @@ Json view_json(const PlaceView& view) {
   for (const ImageSegment& line : view.image_lines) {
     image_lines.push_back({line.a_px.x(), line.a_px.y(), line.b_px.x(), line.b_px.y()});
   }
+  if (!view.corners.empty()) json["corners"] = corners_json(view.corners);
   return json;
 }
 

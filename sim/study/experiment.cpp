@@ -17,6 +17,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
+#include "sim/corner_appearance.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/study/told_rig.h"
@@ -80,9 +81,11 @@ MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings) {
   MapViews looks;
+  NoiseFreeViewOptions looking = look_options(settings);
+  looking.with_corners = needs_corners(settings.method, settings.localiser);
   for (const Pose2D& place :
        map_poses(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
-    looks.push_back(look(visibility, true_rig, place, look_options(settings)));
+    looks.push_back(look(visibility, true_rig, place, looking));
   }
   return looks;
 }
@@ -103,6 +106,18 @@ LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
                                                   settings_.mount.height_m);
   }
   if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
+  check(settings_.appearance, "appearance of corners");
+  if (needs_corners(settings_.method, settings_.localiser)) {
+    appearance_ = std::make_unique<CornerAppearance>(visibility.world(), settings_.appearance);
+  }
+}
+
+std::vector<StereoCorner> LocalisationExperiment::described(const StereoObservation& sighting,
+                                                            const Pose2D& pose,
+                                                            const SensingDraw& draw) const {
+  if (!appearance_) return {};
+  return stereo_corners(sighting, *appearance_, settings_.sources, eye_of(pose, settings_.mount),
+                        draw);
 }
 
 Rig LocalisationExperiment::draw_rig(std::uint32_t trial, bool of_map) const {
@@ -123,11 +138,11 @@ TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig
   map.nodes.reserve(map_views_->size());
   for (std::size_t i = 0; i < map_views_->size(); ++i) {
     const NoiseFreeView& place = (*map_views_)[i];
-    const StereoObservation sighting =
-        sensor_.sense(place, {.seed = settings_.seed,
-                              .trial = map_trial + block,
-                              .frame = static_cast<std::uint32_t>(i)});
+    const SensingDraw draw{
+        .seed = settings_.seed, .trial = map_trial + block, .frame = static_cast<std::uint32_t>(i)};
+    const StereoObservation sighting = sensor_.sense(place, draw);
     map.nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
+    map.nodes.back().view.corners = described(sighting, place.pose, draw);
   }
   return map;
 }
@@ -151,11 +166,14 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
     Pose2D pose = result.truth;
     pose.heading_rad += turn_rad;
     const NoiseFreeView seen = look(visibility_, rig_.rig, pose, looking);
-    StereoObservation sighting = sensor_.sense(
-        seen, {.seed = settings_.seed, .trial = trial, .frame = static_cast<std::uint32_t>(taken)});
+    const SensingDraw draw{
+        .seed = settings_.seed, .trial = trial, .frame = static_cast<std::uint32_t>(taken)};
+    StereoObservation sighting = sensor_.sense(seen, draw);
+    std::vector<StereoCorner> corners = described(sighting, pose, draw);
 
     const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
+    looks.back().view.corners = std::move(corners);
     answer =
         looks.size() == 1 ? localiser.localise(looks[0].view) : localiser.localise_looks(looks);
     result.cpu_ms += clock_ms(CLOCK_THREAD_CPUTIME_ID) - cpu + answer.program_cpu_ms;

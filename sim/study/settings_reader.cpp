@@ -12,6 +12,7 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "sim/corner_appearance.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
 
@@ -102,7 +103,7 @@ void SettingsReader::read_map(const toml::table& table, ExperimentSettings& sett
 void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
   check_keys(table,
              {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "stages", "command", "time_limit_s"},
+              "stages", "command", "time_limit_s", "corners", "min_corners"},
              "[localiser]");
   if (const auto* method = table.get("method")) {
     settings.method = text(*method, "localiser.method");
@@ -147,7 +148,35 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
     }
     settings.looks = static_cast<int>(count);
   }
+  read_views(table, settings.localiser);
   read_program(table, settings);
+}
+
+void SettingsReader::read_corners(const toml::table& table, AppearanceOptions& appearance) const {
+  check_keys(table, {"view_change", "noise"}, "[corners]");
+  constexpr double most = 100;
+  if (const auto* node = table.get("view_change")) {
+    appearance.view_change = number_in(*node, "corners.view_change", 0, most);
+  }
+  if (const auto* node = table.get("noise")) {
+    appearance.noise = number_in(*node, "corners.noise", 0, most);
+  }
+}
+
+void SettingsReader::read_views(const toml::table& table, LocaliserOptions& options) const {
+  if (const auto* node = table.get("corners")) {
+    if (!node->is_boolean()) {
+      fail(*node, "localiser.corners is not a boolean", "use true or false");
+    }
+    options.corners = node->as_boolean()->get();
+  }
+  if (const auto* node = table.get("min_corners")) {
+    const std::int64_t count = integer(*node, "localiser.min_corners");
+    if (count < 4 || count > 10'000) {
+      fail(*node, "localiser.min_corners is not from 4 to 10000", "use 8");
+    }
+    options.min_corners = static_cast<int>(count);
+  }
 }
 
 void SettingsReader::read_program(const toml::table& table, ExperimentSettings& settings) const {
@@ -182,6 +211,7 @@ ExperimentSettings SettingsReader::read_settings(const toml::table& root,
         word(*protocol, "study.protocol", [](const std::string& w) { return query_protocol(w); });
   }
   if (const auto* own = section(root, "sources")) read_sources(*own, settings.sources);
+  if (const auto* corners = section(root, "corners")) read_corners(*corners, settings.appearance);
   if (const auto* map = section(root, "map")) read_map(*map, settings);
   if (const auto* camera = section(root, "camera")) read_camera(*camera, settings.mount);
   if (const auto* localiser = section(root, "localiser")) read_localiser(*localiser, settings);

@@ -11,6 +11,7 @@
 #include "calib/error.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "sim/corner_appearance.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
 
@@ -21,8 +22,8 @@ class SettingsReader : public vernier::internal::TomlReader {
  public:
   using TomlReader::TomlReader;
 
-  /// The tables [study] (seed and protocol), [sources], [camera], [map] and [localiser] of a study;
-  /// `sources` are those that it starts from.
+  /// The tables [study] (seed and protocol), [sources], [corners], [camera], [map] and [localiser]
+  /// of a study; `sources` are those that it starts from.
   ExperimentSettings read_settings(const toml::table& root, const SourceSettings& sources) const;
 
   void read_sources(const toml::table& table, SourceSettings& sources) const;
@@ -47,7 +48,9 @@ class SettingsReader : public vernier::internal::TomlReader {
  private:
   void read_camera(const toml::table& table, localise::CameraMount& mount) const;
   void read_map(const toml::table& table, ExperimentSettings& settings) const;
+  void read_corners(const toml::table& table, AppearanceOptions& appearance) const;
   void read_localiser(const toml::table& table, ExperimentSettings& settings) const;
+  void read_views(const toml::table& table, localise::LocaliserOptions& options) const;
   void read_program(const toml::table& table, ExperimentSettings& settings) const;
 };
 

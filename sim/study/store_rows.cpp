@@ -89,7 +89,7 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
   TrialResult t;
   t.trial = static_cast<std::uint32_t>(row.whole(0, std::numeric_limits<std::uint32_t>::max()));
   t.status = static_cast<LocalisationStatus>(
-      row.whole(0, static_cast<std::int64_t>(LocalisationStatus::failed)));
+      row.whole(0, static_cast<std::int64_t>(LocalisationStatus::too_few_corners)));
   t.truth = row.pose();
   t.answer = row.pose();
   t.node = row.pose();

@@ -122,13 +122,13 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   for (const auto& [position, key] : keys) {
     const toml::node& node = *sweep->get(key);
     const std::string head = key.substr(0, key.find('.'));
-    const Keys sections{"study", "sources", "camera", "map", "localiser"};
+    const Keys sections{"study", "sources", "corners", "camera", "map", "localiser"};
     if (key.find('.') != std::string::npos &&
         (std::find(sections.begin(), sections.end(), head) == sections.end() ||
          key == "study.trials" || key == "sources.file")) {
-      fail(
-          node, "'" + shortened(key) + "' cannot be swept",
-          "sweep a key of [sources], [camera], [map] or [localiser], study.protocol or study.seed");
+      fail(node, "'" + shortened(key) + "' cannot be swept",
+           "sweep a key of [sources], [corners], [camera], [map] or [localiser], study.protocol or "
+           "study.seed");
     }
     if (key.find('.') == std::string::npos || node.is_table()) {
       fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),
@@ -204,7 +204,9 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
 }
 
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
-  check_keys(root, {"study", "world", "rig", "sources", "camera", "map", "localiser", "sweep"}, "");
+  check_keys(root,
+             {"study", "world", "rig", "sources", "corners", "camera", "map", "localiser", "sweep"},
+             "");
   StudyFile study;
   read_study_section(root, study);
   read_files(root, study);

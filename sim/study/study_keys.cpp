@@ -107,6 +107,12 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   if (name(s.localiser.stages) != name(usual.stages)) {
     all["localiser.stages"] = name(s.localiser.stages);
   }
+  if (needs_corners(s.method, s.localiser)) {
+    all["corners.view_change"] = fmt::format("{}", s.appearance.view_change);
+    all["corners.noise"] = fmt::format("{}", s.appearance.noise);
+    all["localiser.min_corners"] = fmt::format("{}", s.localiser.min_corners);
+  }
+  if (s.localiser.corners) all["localiser.corners"] = "true";
   if (s.method == "program") {
     all["localiser.command"] = s.localiser.command;
     all["localiser.time_limit_s"] = fmt::format("{}", s.localiser.time_limit_s);
@@ -139,8 +145,8 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
 }
 
 std::string looks_key(const ExperimentSettings& s) {
-  return fmt::format("{} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
-                     s.map_headings);
+  return fmt::format("{} {} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
+                     s.map_headings, needs_corners(s.method, s.localiser));
 }
 
 std::string ceiling_key(const Study& study, const ExperimentSettings& s) {

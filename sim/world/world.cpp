@@ -73,7 +73,9 @@ World build_world(const WorldDescription& description) {
   place_features(description.loose, Pose{}, 0, world);
   for (const auto& instance : description.instances) {
     const auto object = static_cast<std::int32_t>(world.objects.size());
-    world.objects.emplace_back().template_name = instance.template_name;
+    WorldObject& placed = world.objects.emplace_back();
+    placed.template_name = instance.template_name;
+    placed.yaw_rad = instance.yaw_rad;
     place_features(by_name.at(instance.template_name)->features, pose_of(instance), object, world);
   }
   find_centres(world);

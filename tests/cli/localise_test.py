@@ -94,6 +94,41 @@ class Localise(unittest.TestCase):
         other = json.loads(self.done(*words[:-3], '--seed', '6', '--json'))
         self.assertNotEqual(found['queries'][0]['truth'], other['queries'][0]['truth'])
 
+    def test_a_simulated_robot_is_found_on_corners(self):
+        make = ['map', 'make', '--world', 'workshop', '--spacing-m', '1', '--json']
+        bare = json.loads(self.done(*make, '-o', 'w.map'))
+        made = json.loads(self.done(*make, '--corners', '-o', 'c.map'))
+        self.assertEqual((bare['corners_mean'], bare['lines_median']), (0, made['lines_median']))
+        self.assertGreater(made['corners_mean'], 20)
+        words = ['localise', 'c.map', '--world', 'workshop', '-n', '12', '--protocol', 'near_path',
+                 '--json']
+        found = json.loads(self.done(*words, '--method', 'corners'))
+        self.assertGreaterEqual(found['success']['best_guesses_right'], 7)
+        of_lines = json.loads(self.done(*words))
+        words[1] = 'w.map'
+        for one, other in zip(of_lines['queries'], json.loads(self.done(*words))['queries']):
+            self.assertEqual((one['status'], one.get('pose')), (other['status'], other.get('pose')))
+        self.refused(*words, '--method', 'corners', says='map make --corners')
+        self.refused('localise', 'c.map', '--features', 'none.jsonl', '--corners', says='--corners')
+
+    def test_a_program_gets_corners_if_asked(self):
+        (self.folder / 'counts.py').write_text(
+            'import json, sys\n'
+            'for _ in range(json.loads(sys.stdin.readline())["nodes"]): sys.stdin.readline()\n'
+            'print(json.dumps({"ready": True}), flush=True)\n'
+            'for line in sys.stdin:\n'
+            '    corners = json.loads(line)["looks"][0].get("corners", [])\n'
+            '    length = len(corners[0]["descriptor"]) if corners else 0\n'
+            '    print(json.dumps({"status": "unsure", "pose": [length, 0, 0],'
+            ' "score": len(corners)}), flush=True)\n')
+        self.done('map', 'make', '--world', 'workshop', '--spacing-m', '9', '-o', 'w.map')
+        words = ['localise', 'w.map', '--world', 'workshop', '-n', '2', '--method', 'program',
+                 '--command', 'python3 counts.py', '--json']
+        self.assertEqual(json.loads(self.done(*words, code=3))['queries'][0]['score'], 0)
+        query = json.loads(self.done(*words, '--corners', code=3))['queries'][0]
+        self.assertGreater(query['score'], 10)
+        self.assertEqual(query['pose'][0], 32)
+
     def test_drives_differ_and_a_map_can_be_extended(self):
         make = ['map', 'make', '--world', 'posts.world.toml', '--spacing-m', '1']
         self.done(*make, '-o', 'a.map')
@@ -160,6 +195,15 @@ class Localise(unittest.TestCase):
         for found, true, within in zip(query['pose'], (3, -2, 90), (0.02, 0.02, 0.5)):
             self.assertAlmostEqual(found, true, delta=within)
         self.refused('map', 'make', *call, '-o', 'j.map', says='give --poses')
+        self.refused('localise', 'i.map', *call, '--method', 'corners', says='map make --corners')
+        made = json.loads(self.done('map', 'make', *call, '--poses', 'poses.csv', '--corners', '-o',
+                                    'c.map', '--json'))
+        self.assertGreater(made['corners_mean'], 20)
+        query = json.loads(self.done('localise', 'c.map', *call, '--method', 'corners',
+                                     '--json'))['queries'][0]
+        self.assertEqual(query['status'], 'answered')
+        for found, true in zip(query['pose'], (3, -2, 90)):
+            self.assertAlmostEqual(found, true, delta=1e-6)
 
     def test_a_program_of_ones_own(self):
         self.map_of_rooms()

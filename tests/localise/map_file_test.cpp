@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "calib/rig.h"
 #include "localise/place.h"
@@ -64,6 +65,103 @@ void expect_same(const TopologicalMap& a, const TopologicalMap& b) {
       EXPECT_EQ(p.view.image_lines[k].a_px, q.view.image_lines[k].a_px);
       EXPECT_EQ(p.view.image_lines[k].b_px, q.view.image_lines[k].b_px);
     }
+    ASSERT_EQ(p.view.corners.size(), q.view.corners.size());
+    for (std::size_t k = 0; k < p.view.corners.size(); ++k) {
+      EXPECT_EQ(p.view.corners[k].left_px, q.view.corners[k].left_px);
+      EXPECT_EQ(p.view.corners[k].right_px, q.view.corners[k].right_px);
+      EXPECT_EQ(p.view.corners[k].covariance_px2, q.view.corners[k].covariance_px2);
+      EXPECT_EQ(p.view.corners[k].descriptor, q.view.corners[k].descriptor);
+    }
+  }
+}
+
+StereoCorner some_corner(int i, int descriptor) {
+  StereoCorner corner;
+  corner.left_px = {100.25 + i, 50.5};
+  corner.right_px = {90 + i / 3.0, 50};
+  corner.covariance_px2 = 0.1 * Eigen::Matrix4d::Identity();
+  corner.covariance_px2(0, 2) = corner.covariance_px2(2, 0) = 0.01 * i;
+  corner.descriptor = Eigen::VectorXf::LinSpaced(descriptor, -0.3f, 0.7f);
+  return corner;
+}
+
+/// Rooms whose second node has corners, and every third one after it.
+TopologicalMap rooms_with_corners(int nodes, int descriptor) {
+  TopologicalMap map = some_rooms(nodes, 2);
+  for (int i = 1; i < nodes; i += 3) {
+    for (int k = 0; k < 4; ++k) map.nodes[i].view.corners.push_back(some_corner(k, descriptor));
+  }
+  return map;
+}
+
+TEST(MapFile, KeepsCorners) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map", bare = folder.path() / "b.map";
+  for (const int descriptor : {0, 5, 32}) {
+    for (const int nodes : {2, 9, 1003}) {
+      TopologicalMap map = rooms_with_corners(nodes, descriptor);
+      write_map(file, map);
+      EXPECT_EQ(bytes_of(file)[8], 2);
+      expect_same(map, read_map(file));
+      extend_map(file, map.nodes);
+      const auto once = map.nodes;
+      map.nodes.insert(map.nodes.end(), once.begin(), once.end());
+      expect_same(map, read_map(file));
+    }
+  }
+  // A map without corners is of version 1, until a node with some is added.
+  TopologicalMap map = some_rooms(3, 2);
+  write_map(bare, map);
+  EXPECT_EQ(bytes_of(bare)[8], 1);
+  const TopologicalMap more = rooms_with_corners(2, 8);
+  extend_map(bare, more.nodes);
+  EXPECT_EQ(bytes_of(bare)[8], 2);
+  map.nodes.insert(map.nodes.end(), more.nodes.begin(), more.nodes.end());
+  expect_same(map, read_map(bare));
+}
+
+/// What docs/file-formats.md states: 112 bytes a corner and 4 for each entry of its descriptor.
+TEST(MapFile, ACornerCostsWhatIsStated) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  TopologicalMap map = some_rooms(1, 2);
+  std::size_t before = 0;
+  for (const int corners : {50, 150}) {
+    map.nodes[0].view.corners.assign(corners, some_corner(1, 32));
+    write_map(file, map);
+    const std::size_t bytes = bytes_of(file).size();
+    if (before > 0) {
+      EXPECT_EQ(bytes - before, 100u * (112 + 4 * 32));
+    }
+    before = bytes;
+  }
+}
+
+TEST(MapFile, RefusesCornersThatAreNone) {
+  const Folder folder;
+  const auto file = folder.path() / "a.map";
+  for (const int fault : {0, 1, 2}) {
+    TopologicalMap wrong = rooms_with_corners(2, 8);
+    StereoCorner& corner = wrong.nodes[1].view.corners[1];
+    if (fault == 0) corner.left_px.x() = std::numeric_limits<double>::quiet_NaN();
+    if (fault == 1) corner.covariance_px2.setZero();
+    if (fault == 2) corner.descriptor.resize(7);
+    EXPECT_NE(error_message([&] { write_map(file, wrong); }).find("map node 1: holds a corner"),
+              std::string::npos)
+        << fault;
+  }
+  write_map(file, rooms_with_corners(2, 8));
+  const std::string good = bytes_of(file);
+  for (std::size_t at = 0; at < good.size(); at += 3) {
+    std::string flipped = good;
+    flipped[at] = static_cast<char>(flipped[at] ^ 16);
+    const auto damaged = folder.write("flipped.map", flipped);
+    const std::string said = error_message([&] { read_map(damaged); });
+    if (said.empty()) expect_same(read_map(file), read_map(damaged));  // a byte that fills up
+  }
+  for (std::size_t length = 0; length < good.size(); length += 5) {
+    const auto cut = folder.write("cut.map", good.substr(0, length));
+    ASSERT_NE(error_message([&] { read_map(cut); }), "") << length;
   }
 }
 
@@ -141,9 +239,9 @@ TEST(MapFile, SaysWhatIsWrong) {
   write_map(file, some_rooms(2));
   std::string bytes = bytes_of(file);
   EXPECT_EQ(said_of("{}"), ": is not a map; make one with write_map()");
-  bytes[8] = 2;
+  bytes[8] = 3;
   EXPECT_EQ(said_of(bytes),
-            ": is a map of version 2; this program reads version 1: make the map again");
+            ": is a map of version 3; this program reads versions 1 and 2: make the map again");
   bytes[8] = 1;
   EXPECT_EQ(said_of(bytes.substr(0, bytes.size() - 8)),
             ": is damaged: it is cut off; make the map again");

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/rig.h"
@@ -88,6 +89,65 @@ TEST(ViewFile, ReadsMatchedSegments) {
   EXPECT_NEAR(view.lines[0].a_m.y(), -0.4, 1e-3);
   EXPECT_EQ(view.image_lines.size(), 1u);
   EXPECT_NE(error_message([&] { read_views(file); }).find("give a rig"), std::string::npos);
+}
+
+TEST(ViewFile, GivesBackCorners) {
+  const Folder folder;
+  PlaceView view = test::view_of({}, 0.1);
+  for (int i = 0; i < 5; ++i) {
+    StereoCorner corner;
+    corner.left_px = {100 + i / 3.0, 20};
+    corner.right_px = {90, 20.1};
+    corner.covariance_px2 = (0.1 + i / 7.0) * Eigen::Matrix4d::Identity();
+    corner.descriptor = Eigen::VectorXf::LinSpaced(6, -1 / 3.0f, 0.7f);
+    view.corners.push_back(corner);
+  }
+  const auto file = folder.path() / "corners.jsonl";
+  for (const bool described : {true, false}) {
+    if (!described) {
+      for (StereoCorner& corner : view.corners) corner.descriptor.resize(0);
+    }
+    write_views(file, std::vector<RecordedLooks>{{{{view, 0}}, {}}});
+    const std::vector<RecordedLooks> read = read_views(file);
+    const std::vector<StereoCorner>& corners = read.at(0).looks.at(0).view.corners;
+    ASSERT_EQ(corners.size(), view.corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      EXPECT_EQ(corners[i].left_px, view.corners[i].left_px);
+      EXPECT_EQ(corners[i].right_px, view.corners[i].right_px);
+      EXPECT_EQ(corners[i].covariance_px2, view.corners[i].covariance_px2);
+      EXPECT_EQ(corners[i].descriptor, view.corners[i].descriptor);
+    }
+  }
+  // Alone, and without a covariance of its own.
+  const auto alone =
+      folder.write("alone.jsonl", R"({"corners":[{"left_px":[100,20],"right_px":[90,20]}]})");
+  const auto read = read_views(alone, test::shipped_rig());
+  EXPECT_EQ(read[0].looks[0].view.corners[0].covariance_px2, StereoCorner().covariance_px2);
+}
+
+TEST(ViewFile, NamesWhatIsWrongWithCorners) {
+  const Folder folder;
+  const std::string head = R"({"corners":[{"left_px":[100,20],"right_px":[90,20])";
+  for (const auto& [text, fault] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"corners":[{"left_px":[100],"right_px":[90,20]}]})", "2 numbers"},
+           {R"({"corners":[{"left_px":[100,20],"right_px":[90,20000]}]})", "far off the image"},
+           {R"({"corners":[{"left_px":[100,20]}]})", "right_px"},
+           {R"({"corners":[{"left_px":[100,null],"right_px":[90,20]}]})", "left_px"},
+           {head + R"(,"covariance_px2":[[1,0],[0,1]]}]})", "4 x 4"},
+           {head + R"(,"covariance_px2":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,-1]]}]})",
+            "positive definite"},
+           {head + R"(,"descriptor":[]}]})", "0 entries"},
+           {head + R"(,"descriptor":[1e300]}]})", "beyond all limits"},
+           {head + R"(,"descriptor":[1,0]},{"left_px":[1,2],"right_px":[0,2]}]})", "only some"},
+           {head + R"(,"descriptor":[1,0]},{"left_px":[1,2],"right_px":[0,2],"descriptor":[1]}]})",
+            "has 1 entries, that of the first corner 2"}}) {
+    const auto file = folder.write("wrong.jsonl", text);
+    const std::string said = error_message([&] { read_views(file, test::shipped_rig()); });
+    EXPECT_NE(said.find(fault), std::string::npos) << text << ": " << said;
+  }
+  const auto file = folder.write("no_rig.jsonl", head + "}]}");
+  EXPECT_NE(error_message([&] { read_views(file); }).find("corners need the cameras"),
+            std::string::npos);
 }
 
 struct Fault {

@@ -18,6 +18,8 @@
 #include "localise/odometry.h"
 #include "localise/place.h"
 #include "localise/trajectory.h"
+#include "sim/corner_appearance.h"
+#include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/world.h"
 #include "tests/support/small_office.h"
@@ -61,6 +63,56 @@ TEST(CornerAppearance, RepeatsWithTheTemplate) {
     }
   }
   EXPECT_GT(repeated, 50);
+}
+
+/// Two instances of a template, one turned by a quarter, and the same corner twice as loose ones.
+World two_desks() {
+  WorldDescription description;
+  WorldTemplate desk{"desk", {}};
+  for (int i = 0; i < 20; ++i) {
+    desk.features.corners_m.emplace_back(0.05 * i, 0.4, 0.7);
+  }
+  description.templates = {desk};
+  description.instances = {{"desk", {1, 2, 0}, 0}, {"desk", {7, -3, 0}, 1.5707963267948966}};
+  description.loose.corners_m = {{4, 4, 1}, {4, 4, 1}};
+  return build_world(description);
+}
+
+TEST(CornerAppearance, OfTwoInstancesIsTheSameFromTheSameSide) {
+  const World world = two_desks();
+  const CornerAppearance appearance(world, {.view_change = 1});
+  const SensingDraw draw{};
+  const Eigen::Matrix3d quarter = rotation_from_vector({0, 0, 1.5707963267948966});
+  double across = 0;
+  for (std::uint32_t c = 0; c < 20; ++c) {
+    const std::uint32_t first = 2 + c, second = 22 + c;  // loose corners come first
+    const Eigen::Vector3d to_eye(1.5, -2, 0.5);
+    const Eigen::Vector3d at = world.corners[first].position_m;
+    const Eigen::Vector3d other = world.corners[second].position_m;
+    const Eigen::VectorXf seen = appearance.seen(first, at + to_eye, draw);
+    EXPECT_NEAR(seen.norm(), 1, 1e-6);
+    EXPECT_LT((appearance.seen(second, other + quarter * to_eye, draw) - seen).norm(), 1e-5);
+    across += appearance.seen(first, at + quarter * to_eye, draw).dot(seen) / 20;
+  }
+  EXPECT_NEAR(across, 0.5, 0.15);                           // (1 + v² cos 90°) / (1 + v²)
+  EXPECT_LT(appearance.of(0).dot(appearance.of(1)), 0.9F);  // loose: each its own
+}
+
+TEST(CornerAppearance, NoiseIsOfTheStatedSizeAndOfEachSightingAlone) {
+  const World world = two_desks();
+  const CornerAppearance exact(world), noisy(world, {.noise = 0.5});
+  const Eigen::Vector3d eye(0, 0, 1.2);
+  double similarity = 0;
+  for (std::uint32_t frame = 0; frame < 200; ++frame) {
+    const SensingDraw now{.seed = 5, .trial = 1, .frame = frame};
+    const SensingDraw later{.seed = 5, .trial = 2, .frame = frame};
+    EXPECT_EQ(exact.seen(3, eye, now), exact.of(3));
+    EXPECT_EQ(noisy.seen(3, eye, now), noisy.seen(3, eye, now));
+    similarity += noisy.seen(3, eye, now).dot(noisy.seen(3, eye, later)) / 200;
+  }
+  EXPECT_NEAR(similarity, 1 / (1 + 0.25), 0.03);  // standard error 0.006
+  EXPECT_ANY_THROW(CornerAppearance(world, {.noise = -1}));
+  EXPECT_ANY_THROW(CornerAppearance(world, {.view_change = 101}));
 }
 
 TEST(CornerDrive, WithoutErrorsItIsFollowedExactly) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -14,6 +15,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
+#include "sim/sources.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "tests/support/foreign_files.h"
@@ -160,6 +162,105 @@ TEST_F(Experiments, RunsALocaliserOfOnesOwn) {
   EXPECT_EQ(trial.status, LocalisationStatus::unsure);
   EXPECT_FALSE(trial.success());
   EXPECT_NEAR(trial.error_m, distance_m(map.nodes[0].pose, trial.truth), 1e-12);
+}
+
+/// Corners in views change nothing of what is drawn, nor of what other methods answer.
+TEST_F(Experiments, LinesAreTheSameWithCornersInTheViews) {
+  ExperimentSettings s = settings(QueryProtocol::path);
+  const auto without = experiment(s).run_block({.block = 0, .first = 0, .count = 6});
+  s.localiser.corners = true;
+  const LocalisationExperiment with_corners = experiment(s);
+  const auto with = with_corners.run_block({.block = 0, .first = 0, .count = 6});
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    EXPECT_EQ(with[i].status, without[i].status);
+    EXPECT_EQ(with[i].score, without[i].score);
+    EXPECT_EQ(with[i].answer.x_m, without[i].answer.x_m);
+    EXPECT_EQ(with[i].lines, without[i].lines);
+    EXPECT_EQ(with[i].corners, without[i].corners);
+  }
+  const TopologicalMap map = with_corners.record_map(0, rig_.rig);
+  std::size_t corners = 0;
+  for (const MapNode& node : map.nodes) corners += node.view.corners.size();
+  EXPECT_GT(corners, 10 * map.nodes.size());
+}
+
+TEST_F(Experiments, CornersFindTheRobotExactlyWithoutErrors) {
+  ExperimentSettings s = settings(QueryProtocol::near_path);
+  s.method = "corners";
+  s.sources = no_sources();
+  s.appearance = {};
+  int answered = 0;
+  for (const TrialResult& t : experiment(s).run_block({.block = 0, .first = 0, .count = 20})) {
+    answered += t.answered();
+    if (t.answered()) {
+      EXPECT_LT(t.error_m, 1e-4);
+    }
+  }
+  EXPECT_GE(answered, 14);
+}
+
+struct CornerShares {
+  double corners = 0, mismatched = 0, answered = 0, wrong = 0;
+};
+
+CornerShares shares_of(const std::vector<TrialResult>& trials) {
+  CornerShares shares;
+  const auto n = static_cast<double>(trials.size());
+  for (const TrialResult& t : trials) {
+    shares.corners += t.corners / n;
+    shares.mismatched += t.corner_mismatches / n;
+    shares.answered += t.answered() / n;
+    shares.wrong += (t.answered() && !t.success()) / n;
+  }
+  return shares;
+}
+
+/// psi_cd takes its share of corners, and answers with them; psi_cm spoils its share, which the
+/// consensus sorts out.
+TEST_F(Experiments, LostAndMismatchedCornersActOnCorners) {
+  ExperimentSettings s = settings(QueryProtocol::path);
+  s.method = "corners";
+  const auto shares = [&](double lost, double mismatched) {
+    s.sources.corner_loss = lost;
+    s.sources.corner_mismatch = mismatched;
+    return shares_of(experiment(s).run_block({.block = 0, .first = 0, .count = 30}));
+  };
+  const CornerShares all = shares(0, 0), lost = shares(0.6, 0), wrong = shares(0, 0.3);
+  EXPECT_NEAR(lost.corners / all.corners, 0.4, 0.05);
+  EXPECT_NEAR(wrong.mismatched / wrong.corners, 0.3, 0.05);
+  EXPECT_GT(all.answered, 0.5);
+  EXPECT_LT(lost.answered, all.answered);
+  EXPECT_GE(lost.answered + 1e-9, shares(0.9, 0).answered);
+  EXPECT_LE(all.wrong + wrong.wrong, 0.1);
+}
+
+/// Two rooms of the same furniture are a tie for corners; with corners of their own they are not.
+TEST(RepeatedRooms, ConfuseCorners) {
+  const auto answered_of = [](bool repeated) {
+    WorldDescription description;
+    description.templates = {{"room", {}}, {"other", {}}};
+    for (int i = 0; i < 60; ++i) {
+      const double a = 0.7 * i, height = 0.3 + 0.033 * i;
+      const Eigen::Vector3d at(3.5 + 1.5 * std::cos(a), 2 * std::sin(1.3 * a), height);
+      for (WorldTemplate& room : description.templates) {
+        room.features.corners_m.push_back(at);
+        room.features.segments_m.emplace_back(at, at + Eigen::Vector3d(0, 0, 0.3));
+      }
+    }
+    description.instances = {{"room", {0, 0, 0}, 0}, {repeated ? "room" : "other", {30, 0, 0}, 0}};
+    for (const double x : {0.0, 30.0}) description.route.push_back({{{x, 0}, {x + 1.5, 0}}});
+    const World world = build_world(description);
+    const Visibility visibility(world);
+    ExperimentSettings s;
+    s.method = "corners";
+    s.protocol = QueryProtocol::near_path;
+    const auto views =
+        std::make_shared<MapViews>(map_views(visibility, test::nominal_rig().rig, s));
+    const LocalisationExperiment experiment(visibility, test::nominal_rig(), views, s);
+    return shares_of(experiment.run_block({.block = 0, .first = 0, .count = 20})).answered;
+  };
+  EXPECT_LT(answered_of(true), 0.3);
+  EXPECT_GT(answered_of(false), 0.8);
 }
 
 }  // namespace

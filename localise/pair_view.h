@@ -24,8 +24,9 @@ struct PairViewOptions {
 
 /// The view that a pair of images of the rig gives: rectified, edges found and matched by the
 /// matcher `edge` (stereo/edge_matcher.h), straight segments placed in space (docs/segments3d.md),
-/// reliable lines selected. Image lines are in pixels of the left image as given. Throws Error for
-/// a rig without exactly two cameras that can be rectified, and images of another size.
+/// reliable lines selected. Lines without a disparity are monocular ones. Image lines are in pixels
+/// of the left image as given. Throws Error for a rig without exactly two cameras that can be
+/// rectified, and images of another size.
 PlaceView view_of_pair(const std::shared_ptr<const Rig>& rig,
                        const stereo::GreyLevels& left,
                        const stereo::GreyLevels& right,

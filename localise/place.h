@@ -66,10 +66,13 @@ struct StereoCorner {
 /// A robot's view of a place: lines in space and image lines, and corners where they are asked for.
 struct PlaceView {
   std::vector<PlaceLine> lines;                   ///< reliable lines only
-  std::vector<stereo::ImageSegment> image_lines;  ///< of the left image, all
+  std::vector<stereo::ImageSegment> image_lines;  ///< of the left image, those matched in stereo
   std::shared_ptr<const Rig> rig = nullptr;  ///< the estimated rig, from which lines are computed
   CameraMount mount = {};
   std::vector<StereoCorner> corners = {};  ///< for methods on points; mostly left out
+  /// Of the left image, without a partner in the right one, as those along epipolar lines. Errors
+  /// of the pose between the cameras leave them alone. Of a map's views they are not kept.
+  std::vector<stereo::ImageSegment> monocular_lines = {};
 };
 
 /// One of several views from the same position.

@@ -19,6 +19,8 @@ namespace vernier::sim {
 struct StereoObservation {
   std::vector<stereo::StereoSegment> segments;
   std::vector<VisibleEdge> true_edges;  ///< one per segment
+  /// Lines of the left image without a partner in the right one: those along epipolar lines.
+  std::vector<stereo::ImageSegment> left_only;
   std::vector<SensedCorner> corners;
 };
 

@@ -23,6 +23,7 @@ struct SensedEdge {
   VisibleEdge truth;
   std::array<std::array<Eigen::Vector2d, 2>, 2> offset_px{};  ///< [eye][end]
   std::uint32_t piece = 0;  ///< index of the part left by an edge-loss gap
+  bool in_stereo = true;    ///< false: seen by the left camera only, as far as stereo can tell
 
   SensedEdge() {
     for (auto& eye : offset_px) eye.fill(Eigen::Vector2d::Zero());

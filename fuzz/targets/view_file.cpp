@@ -36,7 +36,8 @@ void require_same_views(const std::vector<RecordedLooks>& a, const std::vector<R
         "poses and looks are kept");
     for (std::size_t k = 0; k < a[i].looks.size(); ++k) {
       const PlaceView &p = a[i].looks[k].view, &q = b[i].looks[k].view;
-      require(p.lines.size() == q.lines.size() && p.image_lines.size() == q.image_lines.size(),
+      require(p.lines.size() == q.lines.size() && p.image_lines.size() == q.image_lines.size() &&
+                  p.monocular_lines.size() == q.monocular_lines.size(),
               "lines are kept");
       require(p.corners.size() == q.corners.size(), "corners are kept");
       for (std::size_t n = 0; n < p.corners.size(); ++n) {
@@ -78,6 +79,7 @@ std::vector<std::string> view_file_seeds() {
   view.lines = {{{2, 0.5, 0.25}, {2, 0.5, 1.5}, LineKind::vertical, 0.02},
                 {{3, -1, 0.5}, {3, 1, 0.5}, LineKind::level, 0.05}};
   view.image_lines = {{{10, 20}, {10.5, 200}}};
+  view.monocular_lines = {{{10, 20}, {300.25, 21}}};
   std::vector<RecordedLooks> views{{{{view, 0}}, Pose2D{1, -2, 0.5}}};
   std::vector<std::string> seeds;
   const std::filesystem::path file = input_folder() / "seed.jsonl";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calib/error.h"
@@ -69,15 +70,20 @@ PlaceView view_of_pair(const std::shared_ptr<const Rig>& rig,
 
   std::vector<SpaceSegment> in_space;
   std::vector<StereoSegment> in_images;
+  std::vector<ImageSegment> left_only;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (placed[i].status != SegmentStatus::placed) continue;
     const std::optional<ImageSegment> raw = raw_segment(*rig, geometry, lines[i].left_px);
     if (!raw) continue;
+    if (placed[i].status != SegmentStatus::placed) {
+      left_only.push_back(*raw);
+      continue;
+    }
     in_space.push_back(placed[i].segment);
     in_images.push_back({*raw, lines[i].right_px(), 0});  // the right one is not used
   }
   PlaceView view = select_lines(in_space, in_images, mount, options.lines);
   view.rig = rig;
+  view.monocular_lines = std::move(left_only);
   if (options.with_corners) {
     view.corners = corners_of_pair(*rig, options.calibration, left, right, options.corners);
   }

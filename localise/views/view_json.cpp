@@ -157,6 +157,25 @@ PlaceView reconstructed(const JsonNode& node, const PlaceView& seen) {
   return select_lines(stereo::internal::triangulate(*seen.rig, segments), segments, seen.mount);
 }
 
+/// Segments of the left image under a key of a view; none without the key.
+std::vector<ImageSegment> parse_segments(const JsonNode& node, const char* key, const Rig* rig) {
+  std::vector<ImageSegment> segments;
+  const std::size_t count = entries(node, key, most_view_lines);
+  for (std::size_t i = 0; i < count; ++i) {
+    segments.push_back(parse_segment(node.at(key).at(i), rig ? rig->cameras.data() : nullptr));
+  }
+  check_unit(segments, node);
+  return segments;
+}
+
+Json segments_json(const std::vector<ImageSegment>& segments) {
+  Json json = Json::array();
+  for (const ImageSegment& line : segments) {
+    json.push_back({line.a_px.x(), line.a_px.y(), line.b_px.x(), line.b_px.y()});
+  }
+  return json;
+}
+
 PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig) {
   PlaceView view;
   view.rig = rig;
@@ -171,6 +190,7 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
   if (entries(node, "corners", most_view_lines) > 0) {
     view.corners = parse_corners(node.at("corners"), view.rig.get());
   }
+  view.monocular_lines = parse_segments(node, "monocular_lines_px", view.rig.get());
   if (node.has("segments")) {
     if (node.has("lines") || node.has("image_lines_px")) {
       throw Error(node.place(), "has segments and lines", "give one of them");
@@ -187,12 +207,7 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
   }
   const std::size_t lines = entries(node, "lines", most_view_lines);
   for (std::size_t i = 0; i < lines; ++i) view.lines.push_back(parse_line(node.at("lines").at(i)));
-  const std::size_t image_lines = entries(node, "image_lines_px", most_view_lines);
-  for (std::size_t i = 0; i < image_lines; ++i) {
-    view.image_lines.push_back(parse_segment(node.at("image_lines_px").at(i),
-                                             view.rig ? view.rig->cameras.data() : nullptr));
-  }
-  check_unit(view.image_lines, node);
+  view.image_lines = parse_segments(node, "image_lines_px", view.rig.get());
   return view;
 }
 
@@ -235,9 +250,9 @@ Json view_json(const PlaceView& view) {
                      {"kind", kind_name(line.kind)},
                      {"sigma_m", line.sigma_m}});
   }
-  Json& image_lines = json["image_lines_px"] = Json::array();
-  for (const ImageSegment& line : view.image_lines) {
-    image_lines.push_back({line.a_px.x(), line.a_px.y(), line.b_px.x(), line.b_px.y()});
+  json["image_lines_px"] = segments_json(view.image_lines);
+  if (!view.monocular_lines.empty()) {
+    json["monocular_lines_px"] = segments_json(view.monocular_lines);
   }
   if (!view.corners.empty()) json["corners"] = corners_json(view.corners);
   return json;

@@ -36,6 +36,10 @@ StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& dr
   StereoObservation sighting;
   sighting.segments.reserve(view.edges.size());
   for (const SensedEdge& edge : view.edges) {
+    if (!edge.in_stereo) {
+      sighting.left_only.push_back(image_of(rig_, edge, 0));
+      continue;
+    }
     sighting.segments.push_back(
         {image_of(rig_, edge, 0), image_of(rig_, edge, 1), edge.truth.feature * 2 + edge.piece});
     sighting.true_edges.push_back(edge.truth);

@@ -167,7 +167,7 @@ class EndpointError : public UncertaintySource {
   double sigma_px_;
 };
 
-/// The ±5° rule: stereo cannot localise edges along their epipolar line.
+/// The ±5° rule: stereo cannot localise edges along their epipolar line. One eye still sees them.
 class EpipolarRejection : public UncertaintySource {
  public:
   explicit EpipolarRejection(const SourceSettings& s)
@@ -175,10 +175,11 @@ class EpipolarRejection : public UncertaintySource {
   std::string_view name() const override { return "epipolar_reject_deg"; }
 
   void apply(const SensingContext& context, SensedView& view) const override {
-    std::erase_if(view.edges, [&](const SensedEdge& edge) {
-      return epipolar_angle_rad(context.rig, context.rectification,
-                                image_of(context.rig, edge, 0)) < min_rad_;
-    });
+    for (SensedEdge& edge : view.edges) {
+      edge.in_stereo =
+          edge.in_stereo && epipolar_angle_rad(context.rig, context.rectification,
+                                               image_of(context.rig, edge, 0)) >= min_rad_;
+    }
   }
 
  private:
@@ -194,6 +195,7 @@ class StereoMismatch : public UncertaintySource {
 
   void apply(const SensingContext& context, SensedView& view) const override {
     for (SensedEdge& edge : view.edges) {
+      if (!edge.in_stereo) continue;
       RandomStream draws =
           draws_of(context, DrawSource::stereo_mismatch, edge.truth.feature * 2 + edge.piece);
       if (draws.uniform() >= share_) continue;

@@ -53,6 +53,7 @@ PlaceView interpret(const Rig& told,
   PlaceView view =
       select_lines(reconstruct(told, sighting, settings), sighting.segments, settings.mount);
   view.rig = std::make_shared<const Rig>(told);
+  view.monocular_lines = sighting.left_only;
   return view;
 }
 

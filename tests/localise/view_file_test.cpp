@@ -34,6 +34,7 @@ TEST(ViewFile, GivesBackWhatWasWritten) {
   for (int i = 0; i < 3; ++i) {
     PlaceView view = test::view_of(test::random_room(i, 10), 0.1);
     view.image_lines.push_back({{1.5, 2}, {300, 4.25 + i}});
+    if (i > 0) view.monocular_lines.push_back({{1.5, 200}, {301 + i, 200.5}});
     RecordedLooks recorded{{{view, 0}}, Pose2D{0.1 * i, -2, 0.3}};
     if (i == 1) recorded.looks.push_back({view, -1.25});
     if (i == 2) recorded.pose.reset();
@@ -61,6 +62,10 @@ TEST(ViewFile, GivesBackWhatWasWritten) {
       }
       ASSERT_EQ(a.view.image_lines.size(), 1u);
       EXPECT_EQ(a.view.image_lines[0].b_px, b.view.image_lines[0].b_px);
+      ASSERT_EQ(a.view.monocular_lines.size(), i > 0 ? 1u : 0u);
+      if (i > 0) {
+        EXPECT_EQ(a.view.monocular_lines[0].b_px, b.view.monocular_lines[0].b_px);
+      }
     }
   }
 }

@@ -236,6 +236,16 @@ TEST_F(Sources, EpipolarRejectionDropsFlatLinesOnly) {
               epipolar_angle_rad(rig, r, e.left) >= 5 * 0.017453292519943295);
   }
   EXPECT_LT(steep.segments.size(), exact().segments.size());
+  // One eye still sees the others, where they are.
+  ASSERT_EQ(steep.segments.size() + steep.left_only.size(), exact().segments.size());
+  EXPECT_TRUE(exact().left_only.empty());
+  std::size_t flat = 0;
+  for (const StereoSegment& e : exact().segments) {
+    if (kept.contains(e.feature)) continue;
+    EXPECT_EQ(steep.left_only[flat].a_px, e.left.a_px);
+    EXPECT_EQ(steep.left_only[flat].b_px, e.left.b_px);
+    ++flat;
+  }
 }
 
 // Seed 7. Slips are uniform: half to either side and three quarters beyond 5 px, two-sided

@@ -50,6 +50,7 @@ void perform(CLI::App& app, vernier::cli::Session& session, int argc, char** arg
   vernier::cli::refuse_empty_values(app);
   if (!session.action) throw CLI::ParseError("no verb given", CLI::ExitCodes::RequiredError);
   session.action();
+  session.tell_trust_warnings();
 }
 
 /// Ceres' and OpenCV's messages repeat our results and errors.

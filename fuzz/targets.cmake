@@ -1,5 +1,6 @@
 # The sources of all fuzz targets and what they need, from the root of the project.
 set(vernier_fuzz_targets
+  cli/localisation/place_poses.cpp
   cli/report/report_evaluation.cpp
   fuzz/example_rigs.cpp
   fuzz/fuzz_target.cpp
@@ -20,6 +21,7 @@ set(vernier_fuzz_targets
   fuzz/targets/observations_csv.cpp
   fuzz/targets/opencv_calibration.cpp
   fuzz/targets/pairs_csv.cpp
+  fuzz/targets/place_poses.cpp
   fuzz/targets/python_literal.cpp
   fuzz/targets/rig_json.cpp
   fuzz/targets/ros_camera_info.cpp

@@ -32,16 +32,33 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
   return row[to.size()];
 }
 
+/// The line of that number, from 1, without the blanks around it.
+std::string_view trimmed_line(std::string_view text, std::size_t number) {
+  for (std::size_t line = 1; line < number && !text.empty(); ++line) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
+  text = text.substr(0, text.find('\n'));
+  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  return text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
 }  // namespace
 
+// After check_toml only definitions that repeat or contradict others are left to fail, and the
+// library's message repeats parts of their keys.
 toml::table parse_toml(std::string_view text, const std::string& place) {
   check_toml(text, place);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(place + ":" + std::to_string(error.source().begin.line),
-                "not TOML: " + std::string(error.description()), "correct the syntax");
+    const toml::source_index line = error.source().begin.line;
+    const std::string named = place + ":" + std::to_string(line);
+    if (error.description().find("existing") == std::string_view::npos) {
+      throw Error(named, "not TOML: " + std::string(error.description()), "correct the syntax");
+    }
+    throw Error(named, in_quotes(trimmed_line(text, line)) + " defines what is defined before",
+                "define every key and table once");
   }
 }
 

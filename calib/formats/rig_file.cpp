@@ -210,6 +210,9 @@ RigFile rig_of(const Json& json, const std::string& place) {
     estimate.evidence = rig_json::parse_evidence(root.at("evidence"), estimate.rig);
     estimate.evidence->priors = parse_priors(root.at("evidence"));
   }
+  if (estimate.calibration && estimate.evidence) {
+    rig_json::check_summary(*estimate.calibration, *estimate.evidence, root.at("calibration"));
+  }
   Json others = Json::object();
   for (const auto& [key, value] : json.items()) {
     if (std::find(known_keys.begin(), known_keys.end(), key) != known_keys.end()) continue;

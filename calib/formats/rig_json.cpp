@@ -15,6 +15,7 @@
 #include "calib/base/text_lines.h"
 #include "calib/board_observations.h"
 #include "calib/camera.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/error.h"
 #include "calib/pair_observations.h"
 #include "calib/pose.h"
@@ -70,8 +71,10 @@ PairOutlier parse_pair_outlier(const Node& node) {
   o.row = static_cast<std::size_t>(row);
   const Eigen::VectorXd y = node.at("pixels_px").vector();
   if (y.size() != 4) throw Error(node.at("pixels_px").place(), "is not two pixels", "");
+  check_bounded(y, most_side_px, node.at("pixels_px"));
   o.pixels_px = y;
   o.residual_px = node.at("residual_px").number();
+  if (o.residual_px < 0) throw Error(node.at("residual_px").place(), "is negative", "");
   return o;
 }
 

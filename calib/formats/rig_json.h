@@ -41,6 +41,12 @@ std::vector<std::string> parse_texts(const Node& node, const std::string& key);
 Json summary_json(const CalibrationSummary& summary, const Rig& rig);
 CalibrationSummary parse_summary(const Node& node, const Rig& rig);
 
+/// Throws Error if the summary at `node` cannot be that of the evidence: its counts, the corners
+/// and pairs it names, and its sum of squared residuals.
+void check_summary(const CalibrationSummary& summary,
+                   const CalibrationEvidence& evidence,
+                   const Node& node);
+
 Json to_json(const PairOutlier& outlier);
 PairOutlier parse_pair_outlier(const Node& node);
 

@@ -1,12 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/base/shown_text.h"
+#include "calib/board_observations.h"
+#include "calib/camera/rig_limits.h"
 #include "calib/error.h"
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
@@ -25,19 +32,46 @@ std::vector<std::string> parse_texts(const Node& node, const std::string& key) {
 
 namespace {
 
+constexpr const char* remedy = "calibrate again";
+
+/// A number of at least 0 and at most `most`.
+double not_negative(const Node& node, double most = most_variance) {
+  const double value = node.number();
+  if (value < 0) throw Error(node.place(), "is negative", remedy);
+  if (value > most) throw Error(node.place(), fmt::format("is above {:g}", most), remedy);
+  return value;
+}
+
+int count(const Node& node) {
+  const int value = node.integer();
+  if (value < 0) throw Error(node.place(), "is negative", remedy);
+  return value;
+}
+
 CornerOutlier parse_outlier(const Node& node, const Rig& rig) {
   CornerOutlier outlier;
   outlier.frame = node.at("frame").integer();
   outlier.camera = camera_index(node.at("camera"), rig);
-  outlier.id = node.at("corner").integer();
+  outlier.id = count(node.at("corner"));
   if (node.has("image")) outlier.image = node.at("image").text();
-  const Eigen::VectorXd q = node.at("pixel_px").vector();
-  if (q.size() != 2) throw Error(node.at("pixel_px").place(), "is not a pixel", "");
+  const Node pixel = node.at("pixel_px");
+  const Eigen::VectorXd q = pixel.vector();
+  if (q.size() != 2) throw Error(pixel.place(), "is not a pixel", "");
+  check_bounded(q, most_side_px, pixel);
   outlier.pixel_px = q;
   outlier.residual_px = node.at("residual_px").json().is_null()
                             ? std::numeric_limits<double>::quiet_NaN()
-                            : node.at("residual_px").number();
+                            : not_negative(node.at("residual_px"));
   return outlier;
+}
+
+std::string parse_source(const Node& node) {
+  constexpr std::array known{"board", "pairs", "combined"};
+  std::string source = node.text();
+  if (std::find(known.begin(), known.end(), source) == known.end()) {
+    throw Error(node.place(), in_quotes(source) + " is unknown", "use board, pairs or combined");
+  }
+  return source;
 }
 
 /// Names of held parameters. Unknown names are rejected, since they would be freed silently.
@@ -45,38 +79,40 @@ std::vector<std::string> parse_held(const Node& node, const Rig& rig) {
   std::vector<std::string> held = parse_texts(node, "held");
   const std::vector<std::string> names = parameter_names(rig);
   for (std::size_t i = 0; i < held.size(); ++i) {
-    if (std::find(names.begin(), names.end(), held[i]) != names.end()) continue;
-    throw Error(node.at("held").at(i).place(), "the rig has no parameter " + in_quotes(held[i]),
-                "use a name from parameter_names");
+    const std::string place = node.at("held").at(i).place();
+    if (std::find(names.begin(), names.end(), held[i]) == names.end()) {
+      throw Error(place, "the rig has no parameter " + in_quotes(held[i]),
+                  "use a name from parameter_names");
+    }
+    if (std::find(held.begin(), held.begin() + static_cast<std::ptrdiff_t>(i), held[i]) !=
+        held.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw Error(place, "repeats " + in_quotes(held[i]), "name it once");
+    }
   }
   return held;
 }
 
-/// A number that cannot be negative.
-double not_negative(const Node& node) {
-  const double value = node.number();
-  if (value < 0) throw Error(node.place(), "is negative", "calibrate again");
-  return value;
-}
-
-int count(const Node& node) {
-  const int value = node.integer();
-  if (value < 0) throw Error(node.place(), "is negative", "calibrate again");
-  return value;
+/// The priors' part of the cost, and the number of parameters with a prior: both or none.
+void parse_prior_terms(const Node& node, CalibrationSummary& summary) {
+  if (!node.has("prior_chi2") && !node.has("prior_dof")) return;
+  summary.prior_chi2 = not_negative(node.at("prior_chi2"));
+  summary.prior_dof = count(node.at("prior_dof"));
+  if (summary.prior_dof == 0 && summary.prior_chi2 > 0) {
+    throw Error(node.at("prior_chi2").place(), "is above 0 for no parameter", remedy);
+  }
 }
 
 }  // namespace
 
 CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   CalibrationSummary summary;
-  summary.source = node.at("source").text();
-  summary.pixel_sigma_px = not_negative(node.at("pixel_sigma_px"));
-  summary.rms_px = not_negative(node.at("rms_px"));
+  summary.source = parse_source(node.at("source"));
+  summary.pixel_sigma_px = not_negative(node.at("pixel_sigma_px"), most_side_px);
+  summary.rms_px = not_negative(node.at("rms_px"), most_side_px);
   summary.chi2 = not_negative(node.at("chi2"));
   summary.dof = count(node.at("dof"));
   summary.views = count(node.at("views"));
-  if (node.has("prior_chi2")) summary.prior_chi2 = not_negative(node.at("prior_chi2"));
-  if (node.has("prior_dof")) summary.prior_dof = count(node.at("prior_dof"));
+  parse_prior_terms(node, summary);
   summary.held = parse_held(node, rig);
   if (node.has("outliers")) {
     for (std::size_t i = 0; i < node.at("outliers").array().size(); ++i) {
@@ -92,6 +128,56 @@ CalibrationSummary parse_summary(const Node& node, const Rig& rig) {
   summary.warnings = parse_texts(node, "warnings");
   summary.trust_warnings = parse_texts(node, "doubts");
   return summary;
+}
+
+namespace {
+
+/// σ² χ² = Σ r² of corners; a pair has a standard deviation of its own.
+void check_squares(const CalibrationSummary& summary, double coordinates, const Node& node) {
+  constexpr double rounded_by_hand = 0.01;
+  const double stated = std::pow(summary.pixel_sigma_px, 2) * summary.chi2;
+  const double squares = std::pow(summary.rms_px, 2) * coordinates;
+  if (std::abs(stated - squares) <= rounded_by_hand * std::max(stated, squares)) return;
+  throw Error(node.place(),
+              fmt::format("its chi2, pixel_sigma_px and rms_px disagree: {:.4g} px² and {:.4g} "
+                          "px² for the sum of squared residuals",
+                          stated, squares),
+              remedy);
+}
+
+}  // namespace
+
+void check_summary(const CalibrationSummary& summary,
+                   const CalibrationEvidence& evidence,
+                   const Node& node) {
+  const BoardObservations& boards = evidence.observations;
+  double coordinates = 0;
+  for (const BoardView& view : boards.views) coordinates += 2.0 * view.pixels_px.size();
+  const auto views = evidence.frames.size() + evidence.pairs.image_pairs.size();
+  if (static_cast<std::size_t>(summary.views) != views) {
+    throw Error(node.at("views").place(),
+                fmt::format("is {}, and the evidence has {}", summary.views, views), remedy);
+  }
+  const double residuals = coordinates + static_cast<double>(evidence.pairs.size());
+  if (summary.dof > residuals) {
+    throw Error(node.at("dof").place(),
+                fmt::format("is {}, and the evidence has {} residuals", summary.dof, residuals),
+                remedy);
+  }
+  for (std::size_t i = 0; i < summary.outliers.size(); ++i) {
+    if (static_cast<std::size_t>(summary.outliers[i].id) < boards.target_m.size()) continue;
+    throw Error(node.at("outliers").at(i).place(),
+                fmt::format("is corner {} of a board of {}", summary.outliers[i].id,
+                            boards.target_m.size()),
+                remedy);
+  }
+  for (std::size_t i = 0; i < summary.pair_outliers.size(); ++i) {
+    if (summary.pair_outliers[i].row < evidence.pairs.size()) continue;
+    throw Error(node.at("pair_outliers").at(i).place(),
+                fmt::format("is row {} of {}", summary.pair_outliers[i].row, evidence.pairs.size()),
+                remedy);
+  }
+  if (evidence.pairs.size() == 0) check_squares(summary, coordinates, node);
 }
 
 Json summary_json(const CalibrationSummary& s, const Rig& rig) {

@@ -39,9 +39,10 @@ void calibrate_pairs(const std::string& pairs_file,
   options.held = how.held;
   options.reject_outliers = how.reject_outliers;
   options.place = pairs_file;
-  const JointCalibration joint =
+  JointCalibration joint =
       calibrate_from_pairs(read_pairs(pairs_file), usable_prior(prior, solver.prior), options);
   const ObservabilityReport seen = report_observability(joint, prior.estimate.covariance->matrix);
+  if (!seen.warning.empty()) joint.estimate.calibration->warnings.push_back(seen.warning);
   Json json = rig_json(joint.estimate);
   json["observability"] = seen.json;
   json["pair_sigma_scale"] = joint.pair_sigma_scale;

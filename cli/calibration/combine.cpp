@@ -244,6 +244,7 @@ void run(const CombineArguments& options, Session& session) {
     const ObservabilityReport seen =
         report_observability(combination.joint, covariance_before(combination));
     text += seen.text;
+    if (!seen.warning.empty()) estimate.calibration->warnings.push_back(seen.warning);
     json["observability"] = seen.json;
   }
   Json whole = rig_json(estimate);

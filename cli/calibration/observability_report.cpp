@@ -21,7 +21,8 @@ constexpr double range_m = 3;  // at which disparity and depth uncertainty are r
 
 /// Effect of the rig's covariance on disparity and depth.
 struct Downstream {
-  double vertical_disparity_px = 0, depth_m = 0;
+  double vertical_disparity_px = 0;  ///< NaN if nothing is in view of both cameras
+  double depth_m = 0;
 };
 Downstream downstream(const Rig& rig, const Eigen::MatrixXd& covariance) {
   RigEstimate estimate;
@@ -56,11 +57,18 @@ ObservabilityReport report_observability(const JointCalibration& joint,
       "the baseline length is not observable from pairs: its sigma (bound) is {:.4g} mm before and "
       "{:.4g} mm after; all depths scale with it\n",
       1e3 * o.baseline_sd_before_m, 1e3 * o.baseline_sd_after_m);
-  text += fmt::format(
-      "at {:g} m: vertical disparity {:.3g} px rms before, {:.3g} px after; depth sigma {:.3g} m "
-      "before, {:.3g} m after\n",
-      range_m, before.vertical_disparity_px, after.vertical_disparity_px, before.depth_m,
-      after.depth_m);
+  if (std::isnan(after.vertical_disparity_px)) {
+    report.warning = fmt::format(
+        "at {:g} m nothing is in view of both cameras, whose baseline is {:.4g} m: are the lengths "
+        "of the prior in metres?",
+        range_m, rig.T_camera_first[1].t.norm());
+  } else {
+    text += fmt::format(
+        "at {:g} m: vertical disparity {:.3g} px rms before, {:.3g} px after; depth sigma {:.3g} m "
+        "before, {:.3g} m after\n",
+        range_m, before.vertical_disparity_px, after.vertical_disparity_px, before.depth_m,
+        after.depth_m);
+  }
   Json& json = report.json;
   json = {{"from_data", o.from_data},
           {"improved", o.improved},
@@ -69,7 +77,8 @@ ObservabilityReport report_observability(const JointCalibration& joint,
           {"scale_information_ratio", o.scale_information_ratio},
           {"baseline_sd_m", {o.baseline_sd_before_m, o.baseline_sd_after_m}},
           {"range_m", range_m},
-          {"vertical_disparity_px", {before.vertical_disparity_px, after.vertical_disparity_px}},
+          {"vertical_disparity_px",
+           {json_number(before.vertical_disparity_px), json_number(after.vertical_disparity_px)}},
           {"depth_sigma_m", {before.depth_m, after.depth_m}}};
   json["directions"] = Json::array();
   for (const ObservedDirection& d : o.directions) {

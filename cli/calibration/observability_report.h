@@ -13,6 +13,7 @@ namespace vernier::cli {
 /// vertical disparity and depth before and after.
 struct ObservabilityReport {
   std::string text;
+  std::string warning;  ///< of a rig that sees nothing near by with both cameras; empty: none
   Json json;
 };
 ObservabilityReport report_observability(const JointCalibration& joint,

@@ -203,17 +203,16 @@ void run(const OdometryOptions& options, const CLI::App& verb, Session& session)
   check(options, verb);
   DriveFigures figures;
   OdometryPath path;
-  std::vector<OdometryDrive> drives;
-  if (options.world.empty()) {
-    drives.push_back(drive_of_images(options, session));
-  } else {
-    drives = simulated_drives(options, session);
-  }
-  for (const OdometryDrive& drive : drives) {
+  const auto add = [&](const OdometryDrive& drive) {
     if (drive.moments.size() < 2) {
       throw Error("odometry", "the drive has no step", "give smaller steps, or another leg");
     }
     path = follow(drive, options.segment_m, figures);
+  };
+  if (options.world.empty()) {
+    add(drive_of_images(options, session));
+  } else {
+    for_each_simulated_drive(options, session, add);
   }
   if (!options.output.empty()) {
     std::vector<TimedPose> poses;

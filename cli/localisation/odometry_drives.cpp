@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/base/error_place.h"
@@ -100,7 +102,9 @@ OdometryDrive drive_of_images(const OdometryOptions& options, Session& session) 
   return drive;
 }
 
-std::vector<OdometryDrive> simulated_drives(const OdometryOptions& options, Session& session) {
+void for_each_simulated_drive(const OdometryOptions& options,
+                              Session& session,
+                              const std::function<void(const OdometryDrive&)>& use) {
   constexpr double degree = std::numbers::pi / 180;
   const RigEstimate rig =
       stereo_rig_estimate(options.rig.empty() ? "nominal" : options.rig, session);
@@ -116,18 +120,16 @@ std::vector<OdometryDrive> simulated_drives(const OdometryOptions& options, Sess
       drive_poses(chosen_leg(world, options), options.step_m, options.turn_deg * degree);
   const Visibility visibility(world);
   const LocalisationExperiment robot(visibility, rig, nullptr, settings);
-  std::vector<OdometryDrive> drives;
   std::optional<Progress> progress;
   if (options.drives > 1) progress.emplace(session, "drives");
   for (int i = 0; i < options.drives; ++i) {
     const auto trial = static_cast<std::uint32_t>(i);
     CornerDrive seen = drive_past_corners(visibility, rig.rig, settings.sources, settings.mount,
                                           poses, options.seed, trial);
-    drives.push_back({robot.estimator_rig(trial), calibration, std::move(seen.moments),
-                      std::move(seen.T_world_left)});
+    use({robot.estimator_rig(trial), calibration, std::move(seen.moments),
+         std::move(seen.T_world_left)});
     if (progress) progress->update(i + 1, options.drives);
   }
-  return drives;
 }
 
 }  // namespace vernier::cli

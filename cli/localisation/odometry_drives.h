@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,7 +38,10 @@ struct OdometryDrive {
 /// The drive of image pairs.
 OdometryDrive drive_of_images(const OdometryOptions& options, Session& session);
 
-/// Drives of a simulated robot, with draws of their own.
-std::vector<OdometryDrive> simulated_drives(const OdometryOptions& options, Session& session);
+/// Drives of a simulated robot one after the other, each with draws of its own: memory does not
+/// depend on their number.
+void for_each_simulated_drive(const OdometryOptions& options,
+                              Session& session,
+                              const std::function<void(const OdometryDrive&)>& use);
 
 }  // namespace vernier::cli

@@ -45,12 +45,16 @@ std::string printable_lines(const std::string& text) {
 
 }  // namespace
 
-void Session::add_trust_warning(const std::string& reason) {
-  trust_warnings_.push_back(reason);
-  say(printable("vernier: not trustworthy: " + reason, most_line_bytes) + "\n");
+void Session::add_trust_warning(const std::string& reason) { trust_warnings_.push_back(reason); }
+
+void Session::tell_trust_warnings() {
+  for (; told_ < trust_warnings_.size(); ++told_) {
+    say(printable("vernier: not trustworthy: " + trust_warnings_[told_], most_line_bytes) + "\n");
+  }
 }
 
-void Session::result(const Json& object, const std::string& text) const {
+void Session::result(const Json& object, const std::string& text) {
+  tell_trust_warnings();
   if (json) {
     Json out = object;
     if (!trust_warnings_.empty()) out["doubts"] = trust_warnings_;

@@ -40,11 +40,14 @@ class Session {
   void info(const std::string& line) const;
   /// Prints a warning to standard error, unless quiet.
   void warn(const std::string& line) const { info("warning: " + line); }
-  /// Records a reason why the result is not trustworthy and prints it: exit code 3.
+  /// Records a reason why the result is not trustworthy: exit code 3. It is printed to standard
+  /// error with the result, so that a call that fails prints nothing but its error.
   void add_trust_warning(const std::string& reason);
+  /// Prints the reasons that are not yet printed.
+  void tell_trust_warnings();
   /// Prints the result to standard output: the JSON object with --json, otherwise the text. Throws
   /// Error if it cannot be written.
-  void result(const Json& object, const std::string& text) const;
+  void result(const Json& object, const std::string& text);
 
   Exit exit_code() const { return trust_warnings_.empty() ? Exit::done : Exit::untrusted; }
   const std::vector<std::string>& trust_warnings() const { return trust_warnings_; }
@@ -54,6 +57,7 @@ class Session {
 
  private:
   std::vector<std::string> trust_warnings_;
+  std::size_t told_ = 0;  ///< of them
 };
 
 /// Progress of a long job on standard error: a bar with the remaining time on a terminal, plain

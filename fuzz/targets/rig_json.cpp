@@ -46,11 +46,15 @@ RigEstimate calibrated_rig() {
   estimate.covariance = Covariance{CovarianceKind::jackknife, parameter_names(estimate.rig), C};
   estimate.covariance_mvb = C / 2;
   estimate.calibration = CalibrationSummary{};
+  estimate.calibration->source = "combined";
   estimate.calibration->pixel_sigma_px = estimate.calibration->rms_px = 0.2;
   estimate.calibration->chi2 = 90.5;
-  estimate.calibration->dof = 80;
-  estimate.calibration->views = 3;
+  estimate.calibration->dof = 40;
+  estimate.calibration->views = 4;
+  estimate.calibration->prior_chi2 = 1.5;
+  estimate.calibration->prior_dof = 16;
   estimate.calibration->outliers.push_back({0, 1, 2, "right00.png", {3, 4}, 5.5});
+  estimate.calibration->pair_outliers.push_back({0, 1, {200, 60, 180, 60.5}, 3});
   estimate.calibration->warnings = {"a warning"};
   estimate.calibration->trust_warnings = {"a doubt"};
   CalibrationEvidence& evidence = estimate.evidence.emplace();

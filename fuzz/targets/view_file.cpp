@@ -58,11 +58,14 @@ void require_same_views(const std::vector<RecordedLooks>& a, const std::vector<R
 void run_view_file(std::string_view bytes) {
   const auto views = accepted([&] { return read_views(input_file(bytes, "v.jsonl"), fuzz_rig()); });
   if (!views) return;
-  // Segments become lines, which may lie further away than lines of a file may.
+  // Segments become lines, which may lie further away, or less surely, than lines of a file may.
   for (const RecordedLooks& recorded : *views) {
     for (const Look& look : recorded.looks) {
       for (const PlaceLine& line : look.view.lines) {
-        if (line.a_m.cwiseAbs().maxCoeff() > 900 || line.b_m.cwiseAbs().maxCoeff() > 900) return;
+        if (line.a_m.cwiseAbs().maxCoeff() > 900 || line.b_m.cwiseAbs().maxCoeff() > 900 ||
+            line.sigma_m > 1e5) {
+          return;
+        }
       }
       for (const auto& line : look.view.image_lines) {
         if (line.a_px.cwiseAbs().maxCoeff() < 5) return;  // a part of them would be refused

@@ -81,7 +81,11 @@ PlaceLine parse_line(const JsonNode& node) {
   line.a_m = parse_point(node.at("a_m"));
   line.b_m = parse_point(node.at("b_m"));
   line.sigma_m = node.at("sigma_m").number();
-  if (line.sigma_m < 0) throw Error(node.at("sigma_m").place(), "is below 0", "give metres");
+  constexpr double most_sigma_m = 1e6;  // as in maps
+  if (!(line.sigma_m >= 0 && line.sigma_m <= most_sigma_m)) {
+    throw Error(node.at("sigma_m").place(), fmt::format("is not from 0 to {:g}", most_sigma_m),
+                "give metres");
+  }
   if (!(line.length_m() > shortest_m)) {
     throw Error(node.place(), "its ends are the same point", "leave the line out");
   }

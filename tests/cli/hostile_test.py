@@ -143,6 +143,55 @@ class Hostile(cli_test.Case):
         self.refused('calibrate', '--observations', 'large.csv', '--size', '640x480', '-o', 'z.json',
                      says='large.csv:2: frame is "2147483648", too large')
 
+    def test_a_call_that_fails_prints_no_doubt(self):
+        rig = self.calibrated()
+        rig['calibration']['doubts'] = ['the board was bent']
+        self.write('doubted.json', rig)
+        self.assertIn('the board was bent', vernier('check', 'doubted.json', '--no-mrcal', '--trials',
+                                                    '20').stderr)
+        for without in ('evidence', 'calibration'):
+            part = {key: value for key, value in rig.items() if key != without}
+            self.write('part.json', part)
+            done = self.refused('check', 'part.json', says='no stored evidence to solve again')
+            self.assertEqual(done.stderr.count('\n'), 1, done.stderr)
+        few = vernier('check', 'doubted.json', '--holdout', '--training-frames', '50')
+        self.assertEqual((few.returncode, few.stderr.count('\n')), (2, 1), few.stderr)
+
+    def test_a_key_of_toml_that_is_repeated(self):
+        self.write('d.toml', '[study]\n"tri\\u001bals" = 1\n"tri\\u001bals" = 2\n')
+        self.refused('study', 'd.toml', '-o', 'd', says='d.toml:3: ""tri\\u001bals" = 2" defines what is '
+                     'defined before; define every key and table once')
+
+    def test_a_summary_that_is_none(self):
+        rig = self.calibrated()
+        for key, value, says in (('views', 10**6, 'calibration.views: is 1000000, and the evidence has 12'),
+                                 ('pixel_sigma_px', 1e5, 'chi2, pixel_sigma_px and rms_px disagree'),
+                                 ('source', 'me', '"me" is unknown')):
+            self.write('s.json', {**rig, 'calibration': {**rig['calibration'], key: value}})
+            self.refused('uncertainty', 's.json', '--grid', '4x3', says=says)
+
+    def test_a_prior_in_millimetres(self):
+        rig = json.loads((self.folder / 'rig.json').read_text())
+        names = rig['parameter_names']
+        rig['cameras'][1]['from_first']['translation_m'] = [-100, 0, 0]
+        at = names.index('right.tx_m')
+        rig['parameters'][at] = -100
+        rig['covariance']['matrix'][at][at] = 4
+        self.write('mm.json', rig)
+        for words in (('calibrate', '--pairs', 'pairs.csv', '--prior', 'mm.json'),
+                      ('combine', '--prior', 'mm.json', 'pairs.csv')):
+            done = vernier(*words, '-o', 'out.json')
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn('nan', done.stdout)
+            self.assertNotIn('at 3 m', done.stdout)
+            self.assertIn('at 3 m nothing is in view of both cameras, whose baseline is 100 m: are the '
+                          'lengths of the prior in metres?', done.stderr)
+            found = json.loads(vernier(*words, '-o', 'out.json', '--json', '-q').stdout)
+            self.assertEqual(found['observability']['vertical_disparity_px'], [None, None])
+        near = vernier('calibrate', '--pairs', 'pairs.csv', '--prior', 'rig.json', '-o', 'out.json')
+        self.assertIn('at 3 m: vertical disparity ', near.stdout)
+        self.assertNotIn('in metres?', near.stderr)
+
     def test_options_without_effect(self):
         self.refused('study', 'study.toml', '-o', 's', '--shard', '00/4', says='--shard')
         self.refused('study', 'status', 's', '-o', 'x', says='leave them out')

@@ -16,6 +16,10 @@ import threading
 import unittest
 import zlib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PRIOR = str(ROOT / 'docs/examples/datasheet.json')
 PROGRAM = ''
@@ -153,6 +157,60 @@ class Studies(Case):
         self.refused('study', 's.toml', '-o', 'out', of='2 cells of 6000000 trials are 12000000')
 
 
+class Maps(Case):
+    def route(self, length_m):
+        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\n'
+                   f'[[route]]\npoints_m = [[0,0],[{length_m},0]]\n')
+        return 'w.world.toml'
+
+    def test_nodes(self):
+        self.refused('map', 'make', '--world', self.route(9000), '--spacing-m', '0.01', '-o', 'w.map',
+                     of='gives 900000 views')
+        self.refused('map', 'make', '--world', self.route(900), '--headings', '360', '-o', 'w.map',
+                     of='more than 100000')
+        self.assertFalse((self.folder / 'w.map').exists())
+
+    def test_lines_of_a_view(self):
+        line = '{"a_m":[2,0,0],"b_m":[2,0,2],"kind":"vertical","sigma_m":0.02}'
+        self.write('v.jsonl', '{"pose":[0,0,0],"lines":[' + ','.join([line] * 10_001) + ']}\n')
+        call = ('--features', 'v.jsonl', '--rig', 'nominal', '-o', 'w.map')
+        self.refused('map', 'make', *call, of='v.jsonl:1: lines: has 10001 entries; give at most 10000')
+        look = '{"turn_rad":0,"lines":[]}'
+        self.write('v.jsonl', '{"pose":[0,0,0],"looks":[' + ','.join([look] * 65) + ']}\n')
+        self.refused('map', 'make', *call, of='v.jsonl:1: looks: has 65 entries; give at most 64')
+        self.write('v.jsonl', '{"lines":[]}\n' * 100_001)
+        self.refused('map', 'make', *call, of='v.jsonl:100001: is one of more than 100,000 positions')
+
+    def test_a_large_map_costs_what_it_holds(self):
+        self.write('v.jsonl', ''.join('{"pose":[%d,0,0],"lines":[]}\n' % i for i in range(100_000)))
+        done = self.call('map', 'make', '--features', 'v.jsonl', '--rig', 'nominal', '-o', 'w.map')
+        self.assertEqual(done.code, 3, done.err)
+        done = self.call('map', 'info', 'w.map', '--json', cpu_s=10)
+        self.assertEqual(done.code, 3, done.err)
+        self.assertIn('"nodes":100000', done.out)
+        self.assertLess(done.peak_mb, 400)
+
+    def test_devices_are_no_maps(self):
+        self.refused('map', 'info', '/dev/zero', of='/dev/zero: ')
+        self.refused('localise', '/dev/full', '--world', 'workshop', of='/dev/full: ')
+        self.refused('map', 'make', '--features', '/dev/zero', '-o', 'w.map', of='/dev/zero: ')
+
+
+class Drives(Case):
+    def test_poses(self):
+        self.write('w.world.toml', WORLD + '[loose]\nsegments = [[0,1,0,0,1,2]]\n'
+                   '[[route]]\npoints_m = [[0,0],[9000,0]]\n')
+        self.refused('odometry', '--world', 'w.world.toml', '--step-m', '0.001',
+                     of='has more than 100000 poses')
+
+    def test_memory_does_not_grow_with_the_drives(self):
+        def peak(drives):
+            done = self.call('odometry', '--world', 'workshop', '--leg', '2', '--drives', drives, '-q')
+            self.assertIn(done.code, (0, 3), done.err)
+            return done.peak_mb
+        self.assertLess(peak(21), peak(1) + 8)  # 24 MB more if they are kept
+
+
 class Images(Case):
     def evaluate(self, left, right='r1.png', **how):
         return self.refused('evaluate', '--left', left, '--right', right, '--truth', 't.pfm', **how)
@@ -265,6 +323,8 @@ class Memory(Case):
         self.write('big1.png', png(8000, 8000))
         self.write('big2.png', png(8000, 8000, value=85))
         self.write('s.toml', '[study]\ntrials = 1\n')
+        self.write('views.jsonl', verb_calls.features())
+        self.write('known.map', verb_calls.map_file(verb_calls.features().splitlines()))
         calls = (('sample', 'nominal', '-n', '10', '-o', 's.csv'),
                  ('world', 'info', 'workshop'),
                  ('study', 's.toml', '-o', 'out'),
@@ -272,7 +332,11 @@ class Memory(Case):
                  ('rectify', '--rig', 'nominal', '--left', 'l1.png', '--right', 'r1.png', '-o', 'r'),
                  ('stereo', '--rectified', '--f-px', '500', '--baseline-m', '0.1', '--left',
                   'big1.png', '--right', 'big2.png', '-o', 'st'),
-                 ('detect', '--left', 'big1.png', '--board', '9x6', '-o', 'c.vnl'))
+                 ('detect', '--left', 'big1.png', '--board', '9x6', '-o', 'c.vnl'),
+                 ('map', 'make', '--world', 'workshop', '--spacing-m', '2', '-o', 'w.map'),
+                 ('map', 'info', 'known.map'),
+                 ('localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal'),
+                 ('odometry', '--world', 'workshop', '--leg', '2'))
         least_mb = self.least_virtual_mb()
         ran_out = 0
         for more_mb in (10, 40, 120, 400):

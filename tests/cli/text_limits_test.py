@@ -17,6 +17,10 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NOMINAL = (ROOT / 'datasets/rigs/nominal.rig.json').read_text()
 WORLD = (ROOT / 'datasets/worlds/workshop.world.toml').read_text()
@@ -380,6 +384,68 @@ class TextLimits(unittest.TestCase):
                 self.write(name, text)
                 self.refuses(what, name, 'calibrate', *arguments, '-o', 'rig2.json')
 
+    def test_views(self):
+        line = {'a_m': [2.5, 0.5, 0.25], 'b_m': [2.5, 0.5, 1.5], 'kind': 'vertical', 'sigma_m': 0.02}
+        good = json.dumps({'pose': [1.5, -2, 0.5], 'lines': [line], 'image_lines_px': [[9, 20, 9, 200]]})
+        self.write('v.jsonl', good + '\n')
+        made = Run(self.folder, 'map', 'make', '--features', 'v.jsonl', '--rig', 'good.json', '-o',
+                   'v.map')
+        self.assertEqual(made.code, 0, made.err)
+        looks = json.dumps({'looks': [{'turn_rad': 0.0, 'lines': [line]}]})
+        for before in (good, looks):
+            for what, text in json_faults(before):
+                if what == 'long key':
+                    continue  # a key that is not known is passed over
+                self.write('w.jsonl', good + '\n' + text + '\n' if text else '')
+                for verb in (('localise', 'v.map'), ('map', 'make', '-o', 'w.map')):
+                    self.refuses(what, 'w.jsonl', *verb, '--features', 'w.jsonl', '--rig', 'good.json')
+        self.assertFalse((self.folder / 'w.map').exists())
+        for what, other in (('huge standard deviation', {'sigma_m': 1e300}),
+                            ('long kind', {'kind': 'k' * LONG})):
+            self.write('w.jsonl', json.dumps({'pose': [0, 0, 0], 'lines': [{**line, **other}]}))
+            self.refuses(what, 'w.jsonl', 'localise', 'v.map', '--features', 'w.jsonl', '--rig',
+                         'good.json')
+
+    def test_poses_of_images(self):
+        good = 'image,x_m,y_m,heading_deg\nright.pgm,1,2,3\nleft.pgm,3.5,-2.5,90.5\n'
+        for what, text in table_faults(good):
+            self.write('poses.csv', text)
+            self.refuses(what, 'poses.csv', 'map', 'make', '--left', 'left.pgm', '--right', 'right.pgm',
+                         '--rig', 'good.json', '--poses', 'poses.csv', '-o', 'w.map')
+
+    def test_trajectories(self):
+        for name in ('left', 'right'):
+            for i in range(2):
+                (self.folder / f'{name}{i}.pgm').write_bytes((self.folder / f'{name}.pgm').read_bytes())
+        tum = '# time_s x y z qx qy qz qw\n0 0 0 0 0 0 0 1\n1 1.5 0 0 0 0 0 1.0\n'
+        kitti = '1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1.5 0 1 0 0 0 0 1.0 0\n'
+        for good in (tum, kitti):
+            for what, text in table_faults(good):
+                self.write('path.txt', text)
+                self.refuses(what, 'path.txt', 'odometry', '--left', 'left[01].pgm', '--right',
+                             'right[01].pgm', '--rig', 'good.json', '--truth', 'path.txt')
+
+    def test_maps(self):
+        good = verb_calls.map_file(verb_calls.features().splitlines())
+        (self.folder / 'v.jsonl').write_text(verb_calls.features())
+        chance = random.Random(7)
+        faults = [('empty', b''), ('other version', good[:8] + b'\x02' + good[9:]),
+                  ('something behind', good + bytes(24)), ('text', b'\x1b[31m' * (LONG // 5)),
+                  ('a million nodes', good[:12] + b'\x40\x42\x0f\x00' + good[16:]),
+                  ('a part of 2^63 bytes', good[:24] + b'\xff' * 7 + b'\x7f' + good[32:])]
+        faults += [(f'cut at {n}', good[:n]) for n in (7, 15, 39, 500, len(good) // 2, len(good) - 8)]
+        for at in chance.sample(range(len(good) - 8), 12):
+            bit = 1 << chance.randrange(8)
+            faults.append((f'bit {bit} at {at}', good[:at] + bytes([good[at] ^ bit]) + good[at + 1:]))
+        for what, content in faults:
+            (self.folder / 'bad.map').write_bytes(content)
+            for verb in (('map', 'info', 'bad.map'),
+                         ('localise', 'bad.map', '--features', 'v.jsonl', '--rig', 'good.json'),
+                         ('map', 'make', '--features', 'v.jsonl', '--rig', 'good.json', '--extend',
+                          'bad.map')):
+                self.refuses(what, 'bad.map', *verb)
+            self.assertEqual((self.folder / 'bad.map').read_bytes(), content)
+
     def test_whole_numbers_of_the_command_line(self):
         cases = ('18446744073709551616', '010', '1e3', ' 5', '5 ', '+5', '0x10', '1_000', "'5",
                  '1.5', '-1', '', '9' * 100_000, '\x1b[31m', '5,5')
@@ -387,6 +453,9 @@ class TextLimits(unittest.TestCase):
             for words in (('sample', 'nominal', '-o', 's.csv', '--seed'),
                           ('sample', 'nominal', '-o', 's.csv', '-n'),
                           ('world', 'make', '-o', 'w2.toml', '--seed'),
+                          ('map', 'make', '--world', 'workshop', '-o', 'w.map', '--seed'),
+                          ('localise', 'w.map', '--world', 'workshop', '-n'),
+                          ('odometry', '--world', 'workshop', '--drives'),
                           ('study', 's.toml', '-o', 'study', '--threads')):
                 self.refuses(text[:30], '-', *words[:-1], f'{words[-1]}={text}'
                              if words[-1].startswith('--') else f'{words[-1]}{text}')
@@ -400,6 +469,8 @@ class TextLimits(unittest.TestCase):
             for words in (('sample', 'nominal', '-o', 's.csv', '--psi-c'),
                           ('stereo', '--rig', 'nominal', '--left', 'left.pgm', '--right',
                            'right.pgm', '-o', 'e.csv', '--epipolar-reject-deg'),
+                          ('map', 'make', '--world', 'workshop', '-o', 'w.map', '--spacing-m'),
+                          ('odometry', '--world', 'workshop', '--step-m'),
                           ('diff', 'nominal', 'nominal', '--focus')):
                 self.refuses(text[:30], '-', *words[:-1], f'{words[-1]}={text}')
 

@@ -139,6 +139,7 @@ def calls():
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),
+        Call('map_info', ['map', 'info', 'known.map'], []),
         Call('localise', ['localise', 'known.map', '--features', 'views.jsonl', '--rig', 'nominal', '-o',
                           'out.csv'], ['out.csv']),
         Call('odometry', ['odometry', '--world', 'workshop', '--leg', '2', '-o', 'out.txt'],

@@ -81,8 +81,17 @@ TEST(TomlReader, RefusesAKeyGivenTwice) {
   for (const char* text : {"a = 1\na = 2", "a.b = 1\na.b = 2", "[a]\n[a]", "a = { b = 1, b = 2 }",
                            "[a]\nb = 1\n[a.b]", "a = 1\n[[a]]", "\"a\" = 1\n'a' = 2"}) {
     EXPECT_NE(complaint(text).find("a.toml:"), std::string::npos) << text;
-    EXPECT_NE(complaint(text).find("cannot redefine"), std::string::npos) << text;
+    EXPECT_NE(complaint(text).find("defines what is defined before"), std::string::npos) << text;
   }
+}
+
+TEST(TomlReader, ShowsALineThatRepeatsAKeyAsItIs) {
+  const std::string rest = " defines what is defined before; define every key and table once";
+  EXPECT_EQ(complaint("\"k\\u001b\" = 1\r\n  \"k\\u001b\" = 2 \r\n"),
+            "a.toml:2: \"\"k\\u001b\" = 2\"" + rest);
+  EXPECT_EQ(complaint("a = { x = 1 }\na.y = 2"), "a.toml:2: \"a.y = 2\"" + rest);
+  EXPECT_EQ(complaint("\xEF\xBB\xBFt = 1\n\n\t[[t]]"), "a.toml:3: \"[[t]]\"" + rest);
+  EXPECT_EQ(complaint("\"é ü\" = 1\n\"é ü\" = 1"), "a.toml:2: \"\"é ü\" = 1\"" + rest);
 }
 
 TEST(TomlReader, RefusesNumbersOutOfRange) {

@@ -181,6 +181,76 @@ TEST(RigFile, WhatIsHeldIsOneOfTheRigsParameters) {
             "parameter_names");
 }
 
+// The corners of estimate(): 40 views of 54 in 20 frames.
+TEST(RigFile, ASummaryThatNoCalibrationHasIsRefused) {
+  using Change = void (*)(CalibrationSummary&);
+  const auto complaint = [](Change change, KeepEvidence evidence = KeepEvidence::no) {
+    RigEstimate e = estimate();
+    change(*e.calibration);
+    return complaint_of(format_rig(e, evidence));
+  };
+  EXPECT_EQ(complaint([](auto& s) { s.source = "guess"; }),
+            "rig.json: calibration.source: \"guess\" is unknown; use board, pairs or combined");
+  EXPECT_EQ(complaint([](auto& s) { s.rms_px = 1e300; }),
+            "rig.json: calibration.rms_px: is above 1e+06; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) { s.chi2 = 1e300; }),
+            "rig.json: calibration.chi2: is above 1e+30; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.held = {"left.ax", "left.f_px", "left.ax"};
+            }),
+            "rig.json: calibration.held[2]: repeats \"left.ax\"; name it once");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.outliers = {{0, 0, -1, "", {3, 4}, 1}};
+            }),
+            "rig.json: calibration.outliers[0].corner: is negative; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.outliers = {{0, 0, 1, "", {3, 4}, -1}};
+            }),
+            "rig.json: calibration.outliers[0].residual_px: is negative; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.outliers = {{0, 0, 1, "", {3, 1e300}, 1}};
+            }),
+            "rig.json: calibration.outliers[0].pixel_px: holds a number beyond 1e+06; correct it");
+  const std::string text = format_rig(estimate(), KeepEvidence::no);
+  EXPECT_EQ(complaint_of(replaced(text, "\"views\":", "\"prior_chi2\":1,\"views\":")),
+            "rig.json: calibration: the key \"prior_dof\" is missing; see docs/file-formats.md");
+  EXPECT_EQ(
+      complaint_of(replaced(text, "\"views\":", "\"prior_chi2\":1,\"prior_dof\":0,\"views\":")),
+      "rig.json: calibration.prior_chi2: is above 0 for no parameter; calibrate again");
+}
+
+TEST(RigFile, ASummaryOfOtherEvidenceIsRefused) {
+  using Change = void (*)(CalibrationSummary&);
+  const auto complaint = [](Change change) {
+    RigEstimate e = estimate();
+    change(*e.calibration);
+    return complaint_of(format_rig(e));
+  };
+  EXPECT_EQ(complaint([](auto&) {}), "");
+  EXPECT_EQ(complaint([](auto& s) { s.views = 1'000'000; }),
+            "rig.json: calibration.views: is 1000000, and the evidence has 20; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) { s.dof = 4321; }),
+            "rig.json: calibration.dof: is 4321, and the evidence has 4320 residuals; calibrate "
+            "again");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.outliers = {{7, 1, 54, "", {3, 4}, 9}};
+            }),
+            "rig.json: calibration.outliers[0]: is corner 54 of a board of 54; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) {
+              s.pair_outliers = {{0, 0, {1, 2, 3, 4}, 1}};
+            }),
+            "rig.json: calibration.pair_outliers[0]: is row 0 of 0; calibrate again");
+  EXPECT_EQ(complaint([](auto& s) { s.chi2 *= 1.005; }), "");  // rounded by hand
+  for (const Change change :
+       {Change([](auto& s) { s.chi2 *= 1.1; }), Change([](auto& s) { s.rms_px = 0; }),
+        Change([](auto& s) { s.pixel_sigma_px *= 10; })}) {
+    EXPECT_NE(complaint(change).find("rig.json: calibration: its chi2, pixel_sigma_px and rms_px "
+                                     "disagree: "),
+              std::string::npos)
+        << complaint(change);
+  }
+}
+
 TEST(RigFile, NewNamesOfCamerasStandEverywhere) {
   RigEstimate e = estimate();
   e.calibration->held = {"right.ax"};

@@ -68,7 +68,7 @@ bool AliasFinder::on_wire_frame(const View& view, const Pose2D& pose) const {
     const auto [low, high] = std::minmax(edge.a_m.z(), edge.b_m.z());
     return frame_.uprights().has({moved(edge.a_m).head<2>(), low, high});
   };
-  if (!view.sample.empty() && !mostly(view.sample, upright_fits, 0.5)) return false;
+  if (!view.sample.empty() && !mostly(view.sample, upright_fits, 0.25)) return false;
   return mostly(view.edges, upright_fits) && mostly(view.edges, [&](const ViewEdge& edge) {
            return edge.upright ? upright_fits(edge) : frame_.has(moved(edge.a_m), moved(edge.b_m));
          });

@@ -46,7 +46,7 @@ class AliasFinder {
   struct View {
     explicit View(std::vector<ViewEdge> all);
     std::vector<ViewEdge> edges;
-    /// 64 of more edges, of all lengths: a pose that explains less than half of them is not tried
+    /// 64 of more edges, of all lengths: a pose that leaves a quarter unexplained is not tried
     /// further.
     std::vector<ViewEdge> sample;
   };

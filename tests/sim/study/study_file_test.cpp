@@ -113,6 +113,30 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   }
 }
 
+TEST(StudyFile, CornersArePartOfACellThatLooksForThem) {
+  const auto cells = [](const std::string& rest) {
+    return parse_study("[study]\ntrials = 10\n" + rest, "s.toml").cells;
+  };
+  const auto of_corners = cells(
+      "[corners]\nview_change = 2\n[localiser]\nmethod = \"corners\"\nmin_corners = 12\n[sweep]\n"
+      "\"corners.noise\" = [0, 0.5]\n");
+  ASSERT_EQ(of_corners.size(), 2u);
+  EXPECT_EQ(of_corners[1].experiment.appearance.view_change, 2);
+  EXPECT_EQ(of_corners[1].experiment.appearance.noise, 0.5);
+  EXPECT_EQ(of_corners[1].settings.at("corners.noise"), "0.5");
+  EXPECT_EQ(of_corners[1].settings.at("localiser.min_corners"), "12");
+  // Keys of older stores hold none of these.
+  const auto usual = cells("[corners]\nnoise = 1\n").at(0);
+  EXPECT_EQ(usual.settings.count("corners.noise"), 0u);
+  EXPECT_EQ(usual.settings.count("localiser.corners"), 0u);
+  EXPECT_EQ(cells("[localiser]\ncorners = true\n").at(0).settings.at("localiser.corners"), "true");
+  for (const char* wrong :
+       {"[corners]\nnoise = -1\n", "[corners]\nsize = 3\n", "[localiser]\nmin_corners = 3\n",
+        "[localiser]\ncorners = 1\n"}) {
+    EXPECT_THROW(cells(wrong), Error) << wrong;
+  }
+}
+
 TEST(StudyFile, AProgramIsPartOfTheCell) {
   const StudyFile study = parse_study(
       "[study]\ntrials = 10\n[localiser]\ncommand = \"./mine --fast\"\ntime_limit_s = 2\n"

@@ -261,7 +261,7 @@ TEST_F(Store, RowsAreCheckedBesidesTheirChecksum) {
       "[[1]]",
       "[" + trial("[0,0") + "," + trial("[2,0") + "]",
       "[" + trial("[-1,0") + "]",
-      "[" + trial("[0,6") + "]",
+      "[" + trial("[0,7") + "]",
       "[" + trial("[0,1e300") + "]",
       "[" + trial("[4294967296,0") + "]",
       "[" + trial("[18446744073709551615,0") + "]",

@@ -37,7 +37,8 @@ void require_same_trials(const std::vector<TrialResult>& a, const std::vector<Tr
   for (std::size_t i = 0; i < a.size(); ++i) {
     const TrialResult &s = a[i], &t = b[i];
     require(s.trial == t.trial && s.status == t.status && s.lines == t.lines &&
-                s.corners == t.corners && s.corner_mismatches == t.corner_mismatches,
+                s.corners == t.corners && s.corner_mismatches == t.corner_mismatches &&
+                s.looks == t.looks,
             "the counts of trials are kept");
     require(
         same_pose(s.truth, t.truth) && same_pose(s.answer, t.answer) && same_pose(s.node, t.node),
@@ -45,7 +46,7 @@ void require_same_trials(const std::vector<TrialResult>& a, const std::vector<Tr
     require(same(s.error_m, t.error_m) && same(s.node_error_m, t.node_error_m) &&
                 same(s.heading_error_rad, t.heading_error_rad) && same(s.score, t.score) &&
                 same(s.runner_up, t.runner_up) && same(s.cpu_ms, t.cpu_ms) &&
-                same(s.wall_ms, t.wall_ms),
+                same(s.wall_ms, t.wall_ms) && same(s.probability, t.probability),
             "the figures of trials are kept");
   }
 }

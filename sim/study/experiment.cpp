@@ -194,7 +194,8 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.looks = static_cast<int>(looks.size());
   result.score = answer.score;
   result.runner_up = answer.runner_up;
-  result.probability = answer.probability;
+  result.probability =
+      std::isfinite(answer.probability) ? std::clamp(answer.probability, 0.0, 1.0) : 0;
   result.error_m = result.node_error_m = result.heading_error_rad =
       std::numeric_limits<double>::quiet_NaN();
   if (result.answered() || answer.status == LocalisationStatus::unsure) {

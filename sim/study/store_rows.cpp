@@ -23,7 +23,8 @@ namespace {
 
 using TrialJson = nlohmann::json;
 
-constexpr std::size_t fields_of_a_trial = 15;
+/// Older stores have no number of looks and no probability.
+constexpr std::size_t fields_of_a_trial = 17, fields_of_old_trials = 15;
 
 TrialJson number_or_null(double value) {
   return std::isfinite(value) ? TrialJson(value) : TrialJson(nullptr);
@@ -35,7 +36,10 @@ TrialJson pose_json(const Pose2D& pose) { return {pose.x_m, pose.y_m, pose.headi
 class TrialRow {
  public:
   TrialRow(const TrialJson& row, const std::string& place) : row_(row), place_(place) {
-    if (!row.is_array() || row.size() != fields_of_a_trial) fail("a trial is no list of 15 fields");
+    if (!row.is_array() ||
+        (row.size() != fields_of_a_trial && row.size() != fields_of_old_trials)) {
+      fail("a trial is no list of 17 or 15 fields");
+    }
   }
 
   std::int64_t whole(std::int64_t low, std::int64_t high) {
@@ -48,6 +52,12 @@ class TrialRow {
   }
   int count() { return static_cast<int>(whole(0, std::numeric_limits<int>::max())); }
   double real() { return real(next()); }
+  bool is_old() const { return row_.size() == fields_of_old_trials; }
+  double probability() {
+    const double value = real();
+    if (value < 0 || value > 1) fail(beyond);
+    return value;
+  }
   double time_ms() {
     const double value = real();
     if (value < 0) fail(beyond);
@@ -103,6 +113,9 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
   t.corner_mismatches = row.count();
   t.cpu_ms = row.time_ms();
   t.wall_ms = row.time_ms();
+  if (row.is_old()) return t;
+  t.looks = row.count();
+  t.probability = row.probability();
   return t;
 }
 
@@ -114,7 +127,7 @@ std::string trials_text(const std::vector<TrialResult>& trials) {
     rows.push_back({t.trial, static_cast<int>(t.status), pose_json(t.truth), pose_json(t.answer),
                     pose_json(t.node), number_or_null(t.error_m), number_or_null(t.node_error_m),
                     number_or_null(t.heading_error_rad), t.lines, t.score, t.runner_up, t.corners,
-                    t.corner_mismatches, t.cpu_ms, t.wall_ms});
+                    t.corner_mismatches, t.cpu_ms, t.wall_ms, t.looks, t.probability});
   }
   return rows.dump();
 }

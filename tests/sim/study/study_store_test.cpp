@@ -82,6 +82,8 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   t.status = LocalisationStatus::too_few_lines;
   t.error_m = std::nan("");
   t.score = 1e-17;
+  t.looks = 3;
+  t.probability = 1.0 / 3;
   {
     StudyStore store(folder_ / "a.sqlite");
     store.put({"cell", 3, {t}});
@@ -92,6 +94,8 @@ TEST_F(Store, BlocksRoundTripToTheBit) {
   EXPECT_EQ(again.blocks[0].block, 3);
   EXPECT_EQ(again.blocks[0].trials[0].truth.x_m, 1.0 / 3);
   EXPECT_EQ(again.blocks[0].trials[0].score, 1e-17);
+  EXPECT_EQ(again.blocks[0].trials[0].looks, 3);
+  EXPECT_EQ(again.blocks[0].trials[0].probability, 1.0 / 3);
   EXPECT_TRUE(std::isnan(again.blocks[0].trials[0].error_m));
   EXPECT_EQ(again.notes.at("k"), "v");
   EXPECT_EQ(again.notes.count("none"), 0u);
@@ -272,6 +276,13 @@ TEST_F(Store, RowsAreCheckedBesidesTheirChecksum) {
       "[[0,0," + pose + "," + pose + "," + pose + ",0,0,1e999" + rest + "]",
       std::string(100'000, '[')};
   EXPECT_EQ(parse_trials("[" + trial("[0,0") + "," + trial("[1,0") + "]", "p").size(), 2u);
+  // Rows of older stores end before the looks and the probability.
+  std::string longer = trial("[0,0");
+  longer.insert(longer.size() - 1, ",2,0.75");
+  EXPECT_EQ(parse_trials("[" + longer + "]", "p")[0].probability, 0.75);
+  EXPECT_EQ(parse_trials("[" + trial("[0,0") + "]", "p")[0].looks, 1);
+  longer.replace(longer.size() - 5, 4, "1.5");
+  EXPECT_THROW(parse_trials("[" + longer + "]", "p"), Error);
   for (const std::string& text : bad) {
     EXPECT_EQ(refusal([&] { parse_trials(text, "p"); }).rfind("p: is damaged: ", 0), 0u)
         << text.substr(0, 80);

@@ -74,7 +74,6 @@ PairOutlier parse_pair_outlier(const Node& node) {
   check_bounded(y, most_side_px, node.at("pixels_px"));
   o.pixels_px = y;
   o.residual_px = node.at("residual_px").number();
-  if (o.residual_px < 0) throw Error(node.at("residual_px").place(), "is negative", "");
   return o;
 }
 

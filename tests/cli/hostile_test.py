@@ -148,7 +148,7 @@ class Hostile(cli_test.Case):
         rig['calibration']['doubts'] = ['the board was bent']
         self.write('doubted.json', rig)
         self.assertIn('the board was bent', vernier('check', 'doubted.json', '--no-mrcal', '--trials',
-                                                    '20').stderr)
+                                                    '200').stderr)
         for without in ('evidence', 'calibration'):
             part = {key: value for key, value in rig.items() if key != without}
             self.write('part.json', part)

@@ -421,6 +421,8 @@ class TextLimits(unittest.TestCase):
         kitti = '1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1.5 0 1 0 0 0 0 1.0 0\n'
         for good in (tum, kitti):
             for what, text in table_faults(good):
+                if what == 'whole number too large' and text != 'x':
+                    continue  # it is a time
                 self.write('path.txt', text)
                 self.refuses(what, 'path.txt', 'odometry', '--left', 'left[01].pgm', '--right',
                              'right[01].pgm', '--rig', 'good.json', '--truth', 'path.txt')
@@ -429,7 +431,7 @@ class TextLimits(unittest.TestCase):
         good = verb_calls.map_file(verb_calls.features().splitlines())
         (self.folder / 'v.jsonl').write_text(verb_calls.features())
         chance = random.Random(7)
-        faults = [('empty', b''), ('other version', good[:8] + b'\x02' + good[9:]),
+        faults = [('empty', b''), ('other version', good[:8] + b'\x63' + good[9:]),
                   ('something behind', good + bytes(24)), ('text', b'\x1b[31m' * (LONG // 5)),
                   ('a million nodes', good[:12] + b'\x40\x42\x0f\x00' + good[16:]),
                   ('a part of 2^63 bytes', good[:24] + b'\xff' * 7 + b'\x7f' + good[32:])]

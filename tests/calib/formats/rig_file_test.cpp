@@ -213,7 +213,7 @@ TEST(RigFile, ASummaryThatNoCalibrationHasIsRefused) {
             "rig.json: calibration.outliers[0].pixel_px: holds a number beyond 1e+06; correct it");
   const std::string text = format_rig(estimate(), KeepEvidence::no);
   EXPECT_EQ(complaint_of(replaced(text, "\"views\":", "\"prior_chi2\":1,\"views\":")),
-            "rig.json: calibration: the key \"prior_dof\" is missing; see docs/file-formats.md");
+            "rig.json: calibration: has no \"prior_dof\"; add it");
   EXPECT_EQ(
       complaint_of(replaced(text, "\"views\":", "\"prior_chi2\":1,\"prior_dof\":0,\"views\":")),
       "rig.json: calibration.prior_chi2: is above 0 for no parameter; calibrate again");

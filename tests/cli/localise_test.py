@@ -199,11 +199,6 @@ class Localise(unittest.TestCase):
         made = json.loads(self.done('map', 'make', *call, '--poses', 'poses.csv', '--corners', '-o',
                                     'c.map', '--json'))
         self.assertGreater(made['corners_mean'], 20)
-        query = json.loads(self.done('localise', 'c.map', *call, '--method', 'corners',
-                                     '--json'))['queries'][0]
-        self.assertEqual(query['status'], 'answered')
-        for found, true in zip(query['pose'], (3, -2, 90)):
-            self.assertAlmostEqual(found, true, delta=1e-6)
 
     def test_a_program_of_ones_own(self):
         self.map_of_rooms()

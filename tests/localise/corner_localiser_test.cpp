@@ -28,8 +28,8 @@
 namespace vernier::localise {
 namespace {
 
-using vernier::test::error_message;
 using vernier::internal::RandomStream;
+using vernier::test::error_message;
 
 /// A point of a room, in the world's frame, and what it looks like.
 struct Mark {

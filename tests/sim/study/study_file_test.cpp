@@ -120,9 +120,8 @@ TEST(StudyFile, CornersArePartOfACellThatLooksForThem) {
   EXPECT_EQ(usual.settings.count("corners.noise"), 0u);
   EXPECT_EQ(usual.settings.count("localiser.corners"), 0u);
   EXPECT_EQ(cells("[localiser]\ncorners = true\n").at(0).settings.at("localiser.corners"), "true");
-  for (const char* wrong :
-       {"[corners]\nnoise = -1\n", "[corners]\nsize = 3\n", "[localiser]\nmin_corners = 3\n",
-        "[localiser]\ncorners = 1\n"}) {
+  for (const char* wrong : {"[corners]\nnoise = -1\n", "[corners]\nsize = 3\n",
+                            "[localiser]\nmin_corners = 3\n", "[localiser]\ncorners = 1\n"}) {
     EXPECT_THROW(cells(wrong), Error) << wrong;
   }
 }

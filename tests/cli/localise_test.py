@@ -196,9 +196,22 @@ class Localise(unittest.TestCase):
             self.assertAlmostEqual(found, true, delta=within)
         self.refused('map', 'make', *call, '-o', 'j.map', says='give --poses')
         self.refused('localise', 'i.map', *call, '--method', 'corners', says='map make --corners')
+        # Its corners all look alike: there is nothing to go by.
+        self.done('map', 'make', *call, '--poses', 'poses.csv', '--corners', '-o', 'c.map')
+        self.done('localise', 'c.map', *call, '--method', 'corners', code=3)
+        chance = random.Random(3)
+        tiles = [[chance.randrange(256) for _ in range(80)] for _ in range(60)]
+        for name, shift in (('left', 0), ('right', 6)):
+            pixels = bytes(tiles[v // 7][(u + shift) // 7] for v in range(height) for u in range(width))
+            (self.folder / f'big_{name}.pgm').write_bytes(b'P5\n%d %d\n255\n' % (width, height) + pixels)
         made = json.loads(self.done('map', 'make', *call, '--poses', 'poses.csv', '--corners', '-o',
                                     'c.map', '--json'))
-        self.assertGreater(made['corners_mean'], 20)
+        self.assertGreater(made['corners_mean'], 100)
+        query = json.loads(self.done('localise', 'c.map', *call, '--method', 'corners',
+                                     '--json'))['queries'][0]
+        self.assertEqual(query['status'], 'answered')
+        for found, true in zip(query['pose'], (3, -2, 90)):
+            self.assertAlmostEqual(found, true, delta=1e-6)
 
     def test_a_program_of_ones_own(self):
         self.map_of_rooms()

@@ -12,6 +12,8 @@
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
 
 namespace vernier::cli {
@@ -54,6 +56,9 @@ void merge_studies(const std::vector<fs::path>& parts, const fs::path& target, S
   const Study study = open_folder(parts[0], session);
   StoredResults all = read_parts(parts, target, study, session);
   add_folder(target, all);
+  for (const StudyCell& cell : study.file.cells) {  // throws if parts disagree on a ceiling
+    noted_queries(study, all.notes, ceiling_key(study, cell.experiment));
+  }
   const FolderClaim claim(study, inputs_of_folder(parts[0]), target);
   try {
     StudyStore merged(store_file(target, {}));

@@ -145,25 +145,32 @@ AllPlaces all_places(const Study& study, const Visibility& visibility) {
   return all;
 }
 
-/// Computes this shard's queries of a ceiling until asked to stop; calls `one_done` after each.
-void compute_queries(const Study& study,
-                     const Visibility& visibility,
+/// Computes this shard's queries of a ceiling until asked to stop, and stores them some hundred at
+/// a time under the ceiling's key; calls `one_done` after each.
+void compute_queries(const AliasFinder& finder,
                      const QueryPlaces& places,
-                     MissingCeiling& ceiling,
+                     const std::string& key,
+                     const MissingCeiling& ceiling,
                      tbb::task_arena& arena,
                      const std::stop_token& stop,
-                     const std::function<void()>& one_done) {
-  NoiseFreeViewOptions options;
-  options.mount = ceiling.settings->mount;
-  const AliasFinder finder(visibility, study.rig.rig, options);
-  in_parallel(arena, static_cast<int>(ceiling.mine.size()), [&](int i) {
+                     const std::function<void()>& one_done,
+                     StudyStore& store) {
+  constexpr std::size_t at_a_time = 500;
+  for (std::size_t first = 0; first < ceiling.mine.size(); first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, ceiling.mine.size() - first);
+    std::vector<int> of_query(ceiling.of_query.size(), not_known);
+    in_parallel(arena, static_cast<int>(count), [&](int i) {
+      if (stop.stop_requested()) return;
+      const int query = ceiling.mine[first + static_cast<std::size_t>(i)];
+      const Aliases found =
+          finder.aliases(places.draw(ceiling.settings->seed, static_cast<std::uint32_t>(query)));
+      of_query[query] = found.determined ? found.elsewhere : not_determined;
+      one_done();
+    });
+    const auto [part, text] = ceiling_part(key, of_query);
+    if (!text.empty()) store.set_note(part, text);
     if (stop.stop_requested()) return;
-    const int query = ceiling.mine[i];
-    const Aliases found =
-        finder.aliases(places.draw(ceiling.settings->seed, static_cast<std::uint32_t>(query)));
-    ceiling.of_query[query] = found.determined ? found.elsewhere : not_determined;
-    one_done();
-  });
+  }
 }
 
 /// With other shards, this one computes one of every shard.count queries.
@@ -183,7 +190,7 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
   return missing;
 }
 
-/// Computes ceilings and stores each as soon as it is known.
+/// Computes ceilings, one after the other.
 void add_ceilings(const Study& study,
                   const Visibility& visibility,
                   const StudyRun& run,
@@ -202,14 +209,12 @@ void add_ceilings(const Study& study,
     ++done;
     if (run.ceiling_progress) run.ceiling_progress(done, total);
   };
-  for (auto& [key, ceiling] : missing) {
-    compute_queries(study, visibility, *places.at(places_key(*ceiling.settings)), ceiling, arena,
-                    run.stop, one_done);
-    const auto& all = ceiling.of_query;
-    std::vector<int> mine(all.size(), not_known);
-    for (const int query : ceiling.mine) mine[query] = all[query];
-    const auto [part, text] = ceiling_part(key, mine);
-    if (!text.empty()) store.set_note(part, text);
+  for (const auto& [key, ceiling] : missing) {
+    NoiseFreeViewOptions options;
+    options.mount = ceiling.settings->mount;
+    const AliasFinder finder(visibility, study.rig.rig, options);
+    compute_queries(finder, *places.at(places_key(*ceiling.settings)), key, ceiling, arena,
+                    run.stop, one_done, store);
   }
 }
 

@@ -59,7 +59,9 @@ StereoCorner take_corner(std::string_view& bytes, std::size_t descriptor) {
     }
   }
   corner.descriptor.resize(static_cast<Eigen::Index>(descriptor));
-  std::memcpy(corner.descriptor.data(), bytes.data(), descriptor * sizeof(float));
+  if (descriptor > 0) {  // an empty vector has no memory to copy to
+    std::memcpy(corner.descriptor.data(), bytes.data(), descriptor * sizeof(float));
+  }
   bytes.remove_prefix(corner_size(descriptor) - fixed_bytes);
   return corner;
 }

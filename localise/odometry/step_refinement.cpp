@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/base/decompositions.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "localise/odometry/pair_projection.h"
@@ -17,6 +18,9 @@
 namespace vernier::localise::internal {
 
 namespace {
+
+using vernier::internal::Cholesky;
+using vernier::internal::solve_symmetric;
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -116,15 +120,15 @@ struct ReducedSystem {
 
 /// The change of the motion that minimises the linearised system; false if there is none.
 bool change_of(const ReducedSystem& system, const FloorBasis* within, Vector6d& delta) {
-  if (within) {
-    const Eigen::LDLT<Matrix3d> H(within->transpose() * system.H * *within);
-    if (H.info() != Eigen::Success || !H.isPositive()) return false;
-    delta = *within * H.solve(within->transpose() * system.g);
-  } else {
-    const Eigen::LDLT<Matrix6d> H(system.H);
-    if (H.info() != Eigen::Success || !H.isPositive()) return false;
-    delta = H.solve(system.g);
-  }
+  const auto solved = [](const Cholesky& H, const Eigen::VectorXd& g) {
+    return H.is_positive_definite() ? std::optional<Eigen::VectorXd>(H.solve(g)) : std::nullopt;
+  };
+  const std::optional<Eigen::VectorXd> found =
+      within ? solved(Cholesky(within->transpose() * system.H * *within),
+                      within->transpose() * system.g)
+             : solved(Cholesky(system.H), system.g);
+  if (!found) return false;
+  delta = within ? Vector6d(*within * *found) : Vector6d(*found);
   return delta.allFinite();
 }
 
@@ -209,7 +213,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> step_by_rig(const Rig& rig,
     const EliminatedPoint p(c, 0);
     gradient += c.by_motion.transpose() * by_rig - p.W * p.V.solve(c.by_point.transpose() * by_rig);
   }
-  return -step.information.ldlt().solve(gradient);
+  return -solve_symmetric(step.information, Eigen::MatrixXd(gradient));
 }
 
 }  // namespace vernier::localise::internal

@@ -84,6 +84,8 @@ def world_files(program, options):
 
 def mean_and_interval(values, draws=4000):
     """Mean over worlds; percentiles of the means of worlds drawn with replacement, fixed seed."""
+    if len(values) == 1:
+        return values[0], values[0], values[0]
     generator = random.Random(1)
     means = sorted(sum(generator.choices(values, k=len(values))) / len(values) for _ in range(draws))
     return sum(values) / len(values), means[int(0.025 * draws)], means[int(0.975 * draws)]
@@ -104,9 +106,9 @@ def print_row(name, cells):
         text = f"{figure} {mean:.4g}"
         if len(values) > 1:
             text += f" [{low:.4g}, {high:.4g}]"
-        elif figure == "best_guess_success":
-            text += f" ({100 * cells[0]['success_interval_95'][0]:.2f} to "
-            text += f"{100 * cells[0]['success_interval_95'][1]:.2f} for those answered)"
+        elif figure == "best_guess_success" and cells[0]["success_interval_95"]:
+            low, high = cells[0]["success_interval_95"]
+            text += f" ({100 * low:.2f} to {100 * high:.2f} for those answered)"
         parts.append(text)
     relative = [100 * cell["best_guess_success"] / cell["world_ceiling"] for cell in cells
                 if cell.get("world_ceiling")]

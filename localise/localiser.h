@@ -104,9 +104,8 @@ struct LocaliserOptions {
 ///  - `pgh_baseline_vectorised`: the same method on stored roots with SIMD dot products. For
 ///    comparison of times;
 ///  - `corners`: descriptors of corners rank the nodes by a vocabulary and are matched with those
-///  of
-///    the best ones; corners in space that agree on a pose on the floor give it, by consensus and
-///    least squares on pixels. States no probability (docs/localisation.md);
+///    of the best nodes; corners in space that agree on a pose on the floor give it, by consensus
+///    and least squares on pixels. States no probability (docs/localisation.md);
 ///  - `program`: a program of one's own, which reads the map and the queries as lines of JSON and
 ///    answers in lines of JSON (docs/own-localiser.md). A query that it does not answer, not in
 ///    time or with nonsense has the status `failed`, and the program is started again, three times

@@ -11,7 +11,8 @@ Needs only the Python standard library. One curve per query protocol, with 95 % 
 import json
 import math
 import sys
-from xml.sax.saxutils import escape
+
+from success_frame import axis_words, opening, percent_grid, text
 
 WIDTH, HEIGHT = 640, 340
 LEFT, RIGHT, TOP, BOTTOM = 70, 620, 22, 290  # of the axes
@@ -31,10 +32,6 @@ def curves(cells):
     return {protocol: sorted(points) for protocol, points in found.items()}
 
 
-def text(x, y, words, anchor="middle", more=""):
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{more}>{escape(words)}</text>'
-
-
 def draw(found, trials):
     """Returns the plot as SVG."""
     values = sorted({point[0] for points in found.values() for point in points})
@@ -48,20 +45,12 @@ def draw(found, trials):
     def y_of(share):
         return BOTTOM - (BOTTOM - TOP) * (share - floor) / (1 - floor)
 
-    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
-             f'width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif" font-size="13">',
-             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>']
-    for tick in range(round(10 * floor), 11):
-        y = y_of(tick / 10)
-        lines.append(f'<line x1="{LEFT}" y1="{y:.1f}" x2="{RIGHT}" y2="{y:.1f}" stroke="#ddd"/>')
-        lines.append(text(LEFT - 8, y + 4, f"{10 * tick} %", "end"))
+    lines = opening(WIDTH, HEIGHT, 13) + percent_grid(floor, LEFT, RIGHT, y_of)
     for value in values:
         lines.append(text(x_of(value), BOTTOM + 18, f"{value:g}"))
     lines.append(text((LEFT + RIGHT) / 2, BOTTOM + 40,
                       "ψ_c: error of the calibration, in its own standard deviations"))
-    middle = (TOP + BOTTOM) / 2
-    lines.append(text(18, middle, "localised within 1 m",
-                      more=f' transform="rotate(-90 18 {middle})"'))
+    lines.append(axis_words("localised within 1 m", 18, (TOP + BOTTOM) / 2))
     for row, ((protocol, points), colour) in enumerate(zip(found.items(), COLOURS)):
         shift = 3 * (2 * row - len(found) + 1)  # so that intervals do not overlap
         path = " ".join(f"{x_of(p[0]) + shift:.1f},{y_of(p[1]):.1f}" for p in points)

@@ -13,7 +13,8 @@ colour a query protocol, 95 % intervals.
 import json
 import math
 import sys
-from xml.sax.saxutils import escape
+
+from success_frame import axis_words, opening, percent_grid, text
 
 WIDTH, HEIGHT = 680, 380
 LEFT, RIGHT, TOP, BOTTOM = 70, 660, 24, 320  # of the axes
@@ -38,10 +39,6 @@ def points(files):
                    high)
 
 
-def text(x, y, words, anchor="start", more=""):
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{more}>{escape(words)}</text>'
-
-
 def frame(low_ms, high_ms, floor):
     """The axes, and the functions that place a value on them."""
     span = math.log(high_ms / low_ms)
@@ -52,20 +49,12 @@ def frame(low_ms, high_ms, floor):
     def y_of(share):
         return BOTTOM - (BOTTOM - TOP) * (share - floor) / (1 - floor)
 
-    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
-             f'width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif" font-size="12">',
-             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>']
-    for tick in range(round(10 * floor), 11):
-        y = y_of(tick / 10)
-        lines.append(f'<line x1="{LEFT}" y1="{y:.1f}" x2="{RIGHT}" y2="{y:.1f}" stroke="#ddd"/>')
-        lines.append(text(LEFT - 8, y + 4, f"{10 * tick} %", "end"))
+    lines = opening(WIDTH, HEIGHT, 12) + percent_grid(floor, LEFT, RIGHT, y_of)
     for power in range(math.ceil(math.log10(low_ms)), math.floor(math.log10(high_ms)) + 1):
         lines.append(text(x_of(10**power), BOTTOM + 18, f"{10**power:g}", "middle"))
     lines.append(text((LEFT + RIGHT) / 2, BOTTOM + 40, "CPU time a query, ms (logarithmic)",
                       "middle"))
-    middle = (TOP + BOTTOM) / 2
-    lines.append(text(18, middle, "localised within 1 m", "middle",
-                      f' transform="rotate(-90 18 {middle})"'))
+    lines.append(axis_words("localised within 1 m", 18, (TOP + BOTTOM) / 2))
     return lines, x_of, y_of
 
 
@@ -89,7 +78,7 @@ def draw(found):
     for row, (protocol, colour) in enumerate(COLOURS.items()):
         y = BOTTOM - 34 + 18 * row
         lines.append(f'<circle cx="{RIGHT - 110}" cy="{y - 4}" r="4" fill="{colour}"/>')
-        lines.append(text(RIGHT - 100, y, protocol))
+        lines.append(text(RIGHT - 100, y, protocol, "start"))
     return "\n".join(lines + ["</svg>"]) + "\n"
 
 

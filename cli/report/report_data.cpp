@@ -79,13 +79,6 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"sweep", nullptr},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
-  if (study.file.sweep_keys.size() == 1) {
-    const std::string& key = study.file.sweep_keys[0];
-    Json values = Json::array();
-    for (const CellResult& cell : results.cells) values.push_back(cell_json(cell)["settings"][key]);
-    json["sweep"] = {
-        {"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : key}, {"values", values}};
-  }
   for (std::size_t i = 0; i < results.cells.size(); ++i) {
     Json cell = cell_json(results.cells[i]);
     cell["trial_list"] = Json::array();
@@ -93,6 +86,13 @@ Json report_study(const Study& study, const StudyResults& results) {
       cell["trial_list"].push_back(trial_json(t));
     }
     json["cells"].push_back(std::move(cell));
+  }
+  if (study.file.sweep_keys.size() == 1) {
+    const std::string& key = study.file.sweep_keys[0];
+    Json values = Json::array();
+    for (const Json& cell : json["cells"]) values.push_back(cell["settings"][key]);
+    json["sweep"] = {
+        {"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : key}, {"values", values}};
   }
   return json;
 }

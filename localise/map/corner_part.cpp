@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "localise/map/native_bytes.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
 
@@ -22,21 +23,6 @@ namespace {
 constexpr std::size_t most_corners = 10'000, longest_descriptor = 1024;
 constexpr double most_px = 1e7;
 constexpr std::size_t counts_bytes = 8, fixed_bytes = 14 * sizeof(double);
-
-template <class T>
-void append(std::string& to, T value) {
-  const std::size_t at = to.size();
-  to.resize(at + sizeof value);
-  std::memcpy(to.data() + at, &value, sizeof value);
-}
-
-template <class T>
-T take(std::string_view& from) {
-  T value;
-  std::memcpy(&value, from.data(), sizeof value);
-  from.remove_prefix(sizeof value);
-  return value;
-}
 
 bool is_corner(const StereoCorner& corner) {
   const auto within = [](const auto& x) {
@@ -91,17 +77,17 @@ std::string corner_bytes(std::span<const MapNode> nodes) {
   for (const MapNode& node : nodes) {
     const std::vector<StereoCorner>& corners = node.view.corners;
     const Eigen::Index descriptor = corners.empty() ? 0 : corners[0].descriptor.size();
-    append(bytes, static_cast<std::uint32_t>(corners.size()));
-    append(bytes, static_cast<std::uint32_t>(descriptor));
+    put(bytes, static_cast<std::uint32_t>(corners.size()));
+    put(bytes, static_cast<std::uint32_t>(descriptor));
     for (const StereoCorner& corner : corners) {
       const std::size_t end = bytes.size() + corner_size(static_cast<std::size_t>(descriptor));
       for (const Eigen::Vector2d& pixel : {corner.left_px, corner.right_px}) {
-        for (int i = 0; i < 2; ++i) append(bytes, pixel[i]);
+        for (int i = 0; i < 2; ++i) put(bytes, pixel[i]);
       }
       for (int i = 0; i < 4; ++i) {
-        for (int k = i; k < 4; ++k) append(bytes, corner.covariance_px2(i, k));
+        for (int k = i; k < 4; ++k) put(bytes, corner.covariance_px2(i, k));
       }
-      for (Eigen::Index i = 0; i < descriptor; ++i) append(bytes, corner.descriptor[i]);
+      for (Eigen::Index i = 0; i < descriptor; ++i) put(bytes, corner.descriptor[i]);
       bytes.resize(end);
     }
   }

@@ -25,6 +25,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "localise/map/corner_part.h"
+#include "localise/map/native_bytes.h"
 #include "localise/map/part_checksum.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -58,13 +59,6 @@ static_assert(std::endian::native == std::endian::little);
 
 std::size_t filled(std::size_t bytes) { return (bytes + 7) / 8 * 8; }
 
-template <class T>
-void put(std::string& to, T value) {
-  const std::size_t at = to.size();
-  to.resize(at + sizeof value);
-  std::memcpy(to.data() + at, &value, sizeof value);
-}
-
 /// Numbers from a part, one after the other. Throws Error at its end.
 class Bytes {
  public:
@@ -73,10 +67,7 @@ class Bytes {
   template <class T>
   T take() {
     if (rest_.size() < sizeof(T)) fail("a part is shorter than what it should hold");
-    T value;
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
-    return value;
+    return internal::take<T>(rest_);
   }
   double number(double most) {
     const auto value = take<double>();

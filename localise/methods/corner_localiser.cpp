@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/methods/corner_localiser.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "localise/odometry/pair_projection.h"
 #include "localise/odometry/step_consensus.h"
 #include "localise/place.h"
+#include "localise/place/corner_check.h"
 #include "localise/ranking/corner_index.h"
 #include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
@@ -62,14 +62,7 @@ void check(const PlaceView& view, const std::string& place) {
   if (!view.rig || view.rig->cameras.size() != 2 || view.rig->T_camera_first.size() != 2) {
     throw Error(place, "has corners and no rig of two cameras", "set PlaceView::rig");
   }
-  for (const StereoCorner& corner : view.corners) {
-    if (corner.left_px.allFinite() && corner.right_px.allFinite() &&
-        corner.covariance_px2.allFinite() && corner.covariance_px2.llt().info() == Eigen::Success) {
-      continue;
-    }
-    throw Error(place, "a corner has a pixel that is not a number, or a covariance that is none",
-                "give finite pixels and positive definite covariances");
-  }
+  check_corners(view.corners, place);
 }
 
 }  // namespace

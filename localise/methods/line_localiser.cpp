@@ -48,26 +48,34 @@ Pose2D turned(const Pose2D& first, double turn_rad) {
   return {first.x_m, first.y_m, first.heading_rad + turn_rad};
 }
 
-bool same_place(const Pose2D& a, const Pose2D& b) {
-  constexpr double same_m = 0.15, same_rad = 0.1;
-  return distance_m(a, b) < same_m && std::abs(heading_difference_rad(a, b)) < same_rad;
-}
+/// Poses that are so close are taken for one.
+struct Closeness {
+  double distance_m, heading_rad;
+};
+constexpr Closeness same_start{0.12, 0.05}, same_place{0.15, 0.1};
 
-bool same_start(const Pose2D& a, const Pose2D& b) {
-  constexpr double same_m = 0.12, same_rad = 0.05;
-  return distance_m(a, b) < same_m && std::abs(heading_difference_rad(a, b)) < same_rad;
+/// Adds a pose to those tried; false if one of them is close.
+bool add_new(std::vector<Pose2D>& tried, const Pose2D& pose, const Closeness& same) {
+  const auto is_close = [&](const Pose2D& other) {
+    return distance_m(other, pose) < same.distance_m &&
+           std::abs(heading_difference_rad(other, pose)) < same.heading_rad;
+  };
+  if (std::any_of(tried.begin(), tried.end(), is_close)) return false;
+  tried.push_back(pose);
+  return true;
 }
 
 /// From the best of the poses of votes to one at which candidates can be told apart. Nothing if it
 /// is far behind `leader`, the best score of such a pose so far, which it may raise.
 std::optional<ImprovedPose> refine(const ComparedView& view,
                                    const SpaceLines& lines,
-                                   std::span<const Pose2D> starts,
+                                   std::span<const VotePeak> starts,
                                    PredictedLines& room,
                                    float& leader) {
   ImprovedPose best;
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    const ImprovedPose start = improve(view, lines, starts[i], 0, wide_agreement(), room);
+    const ImprovedPose start =
+        improve(view, lines, starts[i].query_in_node, 0, wide_agreement(), room);
     if (i == 0 || start.score > best.score) best = start;
   }
   leader = std::max(leader, best.score);
@@ -118,7 +126,16 @@ LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) co
   std::vector<std::vector<RankedNode>> ranked;
   for (const Look& look : looks) ranked.push_back(ranker_->rank(look.view, options_.candidates));
 
-  // More of everything as long as the answer is not sure.
+  LocalisationAnswer result = search(ranked, query);
+  if (result.status == LocalisationStatus::unsure) {
+    result.next_turn_rad = telling_turn(result.modes, query);
+  }
+  return result;
+}
+
+/// Tries more of everything as long as the answer is not sure. `ranked` is of each look.
+LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>> ranked,
+                                         Query& query) const {
   struct Round {
     int candidates, finalists;
   };
@@ -130,10 +147,11 @@ LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) co
     rounds.push_back({options_.candidates, many_finalists});
   }
   const double sure = 1 - std::min(options_.max_error_rate, sure_error_rate);
-  LocalisationAnswer result = nothing;
+  LocalisationAnswer result;
+  result.status = LocalisationStatus::no_match;
   int tried = 0;
   for (const Round& round : rounds) {
-    for (std::size_t i = 0; i < looks.size(); ++i) {
+    for (std::size_t i = 0; i < query.looks.size(); ++i) {
       candidates(query.looks[i], ranked[i], tried, round.candidates, query);
     }
     tried = round.candidates;
@@ -168,19 +186,14 @@ void LineLocaliser::near_pose(const Pose2D& pose, const Seen& look, Query& query
   std::vector<VotePeak> peaks = vote(look.uprights, uprights_around(node, query), around);
   if (peaks.empty()) peaks.push_back({around, 0});
   // Candidates beside each other have the same peaks.
-  std::vector<Pose2D> starts;
-  for (const VotePeak& peak : peaks) {
-    const Pose2D first =
-        first_pose(compose(map_.nodes[node].pose, peak.query_in_node), look.turn_rad);
-    const auto same = [&](const Pose2D& other) { return same_start(other, first); };
-    if (std::any_of(query.started.begin(), query.started.end(), same)) continue;
-    query.started.push_back(first);
-    starts.push_back(peak.query_in_node);
-  }
-  if (starts.empty()) return;
-  ImprovedPose best{starts[0], peaks[0].votes, {}};
+  std::erase_if(peaks, [&](const VotePeak& peak) {
+    const Pose2D start = compose(map_.nodes[node].pose, peak.query_in_node);
+    return !add_new(query.started, first_pose(start, look.turn_rad), same_start);
+  });
+  if (peaks.empty()) return;
+  ImprovedPose best{peaks[0].query_in_node, peaks[0].votes, {}};
   if (options_.stages.refine) {
-    const auto refined = refine(look.view, lines, starts, query.room, query.leader);
+    const auto refined = refine(look.view, lines, peaks, query.room, query.leader);
     if (!refined) return;
     best = *refined;
   }
@@ -224,9 +237,7 @@ void LineLocaliser::compare_best(int most, Query& query) const {
       left.push_back(h);
       continue;
     }
-    const auto same = [&](const Pose2D& start) { return same_place(start, h.pose); };
-    if (std::any_of(query.finals.begin(), query.finals.end(), same)) continue;
-    query.finals.push_back(h.pose);
+    if (!add_new(query.finals, h.pose, same_place)) continue;
     query.compared.push_back(h);
     compare(query.compared.back(), query);
     ++compared;
@@ -311,7 +322,6 @@ LocalisationAnswer LineLocaliser::answer(Query& query) const {
   const bool sure =
       options_.max_error_rate >= 1 || result.probability >= 1 - options_.max_error_rate;
   result.status = sure ? LocalisationStatus::answered : LocalisationStatus::unsure;
-  if (!sure) result.next_turn_rad = telling_turn(result.modes, query);
   return result;
 }
 

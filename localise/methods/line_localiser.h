@@ -44,6 +44,7 @@ class LineLocaliser : public Localiser {
   /// Memory and intermediate results of one query.
   struct Query;
 
+  LocalisationAnswer search(std::span<const std::vector<RankedNode>> ranked, Query& query) const;
   void candidates(
       const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;

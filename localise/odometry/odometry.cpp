@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/odometry.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +15,7 @@
 #include "localise/odometry/step_consensus.h"
 #include "localise/odometry/step_refinement.h"
 #include "localise/place.h"
+#include "localise/place/corner_check.h"
 
 namespace vernier::localise {
 
@@ -44,18 +44,7 @@ void check(const Rig& rig,
     throw Error("odometry", "the covariance is not of the rig's parameters",
                 "give the covariance of the rig, or none");
   }
-  for (const auto corners : {from, to}) {
-    for (const StereoCorner& corner : corners) {
-      if (corner.left_px.allFinite() && corner.right_px.allFinite() &&
-          corner.covariance_px2.allFinite() &&
-          corner.covariance_px2.llt().info() == Eigen::Success) {
-        continue;
-      }
-      throw Error("odometry",
-                  "a corner has a pixel that is not a number, or a covariance that is none",
-                  "give finite pixels and positive definite covariances");
-    }
-  }
+  for (const auto corners : {from, to}) check_corners(corners, "odometry");
   for (const CornerLink& link : links) {
     if (link.from >= 0 && static_cast<std::size_t>(link.from) < from.size() && link.to >= 0 &&
         static_cast<std::size_t>(link.to) < to.size()) {

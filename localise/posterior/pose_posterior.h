@@ -25,8 +25,8 @@ struct Hypothesis {
 /// as standard errors are scaled by residuals (Birge, Physical Review 40, 1932), and a pose that
 /// was not tried weighs, times the best one,
 ///
-///     exp(steepness (q - lost_misfit) √(observations / 60)) + thin exp(-observations /
-///     thin_observations)
+///     exp(steepness (q - lost_misfit) √(observations / 60))
+///       + thin exp(-observations / thin_observations)
 ///
 /// since a misfit says that the map does not explain the view, and few lines fit in many places.
 /// All of it is chosen on generated offices of seeds 1 to 20, which judge nothing.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -29,7 +30,7 @@ constexpr std::size_t most_aliases = 1000;  ///< a ceiling below 0.1 % is none
 
 /// Whether two pairs of edges gave the same pose, up to rounding.
 bool is_one_pose(const Pose2D& a, const Pose2D& b) {
-  return distance_m(a, b) < 1e-6 && heading_difference_rad(a, b) < 1e-6;
+  return distance_m(a, b) < 1e-6 && std::abs(heading_difference_rad(a, b)) < 1e-6;
 }
 
 /// Whether all edges but a share of their length are explained.

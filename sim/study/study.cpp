@@ -180,7 +180,7 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
   std::map<std::string, MissingCeiling> missing;
   for (const StudyCell& cell : study.file.cells) {
     const std::string key = ceiling_key(study, cell.experiment);
-    if (missing.count(key) > 0 || noted_ceiling(study, notes, key)) continue;
+    if (missing.count(key) > 0) continue;
     MissingCeiling ceiling{&cell.experiment, noted_queries(study, notes, key), {}};
     for (int i = run.shard.index; i < ceiling_queries(study, key); i += run.shard.count) {
       if (ceiling.of_query[i] == not_known) ceiling.mine.push_back(i);

@@ -3,7 +3,7 @@
 #include "localise/ranking/panorama.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -83,10 +83,6 @@ void smooth(std::vector<float>& bins, bool circle) {
   }
 }
 
-std::uint16_t upper_half(float x) {
-  return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(x) + 0x8000u) >> 16);  // rounded
-}
-
 /// How many of some views see each bearing of the circle.
 std::vector<int> views_by_bearing(std::span<const MapNode* const> views, int in_view) {
   std::vector<int> count(Bins::bearings, 0);
@@ -129,6 +125,9 @@ Panorama panorama_at(std::span<const MapNode* const> views,
     }
   }
   smooth(circle, true);
+  constexpr float most_steps = 255;
+  const float largest = *std::max_element(circle.begin(), circle.end());
+  const float steps = most_steps / std::sqrt(std::max(largest, 1e-12f));
   Panorama result;
   result.at = {x_m, y_m, 0};
   constexpr double known_share = 0.5;  // of a window
@@ -144,7 +143,7 @@ Panorama panorama_at(std::span<const MapNode* const> views,
     }
     if (known < known_share * in_view || !(mass > 1e-6)) continue;
     result.windows.push_back(
-        {0, static_cast<std::uint16_t>(begin), static_cast<float>(1 / std::sqrt(mass))});
+        {0, static_cast<std::uint16_t>(begin), static_cast<float>(1 / (steps * std::sqrt(mass)))});
   }
   // Bearings that no window needs are not kept: runs of windows lie one after the other.
   int kept = 0;
@@ -156,8 +155,8 @@ Panorama panorama_at(std::span<const MapNode* const> views,
     for (int k = first_new; k < in_view; ++k, ++kept) {
       const int b = (window.bearing + k) % Bins::bearings;
       for (int c = 0; c < Bins::channels; ++c) {
-        result.bins.push_back(
-            upper_half(std::sqrt(circle[static_cast<std::size_t>(b) * Bins::channels + c])));
+        const float root = std::sqrt(circle[static_cast<std::size_t>(b) * Bins::channels + c]);
+        result.bins.push_back(static_cast<std::uint8_t>(root * steps + 0.5f));
       }
     }
   }
@@ -214,29 +213,35 @@ std::vector<Panorama> panoramas(std::span<const MapNode* const> views, int in_vi
   return all;
 }
 
-std::vector<PanoramaMatch> matches(std::span<const float> view, std::span<const Panorama> all) {
+PanoramaMatch best_match(std::span<const float> view,
+                         const Panorama& panorama,
+                         int bearing,
+                         int reach) {
   const int in_view = static_cast<int>(view.size()) / Bins::channels;
-  std::vector<PanoramaMatch> found;
-  std::vector<float> products;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::vector<Panorama::Window>& windows = all[i].windows;
-    products.resize(windows.size());
-    window_products(view, all[i], products);
-    for (std::size_t k = 0; k < windows.size(); ++k) products[k] *= windows[k].per_norm;
-    // Peaks over the circle, the best first.
-    for (int peak = 0; peak < 3; ++peak) {
-      const auto best = std::max_element(products.begin(), products.end());
-      if (best == products.end() || !(*best > 0)) break;
-      const int bearing = windows[static_cast<std::size_t>(best - products.begin())].bearing;
-      const auto heading = static_cast<float>((bearing + 0.5 * in_view) * bearing_rad);
-      found.push_back({static_cast<int>(i), *best, heading});
-      for (std::size_t k = 0; k < windows.size(); ++k) {
-        const int apart = std::abs(windows[k].bearing - bearing);
-        if (std::min(apart, Bins::bearings - apart) <= in_view / 3) products[k] = 0;
-      }
+  const std::vector<Panorama::Window>& windows = panorama.windows;
+  const auto is_near = [&](const Panorama::Window& window) {
+    const int apart = std::abs(window.bearing - bearing);
+    return std::min(apart, Bins::bearings - apart) <= reach;
+  };
+  PanoramaMatch best;
+  for (std::size_t i = 0; i < windows.size();) {
+    std::size_t end = i;
+    while (end < windows.size() && is_near(windows[end])) ++end;
+    if (end == i) {
+      ++i;
+      continue;
     }
+    std::array<float, Bins::bearings> products;
+    window_products(view, panorama, i, std::span(products).first(end - i));
+    for (std::size_t k = i; k < end; ++k) {
+      const float likeness = products[k - i] * windows[k].per_norm;
+      if (!(likeness > best.likeness)) continue;
+      best.likeness = likeness;
+      best.heading_rad = static_cast<float>((windows[k].bearing + 0.5 * in_view) * bearing_rad);
+    }
+    i = end;
   }
-  return found;
+  return best;
 }
 
 }  // namespace vernier::localise::internal

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -34,10 +35,10 @@ std::vector<float> view_descriptor(std::span<const PlaceLine> lines, int bearing
 /// The same around a position of the map, in the world's directions, from all views there. Parts
 /// of the circle of which nothing is known are left out.
 struct Panorama {
-  Pose2D at;                        ///< heading 0
-  std::vector<std::uint16_t> bins;  ///< roots, upper halves of floats: bearings x channels
+  Pose2D at;                       ///< heading 0
+  std::vector<std::uint8_t> bins;  ///< roots in equal steps up to the largest: bearings x channels
   /// Fields of view that are known: the bearing in `bins` at which one begins, its bearing in the
-  /// world, and the inverse of its norm.
+  /// world, and the inverse of its norm in steps.
   struct Window {
     std::uint16_t begin = 0, bearing = 0;
     float per_norm = 0;
@@ -45,24 +46,28 @@ struct Panorama {
   std::vector<Window> windows;
 };
 
-/// Panoramas at the position of some views and beside it, where lines are seen from another side.
+/// Panoramas at the position of some views, the first, and beside it, where lines are seen from
+/// another side.
 std::vector<Panorama> panoramas(std::span<const MapNode* const> views, int bearings_in_view);
 
-/// A position and heading that look like a view.
+/// A heading at which a panorama looks like a view.
 struct PanoramaMatch {
-  int panorama = 0;
   float likeness = 0;  ///< Bhattacharyya coefficient
   float heading_rad = 0;
 };
 
-/// Compares a view with every window of every panorama: the best of each panorama, and others of
-/// it that are a field of view apart. SIMD selected at run time (calib/base/instruction_set.h).
-std::vector<PanoramaMatch> matches(std::span<const float> view_descriptor,
-                                   std::span<const Panorama> panoramas);
+/// The best of a panorama's windows that begin at most `reach` bins from a bearing; likeness 0
+/// without any.
+PanoramaMatch best_match(std::span<const float> view_descriptor,
+                         const Panorama& panorama,
+                         int bearing,
+                         int reach);
 
-/// Dot products of a view's descriptor with some windows.
+/// Dot products of a view's descriptor with the windows from a first one on, in steps. SIMD
+/// selected at run time (calib/base/instruction_set.h).
 void window_products(std::span<const float> view,
                      const Panorama& panorama,
+                     std::size_t first,
                      std::span<float> products);
 
 }  // namespace vernier::localise::internal

@@ -8,20 +8,22 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier::localise::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void four_products(const float* view, int n, const std::uint16_t* const* windows, float* products) {
+void four_products(const float* view, int n, const std::uint8_t* const* windows, float* products) {
   const hn::ScalableTag<float> d;
-  const hn::RebindToUnsigned<decltype(d)> whole;
-  const hn::Rebind<std::uint16_t, decltype(d)> half;
+  const hn::Rebind<std::int32_t, decltype(d)> whole;
+  const hn::Rebind<std::uint8_t, decltype(d)> quarter;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto load = [&](const std::uint16_t* from) {
-    return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(whole, hn::LoadU(half, from))));
+  const auto load = [&](const std::uint8_t* from) {
+    return hn::ConvertTo(d, hn::PromoteTo(whole, hn::LoadU(quarter, from)));
   };
   auto s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
   for (int i = 0; i < n; i += lanes) {
@@ -48,12 +50,13 @@ HWY_EXPORT(four_products);
 
 void window_products(std::span<const float> view,
                      const Panorama& panorama,
+                     std::size_t first,
                      std::span<float> products) {
-  const std::size_t count = panorama.windows.size();
+  const std::size_t count = products.size();
   for (std::size_t i = 0; i < count; i += 4) {
-    const std::uint16_t* windows[4];
+    const std::uint8_t* windows[4];
     for (std::size_t k = 0; k < 4; ++k) {
-      const Panorama::Window& window = panorama.windows[i + k < count ? i + k : count - 1];
+      const Panorama::Window& window = panorama.windows[first + std::min(i + k, count - 1)];
       windows[k] =
           panorama.bins.data() + static_cast<std::size_t>(window.begin) * PanoramaBins::channels;
     }

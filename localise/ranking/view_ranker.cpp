@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "localise/place.h"
+#include "localise/ranking/coarse_panorama.h"
 #include "localise/ranking/node_ranker.h"
 #include "localise/ranking/panorama.h"
 #include "localise/topological_map.h"
@@ -26,36 +26,46 @@ ViewRanker::ViewRanker(const TopologicalMap& map)
       done[k] = true;
       here.push_back(&map.nodes[k]);
     }
-    for (Panorama& panorama : panoramas(here, in_view_)) panoramas_.push_back(std::move(panorama));
+    places_.push_back(panoramas(here, in_view_));
+    coarse_.add(places_.back().front());
   }
 }
 
 std::vector<RankedNode> ViewRanker::rank(const PlaceView& query, int most) const {
+  if (most <= 0) return {};
   const std::vector<float> descriptor = view_descriptor(query.lines, in_view_);
-  std::vector<PanoramaMatch> found = matches(descriptor, panoramas_);
-  const auto better = [](const PanoramaMatch& a, const PanoramaMatch& b) {
-    return a.likeness != b.likeness ? a.likeness > b.likeness : a.panorama < b.panorama;
+  constexpr std::size_t least_tried = 256, tried_per_answer = 8;
+  constexpr int reach = 3;  // of fine bins around a coarse window
+  const std::size_t tried =
+      std::max(least_tried, tried_per_answer * static_cast<std::size_t>(most));
+  struct Found {
+    Pose2D pose;
+    float likeness;
   };
+  std::vector<Found> found;
+  for (const CoarseMatch& coarse : coarse_.best(CoarseView(descriptor), tried)) {
+    for (const Panorama& panorama : places_[coarse.place]) {
+      const PanoramaMatch match = best_match(descriptor, panorama, coarse.bearing, reach);
+      if (!(match.likeness > 0)) continue;
+      found.push_back({{panorama.at.x_m, panorama.at.y_m, match.heading_rad}, match.likeness});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.likeness > b.likeness; });
   // Neighbours look alike: of poses close to each other the best is kept.
   constexpr double apart_m = 0.5, apart_rad = 0.25;
-  constexpr std::size_t spare = 8;
-  const std::size_t sorted =
-      std::min(found.size(), spare * static_cast<std::size_t>(std::max(most, 0)));
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(sorted), found.end(),
-                    better);
   std::vector<RankedNode> ranked;
   std::vector<Pose2D> kept;
-  for (std::size_t i = 0; i < sorted && static_cast<int>(ranked.size()) < most; ++i) {
-    Pose2D pose = panoramas_[found[i].panorama].at;
-    pose.heading_rad = found[i].heading_rad;
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Pose2D& k) {
+  for (const auto& [pose, likeness] : found) {
+    if (static_cast<int>(ranked.size()) == most) break;
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&, &pose = pose](const Pose2D& k) {
       return distance_m(k, pose) < apart_m && std::abs(heading_difference_rad(k, pose)) < apart_rad;
     });
     if (!is_new) continue;
     const int node = grid_.nearest(pose);
     if (node < 0) continue;
     kept.push_back(pose);
-    ranked.push_back({node, found[i].likeness, relative(pose, map_.nodes[node].pose)});
+    ranked.push_back({node, likeness, relative(pose, map_.nodes[node].pose)});
   }
   return ranked;
 }

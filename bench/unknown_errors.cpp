@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+// unknown_errors FIRST LAST QUERIES: what localisation makes of errors that its model does not
+// have.
+//
+//   none     the simulated sources alone, which it knows
+//   clutter  a fifth more lines in the query, which nothing in the world explains: each is a line
+//   of
+//            the query itself, turned about the robot and moved, so that it looks like an edge
+//   moved    a tenth of the furniture displaced by 0.3 to 1 m and turned since the map was recorded
+//
+// In offices of seeds FIRST to LAST, protocol `path`, stated error at most 0.005. Prints a line a
+// condition: the mean over worlds with its standard error over them.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/statistics/random.h"
+#include "datasets/shipped.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "sim/world/office.h"
+
+namespace {
+
+using namespace vernier;
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
+
+constexpr double clutter_share = 0.2, moved_share = 0.1;
+
+/// Adds false lines to every view before a localiser sees it.
+class WithClutter : public localise::Localiser {
+ public:
+  WithClutter(const localise::Localiser& localiser, std::uint64_t seed)
+      : localiser_(localiser), seed_(seed) {}
+
+  localise::LocalisationAnswer localise(const localise::PlaceView& query) const override {
+    localise::PlaceView cluttered = query;
+    const auto lines = static_cast<std::uint32_t>(query.lines.size());
+    vernier::internal::RandomStream draws({.seed = seed_, .trial = lines});
+    const auto added = static_cast<std::uint32_t>(std::lround(clutter_share * lines));
+    for (std::uint32_t i = 0; i < added; ++i) {
+      const auto of = static_cast<std::size_t>(draws.uniform(0, lines - 1e-9));
+      localise::PlaceLine line = query.lines[of];
+      const double turn = draws.uniform(-0.3, 0.3), nearer = draws.uniform(0.7, 1);
+      const double c = nearer * std::cos(turn), s = nearer * std::sin(turn);
+      const double up = draws.uniform(-0.3, 0.3);
+      for (Eigen::Vector3d* end : {&line.a_m, &line.b_m}) {
+        *end = {c * end->x() - s * end->y(), s * end->x() + c * end->y(), end->z() + up};
+      }
+      cluttered.lines.push_back(line);
+    }
+    return localiser_.localise(cluttered);
+  }
+
+ private:
+  const localise::Localiser& localiser_;
+  std::uint64_t seed_;
+};
+
+/// The world with a part of its furniture elsewhere.
+WorldDescription rearranged(WorldDescription world, std::uint64_t seed) {
+  const std::set<std::string> fixed{"door_frame",   "door_leaf_right", "door_leaf_left",
+                                    "window",       "radiator",        "ceiling_light",
+                                    "ceiling_vent", "door_sign",       "notice_board",
+                                    "whiteboard",   "socket",          "light_switch"};
+  for (std::size_t i = 0; i < world.instances.size(); ++i) {
+    WorldInstance& instance = world.instances[i];
+    vernier::internal::RandomStream draws({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
+    const bool moves = draws.uniform() < moved_share;
+    const double far = draws.uniform(0.3, 1), way = draws.uniform(0, 2 * std::numbers::pi);
+    const double turn = draws.uniform(-0.8, 0.8);
+    if (!moves || fixed.contains(instance.template_name)) continue;
+    instance.at_m += Eigen::Vector3d(far * std::cos(way), far * std::sin(way), 0);
+    instance.yaw_rad += turn;
+  }
+  return world;
+}
+
+struct Counts {
+  int right = 0, answered = 0, answered_right = 0;
+};
+
+Counts count(const LocalisationExperiment& experiment,
+             const localise::TopologicalMap& map,
+             const localise::Localiser& localiser,
+             std::uint32_t queries) {
+  Counts counts;
+  for (std::uint32_t trial = 0; trial < queries; ++trial) {
+    const TrialResult result =
+        experiment.run_trial(trial, experiment.estimator_rig(trial), map, localiser);
+    counts.right += result.error_m <= success_radius_m;
+    counts.answered += result.answered();
+    counts.answered_right += result.success();
+  }
+  return counts;
+}
+
+/// All conditions in one world.
+std::array<Counts, 3> conditions(std::uint64_t seed, std::uint32_t queries) {
+  ExperimentSettings settings;
+  settings.sources.calibration = 1;
+  settings.seed = seed;
+  settings.localiser.max_error_rate = 0.005;
+  const WorldDescription description = make_office(seed);
+  const World world = build_world(description), later = build_world(rearranged(description, seed));
+  const Visibility visibility(world), later_visibility(later);
+  const RigEstimate rig = datasets::nominal();
+  const auto views = std::make_shared<MapViews>(map_views(visibility, rig.rig, settings));
+  const LocalisationExperiment now(visibility, rig, views, settings);
+  const LocalisationExperiment afterwards(later_visibility, rig, views, settings);
+  const localise::TopologicalMap map = now.record_map(0, now.map_estimator_rig(0));
+  const auto localiser = localise::make_localiser("lines", map, settings.localiser);
+  const WithClutter cluttered(*localiser, seed);
+  return {count(now, map, *localiser, queries), count(now, map, cluttered, queries),
+          count(afterwards, map, *localiser, queries)};
+}
+
+void print(const char* name, const std::vector<Counts>& worlds, std::uint32_t queries) {
+  Counts sum;
+  std::vector<double> success;
+  double mean = 0;
+  for (const Counts& world : worlds) {
+    sum.right += world.right;
+    sum.answered += world.answered;
+    sum.answered_right += world.answered_right;
+    success.push_back(100.0 * world.right / queries);
+    mean += success.back() / static_cast<double>(worlds.size());
+  }
+  double squares = 0;
+  for (const double s : success) squares += (s - mean) * (s - mean);
+  const auto n = static_cast<double>(worlds.size());
+  const double all = n * queries;
+  std::printf(
+      "%s: %.0f queries, best guess right %.2f %% (standard error over worlds %.2f), "
+      "%d of %d answers right (%.2f %%), coverage %.2f %%\n",
+      name, all, mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : 0, sum.answered_right,
+      sum.answered, 100.0 * sum.answered_right / std::max(1, sum.answered),
+      100.0 * sum.answered / all);
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 4) {
+    std::fprintf(stderr, "usage: unknown_errors FIRST LAST QUERIES\n");
+    return 2;
+  }
+  try {
+    const auto queries = static_cast<std::uint32_t>(std::atoi(words[3]));
+    std::array<std::vector<Counts>, 3> all;
+    for (int seed = std::atoi(words[1]); seed <= std::atoi(words[2]); ++seed) {
+      const auto world = conditions(static_cast<std::uint64_t>(seed), queries);
+      for (std::size_t i = 0; i < world.size(); ++i) all[i].push_back(world[i]);
+    }
+    const char* names[] = {"none", "clutter", "moved"};
+    for (std::size_t i = 0; i < all.size(); ++i) print(names[i], all[i], queries);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "unknown_errors: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #ifndef VERNIER_LOCALISE_MAP_KNOWN_LINES_COLUMNS
@@ -74,23 +75,37 @@ namespace vernier::localise::internal {
 
 HWY_EXPORT(any_contains);
 
-void KnownLines::add(const Eigen::Vector3f& a_m, const Eigen::Vector3f& b_m, float sigma_m) {
+namespace {
+/// |uz| of 45 degrees parts the lines that are looked for; known ones are in both sets if they may
+/// be parallel to either (10 degrees, and some more).
+constexpr float parting = 0.70711f, steep_from = 0.55f, level_to = 0.83f;
+}  // namespace
+
+void KnownLines::Columns::add(const Eigen::Vector3f& a,
+                              const Eigen::Vector3f& u,
+                              float length,
+                              float sigma) {
   constexpr std::size_t lanes = 16;  // of the widest instruction set
-  const std::size_t room = (size_ / lanes + 1) * lanes;
-  if (ax_.size() < room) {
+  const std::size_t room = (size / lanes + 1) * lanes;
+  if (ax.size() < room) {
     // Lines without direction, to which none is parallel.
-    for (auto* column : {&ax_, &ay_, &az_, &ux_, &uy_, &uz_, &length_m_, &sigma_m_}) {
+    for (auto* column : {&ax, &ay, &az, &ux, &uy, &uz, &length_m, &sigma_m}) {
       column->resize(2 * room, 0.0f);
     }
   }
+  const float values[] = {a.x(), a.y(), a.z(), u.x(), u.y(), u.z(), length, sigma};
+  std::size_t k = 0;
+  for (auto* column : {&ax, &ay, &az, &ux, &uy, &uz, &length_m, &sigma_m}) {
+    (*column)[size] = values[k++];
+  }
+  ++size;
+}
+
+void KnownLines::add(const Eigen::Vector3f& a_m, const Eigen::Vector3f& b_m, float sigma_m) {
   const float length = (b_m - a_m).norm();
   const Eigen::Vector3f u = (b_m - a_m) / std::max(length, 1e-6f);
-  const float values[] = {a_m.x(), a_m.y(), a_m.z(), u.x(), u.y(), u.z(), length, sigma_m};
-  std::size_t k = 0;
-  for (auto* column : {&ax_, &ay_, &az_, &ux_, &uy_, &uz_, &length_m_, &sigma_m_}) {
-    (*column)[size_] = values[k++];
-  }
-  ++size_;
+  if (std::abs(u.z()) >= steep_from) steep_.add(a_m, u, length, sigma_m);
+  if (std::abs(u.z()) <= level_to) level_.add(a_m, u, length, sigma_m);
 }
 
 bool KnownLines::contain(const Eigen::Vector3f& a_m,
@@ -99,8 +114,10 @@ bool KnownLines::contain(const Eigen::Vector3f& a_m,
   constexpr float excess_share = 0.15f, excess_m = 0.1f;
   const float length = (b_m - a_m).norm();
   const Eigen::Vector3f u = (b_m - a_m) / std::max(length, 1e-6f), m = 0.5f * (a_m + b_m);
-  const KnownColumns known{ax_.data(), ay_.data(),       az_.data(),      ux_.data(), uy_.data(),
-                           uz_.data(), length_m_.data(), sigma_m_.data(), size_};
+  const Columns& set = std::abs(u.z()) >= parting ? steep_ : level_;
+  const KnownColumns known{set.ax.data(),       set.ay.data(),      set.az.data(),
+                           set.ux.data(),       set.uy.data(),      set.uz.data(),
+                           set.length_m.data(), set.sigma_m.data(), set.size};
   const SoughtLine sought{m.x(),  m.y(), m.z(),         u.x(),
                           u.y(),  u.z(), 0.5f * length, excess_share * length + excess_m,
                           sigma_m};

@@ -20,9 +20,16 @@ class KnownLines {
   bool contain(const Eigen::Vector3f& a_m, const Eigen::Vector3f& b_m, float sigma_m) const;
 
  private:
-  std::size_t size_ = 0;
-  /// An end, the direction, the length, the standard deviation; longer than size_ by whole vectors.
-  std::vector<float> ax_, ay_, az_, ux_, uy_, uz_, length_m_, sigma_m_;
+  struct Columns {
+    std::size_t size = 0;
+    /// An end, the direction, the length, the standard deviation; longer than `size` by whole
+    /// vectors.
+    std::vector<float> ax, ay, az, ux, uy, uz, length_m, sigma_m;
+
+    void add(const Eigen::Vector3f& a_m, const Eigen::Vector3f& u, float length, float sigma);
+  };
+  /// Lines of one set are parallel to none of the other; those between are in both.
+  Columns steep_, level_;
 };
 
 }  // namespace vernier::localise::internal

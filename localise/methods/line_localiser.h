@@ -30,6 +30,7 @@ class LineLocaliser : public Localiser {
  private:
   /// A look as it is compared.
   struct Seen {
+    const PlaceView* taken;
     ComparedView view;
     std::vector<PlanUpright> uprights;
     double turn_rad = 0;
@@ -47,6 +48,7 @@ class LineLocaliser : public Localiser {
   LocalisationAnswer search(std::span<const std::vector<RankedNode>> ranked, Query& query) const;
   void candidates(
       const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
+  void wide_candidates(const Seen& seen, Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;

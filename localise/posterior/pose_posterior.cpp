@@ -12,6 +12,7 @@ namespace vernier::localise::internal {
 
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
+                                         std::size_t nodes,
                                          const PosteriorOptions& options) {
   constexpr std::size_t most_modes = 20;
   constexpr double same_m = 0.3, same_rad = 0.2, success_m = 1;
@@ -35,8 +36,8 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   const double seen = std::max(0.0, observations);
   const double lost = std::exp(options.steepness * (misfit - options.lost_misfit) *
                                std::sqrt(seen / usual_observations));
-  double total =
-      options.never_certain + lost + options.thin * std::exp(-seen / options.thin_observations);
+  const double thin = options.thin * std::exp(-seen / options.thin_observations);
+  double total = lost + static_cast<double>(nodes) * (thin + options.unknown);
   for (const WeightedMode& m : modes) {
     weights.push_back(std::exp(share * (m.best.score - best)));
     total += weights.back();

@@ -34,7 +34,7 @@ ViewRanker::ViewRanker(const TopologicalMap& map)
 std::vector<RankedNode> ViewRanker::rank(const PlaceView& query, int most) const {
   if (most <= 0) return {};
   const std::vector<float> descriptor = view_descriptor(query.lines, in_view_);
-  constexpr std::size_t least_tried = 256, tried_per_answer = 8;
+  constexpr std::size_t least_tried = 512, tried_per_answer = 3;
   constexpr int reach = 3;  // of fine bins around a coarse window
   const std::size_t tried =
       std::max(least_tried, tried_per_answer * static_cast<std::size_t>(most));

@@ -5,47 +5,61 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "localise/place.h"
 #include "localise/place/space_lines.h"
+#include "localise/verification/upright_pairs.h"
 
 namespace vernier::localise::internal {
 
 namespace {
 
-/// Positions of lines that may be the same, in cells, and the weight of their vote.
-struct Pairing {
-  int line;  ///< of the query
-  float query_x, query_y, node_x, node_y, weight;
+/// Lines that may be the same. A line of the query votes once for a cell, with this weight.
+struct Pairings {
+  PairColumns positions;
+  std::vector<std::int32_t> line;  // of the query, ascending
+  std::vector<float> weight;
 };
 
-std::vector<Pairing> pairings(std::span<const PlanUpright> query,
-                              std::span<const PlanUpright> node,
-                              const Pose2D& around,
-                              const VoteOptions& o) {
+Pairings pairings(std::span<const PlanUpright> query,
+                  std::span<const PlanUpright> node,
+                  const Pose2D& around,
+                  const VoteOptions& o) {
   constexpr float blur_m = 0.15f;  // a line whose distance is known worse votes less
   const auto cell = static_cast<float>(o.cell_m);
   const auto x0 = static_cast<float>(around.x_m), y0 = static_cast<float>(around.y_m);
   const auto c = static_cast<float>(std::cos(around.heading_rad));
   const auto s = static_cast<float>(std::sin(around.heading_rad));
-  // How far the turns move a line of the query, by its range, and the shifts at most.
-  const auto turned =
-      2 * std::sin(0.5f * static_cast<float>(o.turn_steps) * static_cast<float>(o.turn_step_rad));
-  const float shifted = static_cast<float>(o.span_m) + cell;
-  std::vector<Pairing> pairs;
+  // A line of the query moves along an arc as it turns, and by the shifts to every side.
+  const float turned = static_cast<float>(o.turn_steps) * static_cast<float>(o.turn_step_rad);
+  const float shifted = std::numbers::sqrt2_v<float> * (static_cast<float>(o.span_m) + cell);
+  const UprightColumns columns(node);
+  Pairings pairs;
+  std::vector<std::int32_t> room;
   for (std::size_t i = 0; i < query.size(); ++i) {
     const PlanUpright& q = query[i];
-    const float x = x0 + c * q.x_m - s * q.y_m, y = y0 + s * q.x_m + c * q.y_m;
-    const float reach = shifted + turned * std::sqrt(q.x_m * q.x_m + q.y_m * q.y_m);
-    for (const PlanUpright& n : node) {
-      if (std::abs(n.x_m - x) > reach || std::abs(n.y_m - y) > reach) continue;
-      if (!heights_agree(q, n)) continue;
-      pairs.push_back({static_cast<int>(i), q.x_m / cell, q.y_m / cell, (n.x_m - x0) / cell,
-                       (n.y_m - y0) / cell, 1 / (1 + (q.sigma_m + n.sigma_m) / blur_m)});
+    const float range = std::sqrt(q.x_m * q.x_m + q.y_m * q.y_m);
+    UprightColumns::Strip strip;
+    strip.ux = range > 0 ? (c * q.x_m - s * q.y_m) / range : 1;
+    strip.uy = range > 0 ? (s * q.x_m + c * q.y_m) / range : 0;
+    const float from = strip.ux * x0 + strip.uy * y0;
+    strip.along_low = from + range * std::cos(turned) - shifted;
+    strip.along_high = from + range + shifted;
+    strip.across = strip.ux * y0 - strip.uy * x0;
+    strip.across_most = range * std::sin(turned) + shifted;
+    for (const std::int32_t k : columns.within(strip, q, room)) {
+      const PlanUpright& n = node[k];
+      pairs.positions.add(q.x_m / cell, q.y_m / cell, (n.x_m - x0) / cell, (n.y_m - y0) / cell);
+      pairs.line.push_back(static_cast<std::int32_t>(i));
+      pairs.weight.push_back(1 / (1 + (q.sigma_m + n.sigma_m) / blur_m));
     }
   }
+  pairs.positions.pad();
   return pairs;
 }
 
@@ -83,34 +97,29 @@ std::vector<PlanUpright> plan_uprights(const SpaceLines& lines) {
 }
 
 bool heights_agree(const PlanUpright& a, const PlanUpright& b) {
-  constexpr float share = 0.3f;
   const float common = std::min(a.high_m, b.high_m) - std::max(a.low_m, b.low_m);
-  return common >= share * std::min(a.high_m - a.low_m, b.high_m - b.low_m);
+  return common >= least_common_height * std::min(a.high_m - a.low_m, b.high_m - b.low_m);
 }
 
 std::vector<VotePeak> vote(std::span<const PlanUpright> query,
                            std::span<const PlanUpright> node,
                            const Pose2D& around,
                            const VoteOptions& o) {
-  const std::vector<Pairing> pairs = pairings(query, node, around, o);
+  const Pairings pairs = pairings(query, node, around, o);
   const int half = static_cast<int>(std::lround(o.span_m / o.cell_m)), side = 2 * half + 3;
+  const auto cells = static_cast<std::size_t>(side) * side;
   std::vector<float> votes;
-  std::vector<int> last;  // line that voted for a cell: each counts once
+  std::vector<std::int32_t> at_cell, of_pair, last;  // line that voted for a cell: each counts once
   std::vector<Cell> found;
   for (int turn = -o.turn_steps; turn <= o.turn_steps; ++turn) {
     const double angle = around.heading_rad + turn * o.turn_step_rad;
     const auto c = static_cast<float>(std::cos(angle)), s = static_cast<float>(std::sin(angle));
-    votes.assign(static_cast<std::size_t>(side) * side, 0.0f);
-    last.assign(votes.size(), -1);
-    const float most = static_cast<float>(half) + 0.5f;
-    for (const Pairing& p : pairs) {
-      const float x = p.node_x - (c * p.query_x - s * p.query_y);
-      const float y = p.node_y - (s * p.query_x + c * p.query_y);
-      if (!(std::abs(x) < most && std::abs(y) < most)) continue;
-      const float first = static_cast<float>(half) + 1.5f;  // above 0.5 with x and y
-      const int column = static_cast<int>(x + first), row = static_cast<int>(y + first);
-      const std::size_t at = static_cast<std::size_t>(row) * side + column;
-      if (std::exchange(last[at], p.line) != p.line) votes[at] += p.weight;
+    votes.assign(cells, 0.0f);
+    last.assign(cells, -1);
+    const std::size_t inside = pairs.positions.shift_cells(c, s, side, at_cell, of_pair);
+    for (std::size_t i = 0; i < inside; ++i) {
+      const std::int32_t at = at_cell[i], line = pairs.line[of_pair[i]];
+      if (std::exchange(last[at], line) != line) votes[at] += pairs.weight[of_pair[i]];
     }
     for (int y = 1; y < side - 1; ++y) {
       for (int x = 1; x < side - 1; ++x) {
@@ -124,13 +133,14 @@ std::vector<VotePeak> vote(std::span<const PlanUpright> query,
     }
   }
   constexpr std::size_t most_cells = 100;
-  const std::size_t sorted = std::min(most_cells, found.size());
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(sorted), found.end(),
-                    [](const Cell& a, const Cell& b) {
-                      return std::tie(b.votes, a.turn, a.y, a.x) <
-                             std::tie(a.votes, b.turn, b.y, b.x);
-                    });
-  found.resize(sorted);
+  const auto better = [](const Cell& a, const Cell& b) {
+    return std::tie(b.votes, a.turn, a.y, a.x) < std::tie(a.votes, b.turn, b.y, b.x);
+  };
+  if (found.size() > most_cells) {
+    std::nth_element(found.begin(), found.begin() + most_cells, found.end(), better);
+    found.resize(most_cells);
+  }
+  std::sort(found.begin(), found.end(), better);
   constexpr double apart_m = 0.25;
   std::vector<VotePeak> peaks;
   std::vector<Cell> kept;

@@ -19,7 +19,8 @@ struct PlanUpright {
 std::vector<PlanUpright> plan_uprights(std::span<const PlaceLine> lines);
 std::vector<PlanUpright> plan_uprights(const SpaceLines& lines);
 
-/// Whether two vertical lines may be parts of one: they share 30 % of the shorter one's height.
+/// Vertical lines may be parts of one that share so much of the shorter one's height.
+inline constexpr float least_common_height = 0.3f;
 bool heights_agree(const PlanUpright& a, const PlanUpright& b);
 
 struct VoteOptions {

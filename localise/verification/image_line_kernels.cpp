@@ -8,8 +8,10 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "localise/place.h"
 #include "localise/place/space_lines.h"
@@ -37,6 +39,26 @@ struct Part {
     t0 = hn::IfThenElse(out0, hn::Max(t0, at), t0);
     t1 = hn::IfThenElse(out1, hn::Min(t1, at), t1);
   }
+};
+
+/// Lanes that are kept, in front of a vector. (Highway's Compress is slow with GCC, which copies
+/// its tables for each call.)
+struct KeptLanes {
+  decltype(hn::SetTableIndices(Tag(), static_cast<const std::int32_t*>(nullptr))) indices;
+  int count = 0;
+
+  KeptLanes(Tag d, hn::Mask<Tag> kept) {
+    alignas(64) std::int32_t lanes[hn::MaxLanes(Tag())] = {};
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, kept, bytes);
+    for (unsigned bits = bytes[0] | bytes[1] << 8; bits != 0; bits &= bits - 1) {
+      lanes[count++] = std::countr_zero(bits);
+    }
+    indices = hn::SetTableIndices(d, lanes);
+  }
+
+  /// The others follow in no order.
+  V in_front(V column) const { return hn::TableLookupLanes(column, indices); }
 };
 
 /// a + t (b - a).
@@ -106,16 +128,21 @@ void predict(const SpaceLines& lines,
     const auto is_steep = hn::Lt(hn::Abs(dx), set(steep_most));
     const auto seen_as_steep = hn::Lt(hn::Abs(dx), set(steep_query));
     const auto store = [&](ImageLines& out, int& size, hn::Mask<Tag> which, V counts) {
-      hn::CompressStore(u, which, d, out.u.data() + size);
-      hn::CompressStore(v, which, d, out.v.data() + size);
-      hn::CompressStore(w, which, d, out.w.data() + size);
-      hn::CompressStore(dw, which, d, out.dw.data() + size);
-      hn::CompressStore(dx, which, d, out.dx.data() + size);
-      hn::CompressStore(dy, which, d, out.dy.data() + size);
-      hn::CompressStore(per_length, which, d, out.per_length.data() + size);
-      hn::CompressStore(hn::Mul(sigma, sigma), which, d, out.variance_m2.data() + size);
-      hn::CompressStore(counts, which, d, out.counted.data() + size);
-      size += static_cast<int>(hn::CompressStore(length, which, d, out.length_px.data() + size));
+      const KeptLanes chosen(d, which);
+      const auto put = [&](V column, std::vector<float>& to) {
+        hn::StoreU(chosen.in_front(column), d, to.data() + size);
+      };
+      put(u, out.u);
+      put(v, out.v);
+      put(w, out.w);
+      put(dw, out.dw);
+      put(dx, out.dx);
+      put(dy, out.dy);
+      put(per_length, out.per_length);
+      put(hn::Mul(sigma, sigma), out.variance_m2);
+      put(counts, out.counted);
+      put(length, out.length_px);
+      size += chosen.count;
     };
     store(predicted.steep, steep, hn::And(kept, is_steep),
           hn::IfThenElseZero(seen_as_steep, counted));

@@ -201,25 +201,29 @@ TEST(PosePosterior, SharesOutProbability) {
   const PosteriorOptions options;
   const std::vector<Hypothesis> two{
       {{0, 0, 0}, 0, -50}, {{0.1, 0, 0}, 0, -60}, {{8, 0, 0}, 1, -50}};
-  const auto modes = pose_posterior(two, 300, options);
+  const auto modes = pose_posterior(two, 300, 200, options);
   ASSERT_EQ(modes.size(), 2u);  // the second is the first's
-  EXPECT_NEAR(modes[0].probability, 0.5, options.never_certain);
-  EXPECT_NEAR(modes[1].probability, 0.5, options.never_certain);
+  EXPECT_NEAR(modes[0].probability, 0.5, 200 * options.unknown);
+  EXPECT_NEAR(modes[1].probability, 0.5, 200 * options.unknown);
   // A score that is bad for a view of so many lines leaves the truth elsewhere.
   const std::vector<Hypothesis> bad{{{0, 0, 0}, 0, -1500}};
-  EXPECT_LT(pose_posterior(bad, 300, options)[0].probability, 1e-6);
-  EXPECT_TRUE(pose_posterior({}, 300, options).empty());
+  EXPECT_LT(pose_posterior(bad, 300, 200, options)[0].probability, 1e-6);
+  EXPECT_TRUE(pose_posterior({}, 300, 200, options).empty());
   // The worse the views fit, the less a difference of scores counts.
   double before = 1;
   for (const double score : {-30.0, -200.0, -400.0}) {
-    const std::vector<Hypothesis> rivals{{{0, 0, 0}, 0, score}, {{8, 0, 0}, 1, score - 10}};
-    const double now = pose_posterior(rivals, 300, options)[0].probability;
+    const std::vector<Hypothesis> rivals{{{0, 0, 0}, 0, score}, {{8, 0, 0}, 1, score - 4}};
+    const double now = pose_posterior(rivals, 300, 200, options)[0].probability;
     EXPECT_LT(now, before - 0.01) << score;
     before = now;
   }
+  // In a larger map more places are like another.
+  const std::vector<Hypothesis> alone{{{0, 0, 0}, 0, -5}};
+  EXPECT_GT(pose_posterior(alone, 40, 200)[0].probability,
+            pose_posterior(alone, 40, 20000)[0].probability + 0.01);
   // Two poses close to each other are more probable together than one that scores better alone.
   const std::vector<Hypothesis> pair{{{0, 0, 0}, 0, 0}, {{8, 0, 0}, 1, -1}, {{8.5, 0, 0}, 1, -1}};
-  EXPECT_EQ(pose_posterior(pair, 300, options)[0].best.node, 1);
+  EXPECT_EQ(pose_posterior(pair, 300, 200, options)[0].best.node, 1);
 }
 
 TEST(LineLocaliser, FindsThePoseToMillimetres) {

@@ -160,6 +160,8 @@ Panorama panorama_at(std::span<const MapNode* const> views,
       }
     }
   }
+  result.bins.shrink_to_fit();  // maps have many
+  result.windows.shrink_to_fit();
   return result;
 }
 

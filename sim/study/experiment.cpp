@@ -136,6 +136,7 @@ Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
 
 TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
   TopologicalMap map;
+  const auto told = std::make_shared<const Rig>(rig);
   map.nodes.reserve(map_views_->size());
   for (std::size_t i = 0; i < map_views_->size(); ++i) {
     const NoiseFreeView& place = (*map_views_)[i];
@@ -143,7 +144,13 @@ TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig
         .seed = settings_.seed, .trial = map_trial + block, .frame = static_cast<std::uint32_t>(i)};
     const StereoObservation sighting = sensor_.sense(place, draw);
     map.nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
-    map.nodes.back().view.corners = described(sighting, place.pose, draw);
+    PlaceView& view = map.nodes.back().view;
+    view.corners = described(sighting, place.pose, draw);
+    // Maps are large: one copy of the rig, and nothing that is not used.
+    view.rig = told;
+    view.monocular_lines = {};
+    view.lines.shrink_to_fit();
+    view.image_lines.shrink_to_fit();
   }
   return map;
 }

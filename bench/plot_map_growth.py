@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "scripts"))
 from success_frame import axis_words, opening, text  # noqa: E402
 
 WIDTH, HEIGHT, TOP, BOTTOM = 760, 340, 40, 280
-PANELS = ((70, 370), (450, 740))
+PANELS = ((70, 360), (440, 725))
 MAPS = (("eight headings a place", "#1f77b4"), ("along the route", "#d95f02"))
 
 

@@ -58,8 +58,21 @@ def frame(low_ms, high_ms, floor):
     return lines, x_of, y_of
 
 
+def label_texts(labels):
+    """Names below their dots; those of dots close to each other one below the other."""
+    lines, kept = [], []
+    for x, y, label in labels:
+        at = y + 16
+        while any(abs(x - other_x) < 120 and abs(at - other_at) < 14 for other_x, other_at in kept):
+            at += 14
+        kept.append((x, at))
+        lines.append(text(x + 8, at, label, "start" if x < RIGHT - 120 else "end"))
+    return lines
+
+
 def draw(found):
     """Returns the plot as SVG."""
+    labels = []
     floor = math.floor(10 * min(point[5] for point in found)) / 10
     lines, x_of, y_of = frame(min(p[3] for p in found) / 1.6, max(p[3] for p in found) * 2, floor)
     for protocol, colour in COLOURS.items():
@@ -74,11 +87,12 @@ def draw(found):
             lines.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{fill}" '
                          f'stroke="{colour}"/>')
             if protocol == "path":
-                lines.append(text(x + 8, y + 16, label, "start" if x < RIGHT - 120 else "end"))
+                labels.append((x, y, label))
+    lines += label_texts(labels)
     for row, (protocol, colour) in enumerate(COLOURS.items()):
         y = BOTTOM - 34 + 18 * row
-        lines.append(f'<circle cx="{RIGHT - 110}" cy="{y - 4}" r="4" fill="{colour}"/>')
-        lines.append(text(RIGHT - 100, y, protocol, "start"))
+        lines.append(f'<circle cx="{LEFT + 20}" cy="{y - 4}" r="4" fill="{colour}"/>')
+        lines.append(text(LEFT + 30, y, protocol, "start"))
     return "\n".join(lines + ["</svg>"]) + "\n"
 
 

@@ -26,7 +26,7 @@ struct Hypothesis {
 /// as standard errors are scaled by residuals (Birge, Physical Review 40, 1932), and the poses that
 /// were not tried weigh, times the best one,
 ///
-///     min(nodes / 180, 20)² exp(steepness (q - lost_misfit) √(observations / 60))
+///     clamp(nodes / 180, 1, 160)² exp(steepness (q - lost_misfit) √(observations / 60))
 ///       + nodes thin exp(-observations / thin_observations) + min(nodes unknown, 5e-4)
 ///
 /// since a misfit says that the map does not explain the view, few lines fit in many places, and

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "localise/ranking/panorama.h"
+
 namespace vernier::localise::internal {
 
 namespace {

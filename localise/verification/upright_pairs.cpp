@@ -14,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "localise/verification/floor_plan_votes.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vernier::localise::internal {
 namespace HWY_NAMESPACE {

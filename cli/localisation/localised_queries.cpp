@@ -9,6 +9,7 @@
 
 #include "calib/interval.h"
 #include "calib/statistics/quantile.h"
+#include "cli/localisation/figures.h"
 #include "cli/program/session.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
@@ -17,7 +18,6 @@ namespace vernier::cli {
 namespace {
 
 constexpr double right_within_m = 1;
-constexpr double degrees = 180 / std::numbers::pi;
 
 double heading_deg(const Pose2D& pose) {
   return degrees * std::remainder(pose.heading_rad, 2 * std::numbers::pi);
@@ -45,13 +45,6 @@ Success success_of(const std::vector<LocalisedQuery>& queries) {
     s.errors_m.push_back(query.error_m());
   }
   return s;
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN()
-                        : sum / static_cast<double>(values.size());
 }
 
 double median(const std::vector<double>& values) {

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <ctime>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "calib/pose.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/quantile.h"
+#include "cli/localisation/figures.h"
 #include "cli/localisation/odometry_drives.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -75,12 +75,6 @@ OdometryPath follow(const OdometryDrive& drive, double segment_m, DriveFigures& 
   return path;
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
-
 /// Means over the drives; the root of the mean square for errors of the end.
 struct MeanDrift {
   double length_m = 0, end_error_m = 0, end_error_rad = 0, share = 0, rad_per_m = 0;
@@ -102,8 +96,6 @@ struct MeanDrift {
     if (segments > 0) rad_per_m /= segments;
   }
 };
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 void add_truth(const DriveFigures& figures, double segment_m, Json& json, std::string& text) {
   const MeanDrift drift(figures.drifts);

@@ -27,7 +27,7 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int most_corners = 10'000;  ///< of a board
+constexpr int most_board_corners = 10'000;  ///< of a board
 
 struct AdviseArguments {
   std::string rig, reduce = "depth", board, covariance = "mvb";
@@ -54,7 +54,7 @@ std::string find_target(const AdviseArguments& options,
     if (options.board.empty() || !(options.square_m > 0)) {
       throw Error("advise", "--board and --square-m must be given together", "give both");
     }
-    const auto [columns, rows] = parse_limited_grid(options.board, "--board", most_corners);
+    const auto [columns, rows] = parse_limited_grid(options.board, "--board", most_board_corners);
     target_m = target_points(Chessboard{columns, rows, options.square_m});
     return fmt::format("{}x{} corners, squares of {} m", columns, rows, options.square_m);
   }

@@ -32,7 +32,8 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   const double best = modes[0].best.score;
   const double misfit = std::max(0.0, -best / std::max(1.0, observations));
   const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
-  constexpr double usual_observations = 60, usual_nodes = 180, most_times = 160, most_unknown = 5e-4;
+  constexpr double usual_observations = 60, usual_nodes = 180, most_times = 160,
+                   most_unknown = 5e-4;
   const double seen = std::max(0.0, observations);
   const auto size = static_cast<double>(nodes);
   const double lost = std::pow(std::clamp(size / usual_nodes, 1.0, most_times), 2) *

@@ -28,7 +28,7 @@ namespace {
 
 constexpr double pair_share = 0.3;      ///< of the image length, for pairs that give rivals
 constexpr double on_frame_share = 0.5;  ///< of it, that lies on the wire frame
-constexpr double same_place_m = 0.05;
+constexpr double same_rival_m = 0.05;
 constexpr std::size_t most_improved = 10;
 
 }  // namespace
@@ -70,12 +70,12 @@ std::optional<std::vector<Pose2D>> NoiseCeiling::rivals(const Pose2D& pose) cons
   double all_px = 0;
   for (const ViewEdge& edge : view) all_px += edge.length_px;
   std::vector<Pose2D> found;
-  FloorGrid found_at(same_place_m);
+  FloorGrid found_at(same_rival_m);
   const bool determined = LookAlikePoses(frame_).visit(view, pair_share, [&](const Pose2D& other) {
     const Eigen::Vector2d at(other.x_m, other.y_m);
-    const auto same = [&](int i) { return distance_m(found[i], other) < same_place_m; };
+    const auto same = [&](int i) { return distance_m(found[i], other) < same_rival_m; };
     if (distance_m(other, pose) <= 1 || !standing_.in_box(at)) return false;
-    if (found_at.any_near(at, same_place_m, same)) return false;
+    if (found_at.any_near(at, same_rival_m, same)) return false;
     const FloorMotion moved(other);
     double on_frame_px = 0;
     for (const ViewEdge& edge : view) {

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that the sources of a module can share a unit of a unity build, as scripts/demo.sh makes it.
+
+    unity_test.py [FILE…]
+
+Fails if two sources of a module define the same name in unnamed namespaces within one namespace:
+which of them meet in a unit changes with every source that is added. Functions may be overloaded.
+With files, these are taken for the sources of one module.
+"""
+import collections
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MODULES = ("calib", "stereo", "localise", "sim", "cli")
+NAMESPACE = re.compile(r"namespace ([\w:]+) \{")
+TYPE = re.compile(r"(?:struct|class|enum class|enum) (\w+)(?!.*;$)")
+CONSTANT = re.compile(r"(?:constexpr|const|inline constexpr|static const) [^=({]*?\b(\w+)"
+                      r"(?:\[\w*\])?\s*[={;]")
+FUNCTION = re.compile(r"(?!using|return|template)[\w:<>,&* ]+?\b(\w+)\((.*)")
+
+
+def parameters(lines):
+    """The types of a function's parameters; `lines` begin behind the opening bracket."""
+    text = ""
+    for line in lines:
+        text += " " + line.strip()
+        if text.count("(") + 1 <= text.count(")"):
+            break
+    listed = text.split(") {")[0].split(");")[0]
+    return ",".join(re.sub(r"\s*\b\w+$", "", part.strip()) for part in listed.split(","))
+
+
+def local_names(text):
+    """(namespace, name) of all that unnamed namespaces define at the start of a line."""
+    space, inside = "", False
+    lines = text.split("\n")
+    for number, line in enumerate(lines):
+        if named := NAMESPACE.match(line):
+            space = named[1]
+        if line == "namespace {":
+            inside = True
+        elif line.strip() == "}  // namespace":
+            inside = False
+        elif inside and line and line[0] not in " }/#":
+            if found := TYPE.match(line):
+                yield space, "type " + found[1]
+            elif found := CONSTANT.match(line):
+                yield space, found[1]
+            elif found := FUNCTION.match(line):
+                yield space, f"{found[1]}({parameters([found[2]] + lines[number + 1:])})"
+
+
+def twice(files):
+    """Names that more than one of the files defines: (name, the files)."""
+    where = collections.defaultdict(set)
+    for file in files:
+        for space, name in local_names(file.read_text(encoding="utf-8")):
+            where[f"{space}::{name}"].add(str(file))
+    return [(name, sorted(found)) for name, found in sorted(where.items()) if len(found) > 1]
+
+
+def main():
+    modules = [[Path(name) for name in sys.argv[1:]]] if len(sys.argv) > 1 else [
+        [file for file in (ROOT / module).rglob("*.cpp") if "node_modules" not in file.parts]
+        for module in MODULES]
+    faults = [fault for files in modules for fault in twice(files)]
+    for name, files in faults:
+        print(f"{name} is defined in {' and '.join(files)}: share it, or rename one")
+    print(f"{sum(map(len, modules))} sources, {len(faults)} names defined twice")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -81,6 +81,9 @@ struct LocaliserOptions {
   int min_lines = 3;            ///< minimum number of lines in space for an answer
   /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
   double max_error_rate = 0.01;
+  /// What `lines` takes for the probability that the robot stands where the map holds nothing,
+  /// before it looks; below 1. 0: it is on the map.
+  double off_map = 0;
   LocaliserStages stages;
   /// `corners` answers if so many corners agree at least; from 4.
   int min_corners = 8;

@@ -203,6 +203,9 @@ void add_localise(CLI::App& app, Session& session) {
   verb->add_option("--max-error-rate", o->localiser.max_error_rate,
                    "of lines: unsure where an error is more probable; 1: it always answers")
       ->capture_default_str();
+  verb->add_option("--off-map", o->localiser.off_map,
+                   "of lines: probability that the robot is where the map holds nothing; 0: never")
+      ->capture_default_str();
   verb->add_option("--stages", o->stages, "of lines: those that run, or none")
       ->capture_default_str();
   verb->add_option("--min-corners", o->localiser.min_corners,

@@ -163,9 +163,11 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
     tried = round.candidates;
     compare_best(round.finalists, query);
     if (query.compared.empty()) continue;
-    result = answer(query);
+    result = answer(query, 0);
     if (result.probability >= sure) break;
   }
+  // More candidates do not help against a place that the map does not hold.
+  if (options_.off_map > 0 && !query.compared.empty()) result = answer(query, options_.off_map);
   return result;
 }
 
@@ -322,12 +324,14 @@ LineLocaliser::JointAgreement LineLocaliser::joint_agreement(const Pose2D& first
   return sum;
 }
 
-LocalisationAnswer LineLocaliser::answer(Query& query) const {
+LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   LocalisationAnswer result;
+  PosteriorOptions posterior;
+  posterior.off_map = off_map;
   double observations = 0;
   for (const Seen& look : query.looks) observations += look.view.observations;
   const std::vector<WeightedMode> modes =
-      pose_posterior(query.compared, observations, map_.nodes.size());
+      pose_posterior(query.compared, observations, map_.nodes.size(), posterior);
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.

@@ -58,7 +58,7 @@ class LineLocaliser : public Localiser {
   void compare(Hypothesis& hypothesis, Query& query) const;
   void compare_best(int most, Query& query) const;
   bool is_plain(const Query& query) const;
-  LocalisationAnswer answer(Query& query) const;
+  LocalisationAnswer answer(Query& query, double off_map) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 
   const TopologicalMap& map_;

@@ -43,6 +43,10 @@ void check(const LocaliserOptions& options) {
     throw Error("localiser options", "max_error_rate is not above 0 and at most 1",
                 "use 1 for an answer to every query");
   }
+  if (!(options.off_map >= 0 && options.off_map < 1)) {
+    throw Error("localiser options", "off_map is not from 0 to below 1",
+                "use 0 for a robot that stays on the map");
+  }
 }
 
 void check(const TopologicalMap& map) {

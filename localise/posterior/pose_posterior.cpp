@@ -45,6 +45,10 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
     weights.push_back(std::exp(share * (m.best.score - best)));
     total += weights.back();
   }
+  total *=
+      1 + options.off_map / (1 - options.off_map) *
+              std::exp(options.off_gain + options.off_steepness * (misfit - options.off_misfit) *
+                                              std::sqrt(seen / usual_observations));
   for (WeightedMode& m : modes) {
     for (std::size_t i = 0; i < modes.size(); ++i) {
       if (distance_m(modes[i].best.pose, m.best.pose) <= success_m)

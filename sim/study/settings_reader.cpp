@@ -103,7 +103,7 @@ void SettingsReader::read_map(const toml::table& table, ExperimentSettings& sett
 void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
   check_keys(table,
              {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "stages", "command", "time_limit_s", "corners", "min_corners"},
+              "off_map", "stages", "command", "time_limit_s", "corners", "min_corners"},
              "[localiser]");
   if (const auto* method = table.get("method")) {
     settings.method = text(*method, "localiser.method");
@@ -136,6 +136,9 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
   }
   if (const auto* rate = table.get("max_error_rate")) {
     settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
+  }
+  if (const auto* off_map = table.get("off_map")) {
+    settings.localiser.off_map = number_in(*off_map, "localiser.off_map", 0, 0.999);
   }
   if (const auto* stages = table.get("stages")) {
     settings.localiser.stages =

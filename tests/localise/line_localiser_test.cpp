@@ -221,6 +221,13 @@ TEST(PosePosterior, SharesOutProbability) {
   const std::vector<Hypothesis> alone{{{0, 0, 0}, 0, -5}};
   EXPECT_GT(pose_posterior(alone, 40, 200)[0].probability,
             pose_posterior(alone, 40, 20000)[0].probability + 0.01);
+  // A robot that may be off the map is less sure, the more so the worse the view fits.
+  PosteriorOptions may_leave;
+  may_leave.off_map = 0.1;
+  const double on_map = pose_posterior(alone, 40, 200, may_leave)[0].probability;
+  EXPECT_LT(on_map, pose_posterior(alone, 40, 200)[0].probability - 0.001);
+  const std::vector<Hypothesis> doubtful{{{0, 0, 0}, 0, -50}};
+  EXPECT_LT(pose_posterior(doubtful, 40, 200, may_leave)[0].probability, on_map - 0.1);
   // Two poses close to each other are more probable together than one that scores better alone.
   const std::vector<Hypothesis> pair{{{0, 0, 0}, 0, 0}, {{8, 0, 0}, 1, -1}, {{8.5, 0, 0}, 1, -1}};
   EXPECT_EQ(pose_posterior(pair, 300, 200, options)[0].best.node, 1);

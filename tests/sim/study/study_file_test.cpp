@@ -86,12 +86,15 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
     return parse_study("[study]\ntrials = 10\n[localiser]\n" + localiser, "s.toml").cells.at(0);
   };
   const auto lines = cell(
-      "method = \"lines\"\nranker = \"pgh\"\ncandidates = 7\nmax_error_rate = 0.05\nlooks = 3\n");
+      "method = \"lines\"\nranker = \"pgh\"\ncandidates = 7\nmax_error_rate = 0.05\noff_map = "
+      "0.1\nlooks = 3\n");
   EXPECT_EQ(lines.experiment.localiser.ranker, "pgh");
   EXPECT_EQ(lines.experiment.localiser.candidates, 7);
   EXPECT_EQ(lines.experiment.localiser.max_error_rate, 0.05);
   EXPECT_EQ(lines.experiment.looks, 3);
   EXPECT_EQ(lines.settings.at("localiser.max_error_rate"), "0.05");
+  EXPECT_EQ(lines.experiment.localiser.off_map, 0.1);
+  EXPECT_EQ(lines.settings.at("localiser.off_map"), "0.1");
   EXPECT_EQ(lines.settings.at("localiser.looks"), "3");
   EXPECT_EQ(cell("method = \"pgh\"\ncandidates = 4\n").settings.at("localiser.candidates"), "4");
   const auto staged = cell("stages = \"compare+align\"\n");
@@ -107,7 +110,7 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
   EXPECT_EQ(cell("method = \"pgh\"\n").settings.count("localiser.looks"), 0u);
   for (const char* wrong :
        {"ranker = \"sift\"\n", "candidates = 0\n", "max_error_rate = 0\n", "max_error_rate = 1.5\n",
-        "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
+        "off_map = 1\n", "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
         "stages = \"align+align\"\n", "stages = \"\"\n", "stages = 3\n"}) {
     EXPECT_THROW(cell(wrong), Error) << wrong;
   }

@@ -54,7 +54,7 @@ class WithClutter : public localise::Localiser {
   localise::LocalisationAnswer localise(const localise::PlaceView& query) const override {
     localise::PlaceView cluttered = query;
     const auto lines = static_cast<std::uint32_t>(query.lines.size());
-    vernier::internal::RandomStream draws({.seed = seed_, .trial = lines});
+    vernier::internal::RandomStream draws({.seed = seed_, .trial = queries_++});
     const auto added = static_cast<std::uint32_t>(std::lround(clutter_share * lines));
     for (std::uint32_t i = 0; i < added; ++i) {
       const auto of = static_cast<std::size_t>(draws.uniform(0, lines - 1e-9));
@@ -73,6 +73,7 @@ class WithClutter : public localise::Localiser {
  private:
   const localise::Localiser& localiser_;
   std::uint64_t seed_;
+  mutable std::uint32_t queries_ = 0;
 };
 
 /// The world with a part of its furniture elsewhere.
@@ -214,6 +215,11 @@ int main(int count, char** words) {
   }
   try {
     const auto queries = static_cast<std::uint32_t>(std::atoi(words[3]));
+    if (std::atoi(words[1]) < 1 || std::atoi(words[2]) < std::atoi(words[1]) ||
+        std::atoi(words[3]) < 1) {
+      std::fprintf(stderr, "unknown_errors: FIRST, LAST and QUERIES are whole numbers from 1\n");
+      return 2;
+    }
     std::array<std::vector<Counts>, 3> all;
     std::array<std::vector<Counts>, off_map_priors.size()> on, off;
     for (int seed = std::atoi(words[1]); seed <= std::atoi(words[2]); ++seed) {

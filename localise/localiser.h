@@ -43,6 +43,7 @@ struct LocalisationAnswer {
   double runner_up = 0;  ///< score of the best pose more than 1 m away
   /// That the pose is right within 1 m, as the method states it; 0 for methods that state none.
   double probability = 0;
+  bool states_probability() const { return probability > 0; }
   std::vector<PoseMode> modes;  ///< of the posterior, most probable first; `lines` only
   /// The turn of a further look that tells the modes apart best; 0 if there is nothing to tell.
   double next_turn_rad = 0;

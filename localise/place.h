@@ -16,6 +16,8 @@ namespace vernier::localise {
 /// Robot pose on the floor: world frame, metres; heading from +x, counter-clockwise.
 struct Pose2D {
   double x_m = 0, y_m = 0, heading_rad = 0;
+
+  bool operator==(const Pose2D& other) const = default;
 };
 
 /// Euclidean distance on the floor.

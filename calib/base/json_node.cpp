@@ -12,42 +12,42 @@
 namespace vernier::internal {
 
 JsonNode JsonNode::at(const std::string& key) const {
-  if (!json_.is_object()) throw Error(place_, "is not an object", "");
-  if (!json_.contains(key)) throw Error(place_, "has no \"" + key + "\"", "add it");
+  if (!json_.is_object()) throw Error(place(), "is not an object", "");
+  if (!json_.contains(key)) throw Error(place(), "has no \"" + key + "\"", "add it");
   return {json_.at(key), place_ + (place_.back() == ':' ? " " : ".") + key};
 }
 
 JsonNode JsonNode::at(std::size_t index) const {
   if (index >= array().size()) {
-    throw Error(place_, "has only " + std::to_string(json_.size()) + " entries", "");
+    throw Error(place(), "has only " + std::to_string(json_.size()) + " entries", "");
   }
   return {json_[index], place_ + "[" + std::to_string(index) + "]"};
 }
 
 double JsonNode::number() const {
-  if (!json_.is_number()) throw Error(place_, "is not a number", "");
+  if (!json_.is_number()) throw Error(place(), "is not a number", "");
   const double value = json_.get<double>();
-  if (!std::isfinite(value)) throw Error(place_, "is not finite", "");
+  if (!std::isfinite(value)) throw Error(place(), "is not finite", "");
   return value;
 }
 
 int JsonNode::integer() const {
-  if (!json_.is_number_integer()) throw Error(place_, "is not an integer", "");
+  if (!json_.is_number_integer()) throw Error(place(), "is not an integer", "");
   const auto whole = json_.get<std::int64_t>();
   const bool wrapped = json_.is_number_unsigned() && whole < 0;
   if (wrapped || whole != static_cast<int>(whole)) {
-    throw Error(place_, json_.dump() + " is too large a whole number", "correct it");
+    throw Error(place(), json_.dump() + " is too large a whole number", "correct it");
   }
   return static_cast<int>(whole);
 }
 
 std::string JsonNode::text() const {
-  if (!json_.is_string()) throw Error(place_, "is not a string", "");
+  if (!json_.is_string()) throw Error(place(), "is not a string", "");
   return json_.get<std::string>();
 }
 
 const nlohmann::ordered_json& JsonNode::array() const {
-  if (!json_.is_array()) throw Error(place_, "is not a list", "");
+  if (!json_.is_array()) throw Error(place(), "is not a list", "");
   return json_;
 }
 
@@ -59,7 +59,7 @@ Eigen::VectorXd JsonNode::vector() const {
 
 Eigen::Vector3d JsonNode::vector3() const {
   const Eigen::VectorXd v = vector();
-  if (v.size() != 3) throw Error(place_, "is not a list of 3 numbers", "");
+  if (v.size() != 3) throw Error(place(), "is not a list of 3 numbers", "");
   return v;
 }
 
@@ -68,7 +68,7 @@ Eigen::MatrixXd JsonNode::matrix() const {
   Eigen::MatrixXd m(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::VectorXd row = at(static_cast<std::size_t>(i)).vector();
-    if (row.size() != n) throw Error(place_, "is not a square matrix", "");
+    if (row.size() != n) throw Error(place(), "is not a square matrix", "");
     m.row(i) = row.transpose();
   }
   return m;

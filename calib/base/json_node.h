@@ -30,7 +30,10 @@ class JsonNode {
   Eigen::VectorXd vector() const;
   Eigen::MatrixXd matrix() const;  ///< square
   const nlohmann::ordered_json& json() const { return json_; }
-  const std::string& place() const { return place_; }
+  /// Without the colon that sets a line of a file apart from its keys.
+  std::string place() const {
+    return place_.ends_with(':') ? place_.substr(0, place_.size() - 1) : place_;
+  }
 
  private:
   const nlohmann::ordered_json& json_;

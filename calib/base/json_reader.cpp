@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -58,8 +59,12 @@ class JsonBuilder {
   using string_t = OrderedJson::string_t;
   using binary_t = OrderedJson::binary_t;
 
-  JsonBuilder(std::string_view text, const std::string& place, const JsonLimits& limits)
-      : text_(text), place_(place), limits_(limits), read_(text.data()) {}
+  /// With `is_line`, messages name the column.
+  JsonBuilder(std::string_view text,
+              const std::string& place,
+              const JsonLimits& limits,
+              bool is_line)
+      : text_(text), place_(place), limits_(limits), is_line_(is_line), read_(text.data()) {}
 
   OrderedJson build() {
     const char* end = text_.data() + text_.size();
@@ -124,6 +129,9 @@ class JsonBuilder {
     if (fault.id == number_too_large) {
       fail(in_quotes(token) + " is not a number that a double can hold", "correct it");
     }
+    if (is_no_number()) {
+      fail("holds NaN or Infinity, which JSON does not have", "leave the value out");
+    }
     if (is_cut(fault.what())) fail("is not JSON: it ends too early", "write it again");
     fail("is not JSON: a comma, quote or bracket is wrong here", "correct it");
   }
@@ -134,11 +142,21 @@ class JsonBuilder {
            fault.find("missing closing quote") != std::string::npos;
   }
 
+  /// Whether the parser has stopped in NaN or Infinity, as other languages write them.
+  bool is_no_number() const {
+    const auto byte = static_cast<std::size_t>(read_ - text_.data());
+    const std::string_view around = text_.substr(byte > 3 ? byte - 3 : 0, 6);
+    return std::ranges::any_of(std::array{"NaN", "nan", "Inf", "inf"}, [&](const char* word) {
+      return around.find(word) != std::string_view::npos;
+    });
+  }
+
   [[noreturn]] void fail(const std::string& fault, const std::string& remedy) const {
     const auto byte = static_cast<std::size_t>(read_ - text_.data());
     // The parser has read a character beyond what it complains about.
-    const std::size_t line = line_of(text_, byte > 0 ? byte - 1 : 0);
-    throw Error(fmt::format("{}:{}", place_, line), fault, remedy);
+    const std::size_t at = byte > 0 ? byte - 1 : 0;
+    throw Error(fmt::format("{}:{}", place_, is_line_ ? at + 1 : line_of(text_, at)), fault,
+                remedy);
   }
 
   void check_length(const std::string& value, const char* what) const {
@@ -180,6 +198,7 @@ class JsonBuilder {
   std::string_view text_;
   const std::string& place_;
   const JsonLimits& limits_;
+  bool is_line_;
   const char* read_;
   OrderedJson root_;
   std::vector<OrderedJson*> open_;  ///< the lists and objects that are not closed yet
@@ -189,14 +208,31 @@ class JsonBuilder {
 
 }  // namespace
 
-nlohmann::ordered_json parse_json(std::string_view text,
-                                  const std::string& place,
-                                  const JsonLimits& limits) {
+namespace {
+
+nlohmann::ordered_json parse(std::string_view text,
+                             const std::string& place,
+                             const JsonLimits& limits,
+                             bool is_line) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     throw Error(place, "is empty", "write it again, or name another file");
   }
   check_text(text, place, "a JSON file", limits.bytes);
-  return JsonBuilder(text, place, limits).build();
+  return JsonBuilder(text, place, limits, is_line).build();
+}
+
+}  // namespace
+
+nlohmann::ordered_json parse_json(std::string_view text,
+                                  const std::string& place,
+                                  const JsonLimits& limits) {
+  return parse(text, place, limits, false);
+}
+
+nlohmann::ordered_json parse_json_line(std::string_view line,
+                                       const std::string& place,
+                                       const JsonLimits& limits) {
+  return parse(line, place, limits, true);
 }
 
 }  // namespace vernier::internal

@@ -27,4 +27,9 @@ nlohmann::ordered_json parse_json(std::string_view text,
                                   const std::string& place,
                                   const JsonLimits& limits = {});
 
+/// The same for a line of a file of many; Error("place:column").
+nlohmann::ordered_json parse_json_line(std::string_view line,
+                                       const std::string& place,
+                                       const JsonLimits& limits = {});
+
 }  // namespace vernier::internal

@@ -18,6 +18,7 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "cli/localisation/localised_queries.h"
+#include "cli/localisation/same_rig.h"
 #include "cli/localisation/simulated_robot.h"
 #include "cli/localisation/view_options.h"
 #include "cli/program/option_checks.h"
@@ -40,27 +41,6 @@ struct LocaliseArguments {
   std::uint32_t queries = 20;
   int looks = 1;
 };
-
-/// Maps hold lines in metres, but what a view can hold of them depends on its cameras.
-void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name) {
-  constexpr double same_focal_length = 0.05, same_baseline = 0.1;
-  for (const MapNode& node : map.nodes) {
-    if (!node.view.rig) continue;
-    const Camera &a = node.view.rig->cameras[0], &b = rig.cameras[0];
-    const double baseline = rig.T_camera_first[1].t.norm();
-    const double of_map = node.view.rig->T_camera_first[1].t.norm();
-    if (a.size_px == b.size_px && std::abs(a.f_px() - b.f_px()) <= same_focal_length * a.f_px() &&
-        std::abs(baseline - of_map) <= same_baseline * of_map) {
-      return;
-    }
-    throw Error(map_name,
-                fmt::format("was recorded with another rig ({}x{} px, f {:.0f} px, baseline "
-                            "{:.3f} m; here {}x{} px, {:.0f} px, {:.3f} m)",
-                            a.size_px[0], a.size_px[1], a.f_px(), of_map, b.size_px[0],
-                            b.size_px[1], b.f_px(), baseline),
-                "record the map with the rig that asks");
-  }
-}
 
 double thread_cpu_ms() {
   timespec now{};

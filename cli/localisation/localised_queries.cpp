@@ -61,7 +61,7 @@ Json query_json(const LocalisedQuery& query) {
   if (query.has_pose()) {
     json["pose"] = pose_deg_json(answer.pose);
     json["node"] = answer.node;
-    json["probability"] = answer.probability;
+    if (answer.states_probability()) json["probability"] = answer.probability;
     json["score"] = json_number(answer.score);
     json["runner_up"] = json_number(answer.runner_up);
     Json& modes = json["modes"] = Json::array();
@@ -129,6 +129,16 @@ Json queries_json(const std::vector<LocalisedQuery>& queries) {
   return json;
 }
 
+namespace {
+
+/// Close to 1 with as many places as tell it from 1.
+std::string probability_text(const LocalisationAnswer& answer) {
+  if (!answer.states_probability()) return "";
+  return fmt::format("{:.{}f}", answer.probability, answer.probability > 0.9999 ? 6 : 4);
+}
+
+}  // namespace
+
 std::string queries_table(const std::vector<LocalisedQuery>& queries) {
   constexpr std::size_t most_shown = 40;
   const Success s = success_of(queries);
@@ -139,8 +149,8 @@ std::string queries_table(const std::vector<LocalisedQuery>& queries) {
     text += fmt::format("{:<20} {:<14}", query.name, status_words(query.answer.status));
     if (query.has_pose()) {
       const Pose2D& pose = query.answer.pose;
-      text += fmt::format(" {:>8.2f} {:>8.2f} {:>8.1f} {:>11.4f}", pose.x_m, pose.y_m,
-                          heading_deg(pose), query.answer.probability);
+      text += fmt::format(" {:>8.2f} {:>8.2f} {:>8.1f} {:>11}", pose.x_m, pose.y_m,
+                          heading_deg(pose), probability_text(query.answer));
       if (query.truth) text += fmt::format(" {:>8.2f}", query.error_m());
     }
     text += '\n';
@@ -162,8 +172,10 @@ std::string queries_csv(const std::vector<LocalisedQuery>& queries) {
     text += fmt::format("{},{},", safe, name(query.answer.status));
     if (query.has_pose()) {
       const Pose2D& pose = query.answer.pose;
-      text += fmt::format("{},{},{},{},{},", pose.x_m, pose.y_m, heading_deg(pose),
-                          query.answer.probability, query.answer.node);
+      const std::string probability =
+          query.answer.states_probability() ? fmt::format("{}", query.answer.probability) : "";
+      text += fmt::format("{},{},{},{},{},", pose.x_m, pose.y_m, heading_deg(pose), probability,
+                          query.answer.node);
       if (query.truth) text += fmt::format("{}", query.error_m());
     } else {
       text += ",,,,,";

@@ -14,6 +14,7 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/statistics/quantile.h"
+#include "cli/localisation/same_rig.h"
 #include "cli/localisation/simulated_robot.h"
 #include "cli/localisation/view_options.h"
 #include "cli/program/option_checks.h"
@@ -138,8 +139,11 @@ void make(const MakeMapOptions& options, const CLI::App& verb, Session& session)
     throw Error("map make", "the poses of the images are not given", "give --poses");
   }
   if (!options.extend.empty()) {
-    read_map(options.extend);  // before the work
+    const TopologicalMap before = read_map(options.extend);
     const TopologicalMap map = recorded_map(options, session);
+    for (const MapNode& node : map.nodes) {
+      if (node.view.rig) check_same_rig(before, *node.view.rig, options.extend);
+    }
     extend_map(options.extend, map.nodes);
     report(options.extend, session);
     return;

@@ -116,9 +116,11 @@ void add_truth(const DriveFigures& figures, double segment_m, Json& json, std::s
       {"nees_mean", mean(figures.nees)},
       {"nees_median", median},
       {"nees_inside_95", share_inside}};
-  text += fmt::format("error after {:.1f} m: {:.3f} m ({:.2f} %), {:.3f} deg\n", drift.length_m,
-                      drift.end_error_m, 100 * drift.end_error_m / drift.length_m,
-                      drift.end_error_rad * degrees);
+  const std::string share =
+      drift.length_m > 0 ? fmt::format(" ({:.2f} %)", 100 * drift.end_error_m / drift.length_m)
+                         : "";
+  text += fmt::format("error after {:.1f} m: {:.3f} m{}, {:.3f} deg\n", drift.length_m,
+                      drift.end_error_m, share, drift.end_error_rad * degrees);
   if (drift.segments > 0) {
     text += fmt::format("drift over segments of {:g} m: {:.3f} %, {:.4f} deg/m ({} segments)\n",
                         segment_m, 100 * drift.share, drift.rad_per_m * degrees, drift.segments);

@@ -119,19 +119,30 @@ void add_view_options(CLI::App& verb, ViewOptions& o) {
   verb.add_option("--seed", o.seed, "random seed of the simulated robot")->capture_default_str();
 }
 
+namespace {
+
+/// A verb in words: "localise", "map make".
+std::string place_of(const CLI::App& verb) {
+  const CLI::App* parent = verb.get_parent();
+  const bool is_part = parent != nullptr && parent->get_parent() != nullptr;
+  return is_part ? parent->get_name() + " " + verb.get_name() : verb.get_name();
+}
+
+}  // namespace
+
 void check(const ViewOptions& options, const CLI::App& verb) {
   const bool images = !options.left.empty() || !options.right.empty();
   const int kinds = !options.world.empty() + !options.features.empty() + images;
   if (kinds != 1) {
-    throw Error(verb.get_name(),
+    throw Error(place_of(verb),
                 kinds == 0 ? "no views are given" : "more than one kind of views is given",
                 "give --world, or --features, or --left and --right");
   }
   if (images && (options.left.empty() || options.right.empty())) {
-    throw Error(verb.get_name(), "images of one camera only", "give --left and --right");
+    throw Error(place_of(verb), "images of one camera only", "give --left and --right");
   }
   if (images && options.rig.empty()) {
-    throw Error(verb.get_name(), "images need the rig that took them", "give --rig");
+    throw Error(place_of(verb), "images need the rig that took them", "give --rig");
   }
   constexpr std::array of_images{"--poses", "--max-disparity"};
   constexpr std::array of_robot{"--source", "--seed"};

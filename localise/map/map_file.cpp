@@ -99,8 +99,10 @@ class MappedFile {
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+      const bool is_folder = descriptor >= 0 && S_ISDIR(status.st_mode);
       if (descriptor >= 0) ::close(descriptor);
-      throw Error(file.string(), "is no file that can be read", "check its name and permissions");
+      throw Error(file.string(), is_folder ? "is a folder" : "is no file that can be read",
+                  is_folder ? "name a map file" : "check its name and permissions");
     }
     size_ = static_cast<std::size_t>(status.st_size);
     if (size_ > 0) bytes_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
@@ -236,7 +238,7 @@ std::string head_of(std::uint64_t nodes, bool with_corners) {
 template <class OfPart>
 std::uint64_t visit_parts(std::string_view bytes, const std::string& place, const OfPart& of_part) {
   if (bytes.substr(0, magic.size()) != magic || bytes.size() < head_bytes) {
-    throw Error(place, "is not a map", "make one with write_map()");
+    throw Error(place, "is not a map", "make one with vernier map make or write_map()");
   }
   Bytes after_magic(bytes.substr(magic.size()), place);
   const auto of_file = after_magic.take<std::uint32_t>();

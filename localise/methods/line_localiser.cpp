@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/methods/line_localiser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -87,6 +90,32 @@ std::optional<ImprovedPose> refine(const ComparedView& view,
   return improve(view, lines, best.pose, refine_steps, rough_agreement(), room);
 }
 
+/// Whether two lines are one that is given twice, which is no more evidence.
+bool same_line(const PlaceLine& a, const PlaceLine& b) { return a.a_m == b.a_m && a.b_m == b.b_m; }
+
+bool before(const PlaceLine& a, const PlaceLine& b) {
+  const auto ends = [](const PlaceLine& l) {
+    return std::array{l.a_m.x(), l.a_m.y(), l.a_m.z(), l.b_m.x(), l.b_m.y(), l.b_m.z()};
+  };
+  return ends(a) < ends(b);
+}
+
+bool has_repeats(const PlaceView& view) {
+  std::vector<const PlaceLine*> sorted;
+  for (const PlaceLine& line : view.lines) sorted.push_back(&line);
+  std::sort(sorted.begin(), sorted.end(),
+            [](const PlaceLine* a, const PlaceLine* b) { return before(*a, *b); });
+  return std::adjacent_find(sorted.begin(), sorted.end(),
+                            [](const PlaceLine* a, const PlaceLine* b) {
+                              return same_line(*a, *b);
+                            }) != sorted.end();
+}
+
+void drop_repeats(PlaceView& view) {
+  std::sort(view.lines.begin(), view.lines.end(), before);
+  view.lines.erase(std::unique(view.lines.begin(), view.lines.end(), same_line), view.lines.end());
+}
+
 bool better(const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; }
 
 }  // namespace
@@ -105,7 +134,16 @@ LineLocaliser::LineLocaliser(const TopologicalMap& map, const LocaliserOptions& 
     : map_(map),
       options_(options),
       ranker_(make_ranker(options.ranker, map, options.histograms)),
-      grid_(map) {}
+      grid_(map) {
+  const double least = least_error_rate(map.nodes.size());
+  if (options.stages.compare && options.max_error_rate < least) {
+    throw Error(
+        "max_error_rate",
+        fmt::format("{:g} is below {:.2g}, the least that can be stated in a map of {} nodes",
+                    options.max_error_rate, least, map.nodes.size()),
+        "use a larger one");
+  }
+}
 
 LocalisationAnswer LineLocaliser::localise(const PlaceView& query) const {
   const Look look{query, 0};
@@ -114,6 +152,11 @@ LocalisationAnswer LineLocaliser::localise(const PlaceView& query) const {
 
 LocalisationAnswer LineLocaliser::localise_looks(std::span<const Look> looks) const {
   if (looks.empty()) throw Error("looks", "there are none", "give at least one");
+  if (std::any_of(looks.begin(), looks.end(), [](const Look& l) { return has_repeats(l.view); })) {
+    std::vector<Look> once(looks.begin(), looks.end());
+    for (Look& look : once) drop_repeats(look.view);
+    return localise_looks(once);
+  }
   Query query;
   std::size_t lines = 0;
   for (const Look& look : looks) {
@@ -151,14 +194,15 @@ LocalisationAnswer LineLocaliser::search(std::span<const std::vector<RankedNode>
     rounds.push_back({options_.candidates, many_finalists});
     if (options_.stages.align) rounds.push_back({options_.candidates, many_finalists, true});
   }
-  const double sure = 1 - std::min(options_.max_error_rate, sure_error_rate);
+  const double sure = 1 - std::max(std::min(options_.max_error_rate, sure_error_rate),
+                                   least_error_rate(map_.nodes.size()));
   LocalisationAnswer result;
   result.status = LocalisationStatus::no_match;
   int tried = 0;
   for (const Round& round : rounds) {
     for (std::size_t i = 0; i < query.looks.size(); ++i) {
       candidates(query.looks[i], ranked[i], tried, round.candidates, query);
-      if (round.wide) wide_candidates(query.looks[i], query);
+      if (round.wide) wide_candidates(query.looks[i], ranked[i], query);
     }
     tried = round.candidates;
     compare_best(round.finalists, query);
@@ -184,8 +228,11 @@ void LineLocaliser::candidates(
   }
 }
 
-/// Ranks more candidates than can be compared, and adds those with the most votes of uprights.
-void LineLocaliser::wide_candidates(const Seen& seen, Query& query) const {
+/// Ranks more candidates than can be compared, and adds those with the most votes of uprights of
+/// which none is among those tried before.
+void LineLocaliser::wide_candidates(const Seen& seen,
+                                    std::span<const RankedNode> ranked_before,
+                                    Query& query) const {
   const auto nodes = static_cast<int>(map_.nodes.size());
   const int wide = std::min(most_wide_candidates, nodes / nodes_per_wide_candidate);
   if (wide <= options_.candidates) return;
@@ -195,12 +242,17 @@ void LineLocaliser::wide_candidates(const Seen& seen, Query& query) const {
     float votes;
   };
   std::vector<Voted> voted;
-  for (std::size_t i = options_.candidates; i < ranked.size(); ++i) {
-    const MapNode& node = map_.nodes[ranked[i].node];
+  for (const RankedNode& candidate : ranked) {
+    // A longer list need not begin with a shorter one.
+    const bool tried = std::any_of(ranked_before.begin(), ranked_before.end(), [&](const auto& t) {
+      return t.node == candidate.node && t.query_in_node == candidate.query_in_node;
+    });
+    if (tried) continue;
+    const MapNode& node = map_.nodes[candidate.node];
     const std::vector<VotePeak> peaks =
-        vote(seen.uprights, plan_uprights(node.view.lines), ranked[i].query_in_node);
+        vote(seen.uprights, plan_uprights(node.view.lines), candidate.query_in_node);
     if (peaks.empty()) continue;
-    voted.push_back({compose(node.pose, ranked[i].query_in_node), peaks[0].votes});
+    voted.push_back({compose(node.pose, candidate.query_in_node), peaks[0].votes});
   }
   std::stable_sort(voted.begin(), voted.end(),
                    [](const Voted& a, const Voted& b) { return a.votes > b.votes; });
@@ -335,7 +387,11 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
   if (modes.empty()) return result;
   for (const WeightedMode& m : modes) {
     // Only scores of the last comparison are log-likelihoods.
-    const double probability = options_.stages.compare ? m.probability : 0;
+    constexpr double negligible = 1e-3;
+    const double probability = !options_.stages.compare ? 0
+                               : m.probability < negligible
+                                   ? m.probability
+                                   : m.probability * share_within_success(m.best.pose, query);
     result.modes.push_back({m.best.pose, m.best.node, probability, m.best.score});
   }
   if (!options_.stages.compare) {
@@ -358,6 +414,24 @@ LocalisationAnswer LineLocaliser::answer(Query& query, double off_map) const {
       options_.max_error_rate >= 1 || result.probability >= 1 - options_.max_error_rate;
   result.status = sure ? LocalisationStatus::answered : LocalisationStatus::unsure;
   return result;
+}
+
+/// How much of a mode lies within 1 m of its pose, by its least certain direction on the floor: a
+/// view of one upright line fits a circle of poses, and the best of those that were tried is one.
+double LineLocaliser::share_within_success(const Pose2D& pose, Query& query) const {
+  constexpr double success_m = 1;
+  const Eigen::Matrix3d information =
+      joint_agreement(pose, fine_agreement(), query).information.cast<double>();
+  const double of_heading = information(2, 2);
+  if (!(of_heading > 0)) return 0;
+  // of the position, whatever the heading is
+  const Eigen::Matrix2d of_position =
+      information.topLeftCorner<2, 2>() -
+      information.topRightCorner<2, 1>() * information.bottomLeftCorner<1, 2>() / of_heading;
+  const double half_trace = 0.5 * of_position.trace();
+  const double least =
+      half_trace - std::sqrt(std::max(0.0, half_trace * half_trace - of_position.determinant()));
+  return least > 0 ? std::erf(success_m * std::sqrt(0.5 * least)) : 0;
 }
 
 /// The turn at which the two best modes would see what explains the other's view least.

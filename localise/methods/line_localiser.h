@@ -48,7 +48,9 @@ class LineLocaliser : public Localiser {
   LocalisationAnswer search(std::span<const std::vector<RankedNode>> ranked, Query& query) const;
   void candidates(
       const Seen& seen, std::span<const RankedNode> ranked, int from, int to, Query& query) const;
-  void wide_candidates(const Seen& seen, Query& query) const;
+  void wide_candidates(const Seen& seen,
+                       std::span<const RankedNode> ranked_before,
+                       Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;
@@ -59,6 +61,7 @@ class LineLocaliser : public Localiser {
   void compare_best(int most, Query& query) const;
   bool is_plain(const Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
+  double share_within_success(const Pose2D& pose, Query& query) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 
   const TopologicalMap& map_;

@@ -10,6 +10,12 @@
 
 namespace vernier::localise::internal {
 
+double least_error_rate(std::size_t nodes, const PosteriorOptions& options) {
+  const double unknown =
+      std::min(static_cast<double>(nodes) * options.unknown, options.most_unknown);
+  return unknown / (1 + unknown);
+}
+
 std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
                                          double observations,
                                          std::size_t nodes,
@@ -32,23 +38,22 @@ std::vector<WeightedMode> pose_posterior(std::span<const Hypothesis> hypotheses,
   const double best = modes[0].best.score;
   const double misfit = std::max(0.0, -best / std::max(1.0, observations));
   const double share = options.evidence_share / std::max(1.0, misfit / options.usual_misfit);
-  constexpr double usual_observations = 60, usual_nodes = 180, most_times = 160,
-                   most_unknown = 5e-4;
   const double seen = std::max(0.0, observations);
   const auto size = static_cast<double>(nodes);
-  const double lost = std::pow(std::clamp(size / usual_nodes, 1.0, most_times), 2) *
-                      std::exp(options.steepness * (misfit - options.lost_misfit) *
-                               std::sqrt(seen / usual_observations));
+  const double root = std::sqrt(seen / options.usual_observations);
+  const double lost = std::pow(std::clamp(size / options.usual_nodes, 1.0, options.most_times), 2) *
+                      std::exp(options.steepness * (misfit - options.lost_misfit) * root);
   const double thin = options.thin * std::exp(-seen / options.thin_observations);
-  double total = lost + size * thin + std::min(size * options.unknown, most_unknown);
+  double total = lost + size * thin + std::min(size * options.unknown, options.most_unknown);
   for (const WeightedMode& m : modes) {
     weights.push_back(std::exp(share * (m.best.score - best)));
     total += weights.back();
   }
-  total *=
-      1 + options.off_map / (1 - options.off_map) *
-              std::exp(options.off_gain + options.off_steepness * (misfit - options.off_misfit) *
-                                              std::sqrt(seen / usual_observations));
+  if (options.off_map > 0) {
+    const double gain =
+        options.off_gain + options.off_steepness * (misfit - options.off_misfit) * root;
+    total *= 1 + options.off_map / (1 - options.off_map) * std::exp(gain);
+  }
   for (WeightedMode& m : modes) {
     for (std::size_t i = 0; i < modes.size(); ++i) {
       if (distance_m(modes[i].best.pose, m.best.pose) <= success_m)

@@ -26,8 +26,9 @@ struct Hypothesis {
 /// as standard errors are scaled by residuals (Birge, Physical Review 40, 1932), and the poses that
 /// were not tried weigh, times the best one,
 ///
-///     clamp(nodes / 180, 1, 160)² exp(steepness (q - lost_misfit) √(observations / 60))
-///       + nodes thin exp(-observations / thin_observations) + min(nodes unknown, 5e-4)
+///     clamp(nodes / usual_nodes, 1, most_times)²
+///         exp(steepness (q - lost_misfit) √(observations / usual_observations))
+///       + nodes thin exp(-observations / thin_observations) + min(nodes unknown, most_unknown)
 ///
 /// since a misfit says that the map does not explain the view, few lines fit in many places, and
 /// the larger a map, the more places are like another, and the more seldom the true one is tried
@@ -37,17 +38,24 @@ struct Hypothesis {
 struct PosteriorOptions {
   double evidence_share = 0.55;
   double usual_misfit = 0.4, lost_misfit = 2.3, steepness = 8;
-  double thin = 3e-5, thin_observations = 12;  ///< thin: of a node
-  double unknown = 2.1e-7;                     ///< of a node: what the model does not know
+  double thin = 3e-5, thin_observations = 12;    ///< thin: of a node
+  double unknown = 2.1e-7, most_unknown = 5e-4;  ///< of a node: what the model does not know
+  double usual_observations = 60;                ///< of a view of a third as many lines as usual
+  /// Those of a map along the route, and how many times as many still count.
+  double usual_nodes = 180, most_times = 160;
   /// Prior probability that the view was taken where the map holds nothing. Its odds grow by
   ///
-  ///     exp(off_gain + off_steepness (q - off_misfit) √(observations / 60)),
+  ///     exp(off_gain + off_steepness (q - off_misfit) √(observations / usual_observations)),
   ///
   /// a logistic regression on the best scores of views within 0.8 m of the nearest node and beyond
   /// 1.5 m, maps of whole and half offices of seeds 1 to 20 along the route (89 and 178 nodes).
   double off_map = 0;
   double off_gain = 4.3, off_steepness = 2.9, off_misfit = 2.3;
 };
+
+/// The smallest error rate that can be stated in a map of so many nodes: the rest is what the model
+/// does not know.
+double least_error_rate(std::size_t nodes, const PosteriorOptions& options = {});
 
 /// A mode: the probability is that of a pose within 1 m, not of this pose alone.
 struct WeightedMode {

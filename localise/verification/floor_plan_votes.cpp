@@ -3,6 +3,7 @@
 #include "localise/verification/floor_plan_votes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -105,6 +106,8 @@ std::vector<VotePeak> vote(std::span<const PlanUpright> query,
                            std::span<const PlanUpright> node,
                            const Pose2D& around,
                            const VoteOptions& o) {
+  // The strip in which partners are looked for takes a turn below a right angle.
+  assert(o.turn_step_rad * o.turn_steps < std::numbers::pi / 2);
   const Pairings pairs = pairings(query, node, around, o);
   const int half = static_cast<int>(std::lround(o.span_m / o.cell_m)), side = 2 * half + 3;
   const auto cells = static_cast<std::size_t>(side) * side;

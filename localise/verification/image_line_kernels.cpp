@@ -48,6 +48,7 @@ struct KeptLanes {
   int count = 0;
 
   KeptLanes(Tag d, hn::Mask<Tag> kept) {
+    static_assert(hn::MaxLanes(Tag()) <= 16, "the masks are read as two bytes, rows padded to 16");
     alignas(64) std::int32_t lanes[hn::MaxLanes(Tag())] = {};
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, kept, bytes);

@@ -32,7 +32,7 @@ std::vector<RecordedLooks> read_views(const std::filesystem::path& file,
     if (views.size() == most_positions) {
       throw Error(lines.place(), "is one of more than 100,000 positions", "split the file");
     }
-    const Json json = vernier::internal::parse_json(line, lines.place());
+    const Json json = vernier::internal::parse_json_line(line, lines.place());
     views.push_back(parse_looks(JsonNode(json, lines.place() + ":"), rig));
   }
   if (views.empty()) {

@@ -233,6 +233,76 @@ TEST(PosePosterior, SharesOutProbability) {
   EXPECT_EQ(pose_posterior(pair, 300, 200, options)[0].best.node, 1);
 }
 
+// 0.1 times an overflow must not become NaN, and certainty has a floor.
+TEST(PosePosterior, StaysFinite) {
+  for (const double off_map : {0.0, 0.1}) {
+    PosteriorOptions options;
+    options.off_map = off_map;
+    for (const double score : {-1e9, -1e300, 0.0}) {
+      const std::vector<Hypothesis> one{{{0, 0, 0}, 0, score}};
+      for (const double observations : {0.0, 3.0, 1e6}) {
+        const double p = pose_posterior(one, observations, 200, options)[0].probability;
+        EXPECT_TRUE(p >= 0 && p <= 1) << score << ' ' << observations;
+        EXPECT_LE(p, 1 - least_error_rate(200, options) + 1e-12);
+      }
+    }
+  }
+}
+
+// A misfit weighs more in a larger map, up to 160 times the usual one's nodes.
+TEST(PosePosterior, AMisfitWeighsMoreInALargerMap) {
+  PosteriorOptions options;
+  options.thin = 0;
+  options.unknown = 0;
+  const std::vector<Hypothesis> bad{{{0, 0, 0}, 0, -450}};
+  const auto odds_against = [&](std::size_t nodes) {
+    const double p = pose_posterior(bad, 225, nodes, options)[0].probability;
+    return (1 - p) / p;
+  };
+  EXPECT_NEAR(odds_against(1800) / odds_against(180), 100, 1e-3);
+  EXPECT_NEAR(odds_against(100'000) / odds_against(180), 160 * 160, 1);
+}
+
+/// One upright 2 m ahead, given often, as no detector would.
+PlaceView one_upright(const TopologicalMap& map, int times, double jitter_m) {
+  PlaceView view;
+  view.rig = map.nodes[0].view.rig;
+  RandomStream d({.seed = 5});
+  for (int i = 0; i < times; ++i) {
+    const Eigen::Vector3d off(jitter_m * d.normal(), jitter_m * d.normal(), 0);
+    view.lines.push_back({Eigen::Vector3d(2, 0.5, 0) + off, Eigen::Vector3d(2, 0.5, 1.5) + off,
+                          LineKind::vertical, 0.01});
+  }
+  return view;
+}
+
+// A line fits a circle of poses, however often it is given.
+TEST(LineLocaliser, IsNotSureOfOneLine) {
+  const TopologicalMap map = ten_rooms();
+  const auto localiser = make_localiser("lines", map, {});
+  for (const int times : {1, 3, 12, 20, 60, 300}) {
+    EXPECT_NE(localiser->localise(one_upright(map, times, 0)).status, LocalisationStatus::answered)
+        << times;
+  }
+  // A centimetre apart they are lines of their own, whose number alone is no proof either.
+  for (const int times : {3, 12, 20, 60}) {
+    EXPECT_NE(localiser->localise(one_upright(map, times, 0.01)).status,
+              LocalisationStatus::answered)
+        << times;
+  }
+  PlaceView two = one_upright(map, 60, 0);
+  for (int i = 0; i < 60; ++i) {
+    two.lines.push_back({{3, -0.5, 0}, {3, -0.5, 1.5}, LineKind::vertical, 0.01});
+  }
+  EXPECT_NE(localiser->localise(two).status, LocalisationStatus::answered);
+}
+
+TEST(LineLocaliser, RefusesAnErrorRateThatCannotBeStated) {
+  LocaliserOptions options;
+  options.max_error_rate = 1e-7;
+  EXPECT_THROW(make_localiser("lines", ten_rooms(), options), Error);
+}
+
 TEST(LineLocaliser, FindsThePoseToMillimetres) {
   const TopologicalMap map = ten_rooms();
   const auto localiser = make_localiser("lines", map);

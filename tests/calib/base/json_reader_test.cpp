@@ -51,6 +51,19 @@ TEST(JsonReader, RefusesAKeyGivenTwiceInOneObject) {
   EXPECT_NE(complaint(R"({"a": 1, "\u0061": 2})"), "");
 }
 
+TEST(JsonReader, NamesNumbersThatJsonDoesNotHave) {
+  for (const char* text : {"[1, NaN]", "[-Infinity]", "{\"a\": nan}", "[inf, 2]"}) {
+    EXPECT_EQ(complaint(text),
+              "a.json:1: holds NaN or Infinity, which JSON does not have; leave the value out")
+        << text;
+  }
+  EXPECT_EQ(complaint("[1, oops]"),
+            "a.json:1: is not JSON: a comma, quote or bracket is wrong here; correct it");
+  // Of a line the column.
+  EXPECT_EQ(test::error_message([] { parse_json_line("{\"a\": [1, oops]}", "b.jsonl:7"); }),
+            "b.jsonl:7:11: is not JSON: a comma, quote or bracket is wrong here; correct it");
+}
+
 TEST(JsonReader, RefusesNumbersThatNoDoubleHolds) {
   EXPECT_EQ(complaint("[1,\n1e309]"),
             "a.json:2: \"1e309\" is not a number that a double can hold; correct it");

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "calib/rig.h"
+#include "cli/program/namespaces.h"
+#include "localise/topological_map.h"
+
+namespace vernier::cli {
+
+/// Throws Error(map_name) if a map was recorded with cameras of another size, focal length (by more
+/// than 5 %) or baseline (10 %) than the rig that asks. Maps hold lines in metres, but what a view
+/// can hold of them depends on its cameras; a new calibration of the same rig differs by far less.
+void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name);
+
+}  // namespace vernier::cli

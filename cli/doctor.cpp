@@ -20,6 +20,7 @@
 #include "cli/program/share_folder.h"
 #include "cli/report/report_data.h"
 #include "cli/verbs.h"
+#include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::cli {
 namespace {
@@ -73,6 +74,15 @@ Finding image_finding() {
           "missing: install Debian's opencv-doc, or unpack it into build/opencv-doc", false};
 }
 
+Finding assimp_finding() {
+  const std::string version = assimp_version();
+  return {"assimp",
+          !version.empty() ? version
+                           : "missing: install Debian's libassimp-dev and rebuild; used by vernier "
+                             "world import for OBJ, DAE, IFC and others",
+          !version.empty()};
+}
+
 Finding library_finding() {
   const bool there = mrcal_available();
   return {"mrcal, C library",
@@ -123,6 +133,7 @@ std::vector<Finding> findings() {
       page_finding(),
       plots_finding(),
       library_finding(),
+      assimp_finding(),
       python_finding(),
       image_finding(),
       {"VERNIER_DATA",

@@ -16,6 +16,7 @@ set(vernier_fuzz_targets
   fuzz/targets/kalibr_target.cpp
   fuzz/targets/map_file.cpp
   fuzz/targets/matcher_command.cpp
+  fuzz/targets/mesh_file.cpp
   fuzz/targets/mrcal_cameramodel.cpp
   fuzz/targets/numpy.cpp
   fuzz/targets/observations_csv.cpp
@@ -34,5 +35,5 @@ set(vernier_fuzz_targets
   fuzz/targets/view_file.cpp
   fuzz/targets/world_toml.cpp
   fuzz/targets/yaml.cpp)
-set(vernier_fuzz_libraries vernier::sim nlohmann_json::nlohmann_json fmt::fmt SQLite::SQLite3
+set(vernier_fuzz_libraries vernier::sim vernier::mesh_files nlohmann_json::nlohmann_json fmt::fmt SQLite::SQLite3
                            tomlplusplus::tomlplusplus)

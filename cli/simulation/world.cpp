@@ -9,13 +9,20 @@
 #include <memory>
 #include <string>
 
+#include "calib/base/atomic_file.h"
+#include "calib/base/output_files.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/utf8.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/simulation/plan_picture.h"
+#include "cli/simulation/world_import.h"
+#include "sim/routing/floor_plan.h"
+#include "sim/routing/route_proposal.h"
 #include "sim/world/office.h"
+#include "sim/world/world_export.h"
 #include "sim/world_file.h"
 
 namespace vernier::cli {
@@ -24,6 +31,19 @@ namespace {
 struct MakeOptions {
   std::uint64_t seed = 1;
   std::string size = "20,15,2.5", name, output;
+};
+
+struct InfoOptions {
+  std::string world, plan;
+};
+
+struct ExportOptions {
+  std::string world, output;
+};
+
+struct RouteOptions {
+  std::string world, output, plan;
+  double eye_height_m = 1.2;
 };
 
 void report(const World& world, const std::string& file, Session& session) {
@@ -71,9 +91,50 @@ void make(const MakeOptions& options, Session& session) {
   report(build_world(description), options.output, session);
 }
 
-void info(const std::string& name, Session& session) {
-  const std::filesystem::path file = find_world(name);
-  report(build_world(read_world(file)), file.string(), session);
+void info(const InfoOptions& options, Session& session) {
+  const std::filesystem::path file = find_world(options.world);
+  const World world = build_world(read_world(file));
+  if (!options.plan.empty()) write_atomically(options.plan, plan_svg(world));
+  if (world.route.empty()) {
+    session.warn(file.string() + ": has no route; vernier world route proposes one");
+  }
+  report(world, file.string(), session);
+}
+
+void write_exported(const ExportOptions& options, Session& session) {
+  const std::filesystem::path file = find_world(options.world);
+  const World world = build_world(read_world(file));
+  const std::string ending = std::filesystem::path(options.output).extension().string();
+  if (ending != ".obj" && ending != ".ply") {
+    throw Error("--output " + options.output, "is neither an OBJ nor a PLY file",
+                "end its name in .obj or .ply");
+  }
+  write_atomically(options.output, ending == ".obj" ? world_obj(world) : world_ply(world));
+  session.result({{"file", options.output},
+                  {"segments", world.segments.size()},
+                  {"surfaces", world.surfaces.size()}},
+                 fmt::format("{}: {} segments as {}, {} surfaces as faces; metres, z up\n",
+                             options.output, world.segments.size(),
+                             ending == ".obj" ? "lines" : "edges", world.surfaces.size()));
+}
+
+void route(const RouteOptions& options, Session& session) {
+  const std::filesystem::path file = find_world(options.world);
+  WorldDescription description = read_world(file);
+  description.route.clear();
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(description), options.eye_height_m));
+  if (proposal.route.empty()) {
+    throw Error(file.string(), "no floor was found on which a robot can drive",
+                "give [[route]] points_m yourself");
+  }
+  description.route = proposal.route;
+  const World world = build_world(description);
+  OutputFiles outputs;
+  outputs.add(options.output, format_world(description));
+  if (!options.plan.empty()) outputs.add(options.plan, plan_svg(world));
+  outputs.commit();
+  report(world, options.output, session);
 }
 
 }  // namespace
@@ -92,13 +153,36 @@ void add_world(CLI::App& app, Session& session) {
   maker->add_option("-o,--output", o->output, "world file")->required();
   maker->callback([o, &session] { session.action = [=, &session] { make(*o, session); }; });
 
-  auto name = std::make_shared<std::string>();
+  auto i = std::make_shared<InfoOptions>();
   CLI::App* info_verb =
       add_verb(*verb, session, "info", "print feature counts, size and route of a world",
-               "vernier world info workshop");
-  info_verb->add_option("world", *name, "world file, or a shipped name (workshop)")->required();
-  info_verb->callback(
-      [name, &session] { session.action = [=, &session] { info(*name, session); }; });
+               "vernier world info workshop --plan workshop.svg");
+  info_verb->add_option("world", i->world, "world file, or a shipped name (workshop)")->required();
+  info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
+  info_verb->callback([i, &session] { session.action = [=, &session] { info(*i, session); }; });
+
+  auto e = std::make_shared<ExportOptions>();
+  CLI::App* exporter =
+      add_verb(*verb, session, "export", "write a world as OBJ or PLY, for other programs",
+               "vernier world export workshop -o workshop.ply");
+  exporter->add_option("world", e->world, "world file, or a shipped name")->required();
+  exporter->add_option("-o,--output", e->output, "file that ends in .obj or .ply")->required();
+  exporter->callback(
+      [e, &session] { session.action = [=, &session] { write_exported(*e, session); }; });
+
+  auto r = std::make_shared<RouteOptions>();
+  CLI::App* router = add_verb(*verb, session, "route",
+                              "propose a route through a world's free floor, in place of its own",
+                              "vernier world route workshop -o my.world.toml --plan route.svg");
+  router->add_option("world", r->world, "world file, or a shipped name")->required();
+  router->add_option("-o,--output", r->output, "world file with the route")->required();
+  router->add_option("--plan", r->plan, "SVG of the floor plan with the route");
+  router->add_option("--height-m", r->eye_height_m, "height of the robot's camera, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  router->callback([r, &session] { session.action = [=, &session] { route(*r, session); }; });
+
+  add_world_import(*verb, session);
 }
 
 }  // namespace vernier::cli

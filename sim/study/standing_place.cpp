@@ -35,19 +35,6 @@ double plan_distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const E
   return (a + t * d - p).norm();
 }
 
-/// Whether the point is inside the polygon's outline on the floor.
-bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const auto &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
 /// Height of the highest level surface over a point, such as a ceiling; infinite if there is none.
 double ceiling_height_m(const World& world, const Eigen::Vector2d& at_m) {
   double highest = -std::numeric_limits<double>::infinity();
@@ -141,6 +128,18 @@ class WayToRoute {
 };
 
 }  // namespace
+
+bool inside_plan(const Eigen::Vector2d& p, const std::vector<Eigen::Vector3d>& polygon) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const auto &a = polygon[i], &b = polygon[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
 
 ProtocolSpan span(QueryProtocol protocol) {
   constexpr double degree = std::numbers::pi / 180;

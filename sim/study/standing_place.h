@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "localise/place.h"
 #include "sim/experiment.h"
@@ -24,6 +25,9 @@ ProtocolSpan span(QueryProtocol protocol);
 /// Bounding box of the poses that are accepted: of segments and surfaces, from the floor at 0 or
 /// lower, and of the route with 0.6 m around it.
 WorldExtent standing_box(const World& world);
+
+/// Whether the point is inside the polygon's outline on the floor.
+bool inside_plan(const Eigen::Vector2d& at_m, const std::vector<Eigen::Vector3d>& polygon_m);
 
 /// Whether a surface keeps a robot of the given radius and height from standing at a point.
 bool blocks(const WorldSurface& surface,

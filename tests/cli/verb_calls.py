@@ -71,6 +71,26 @@ def features():
     return ''.join(json.dumps({'pose': [i, 0, 0], 'lines': lines[i:]}) + '\n' for i in range(5))
 
 
+def room():
+    """A room of 6 x 4 x 2.5 m with a floor and a column, as PLY."""
+    points, faces = [], []
+
+    def face(*corners):
+        faces.append(' '.join(map(str, (4, *range(len(points), len(points) + 4)))))
+        points.extend(' '.join(map(str, corner)) for corner in corners)
+
+    def walls(x0, y0, x1, y1):
+        for (xa, ya), (xb, yb) in zip(((x0, y0), (x1, y0), (x1, y1), (x0, y1)),
+                                      ((x1, y0), (x1, y1), (x0, y1), (x0, y0))):
+            face((xa, ya, 0), (xb, yb, 0), (xb, yb, 2.5), (xa, ya, 2.5))
+    walls(0, 0, 6, 4)
+    walls(4, 2, 4.3, 2.3)
+    face((0, 0, 0), (6, 0, 0), (6, 4, 0), (0, 4, 0))
+    return '\n'.join(['ply', 'format ascii 1.0', f'element vertex {len(points)}', 'property float x',
+                      'property float y', 'property float z', f'element face {len(faces)}',
+                      'property list uchar int vertex_indices', 'end_header', *points, *faces, ''])
+
+
 def map_file(views):
     """A map of views of upright lines, with the shipped rig (docs/file-formats.md)."""
     def part(kind, content):
@@ -102,6 +122,7 @@ def write_inputs(folder):
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
     (folder / 'study.toml').write_text(STUDY)
+    (folder / 'room.ply').write_text(room())
     (folder / 'views.jsonl').write_text(features())
     (folder / 'known.map').write_bytes(map_file(features().splitlines()))
 
@@ -134,6 +155,10 @@ def calls():
                               '--truth', 'big_truth.pgm', '--truth-scale', '4', '--max-disparity',
                               '20', '-o', 'out.toml'], ['out.toml']),
         Call('world', ['world', 'make', '--seed', '7', '-o', 'out.toml'], ['out.toml']),
+        Call('world_import', ['world', 'import', 'room.ply', '-o', 'out.toml', '--plan', 'out.svg'],
+             ['out.toml', 'out.svg']),
+        Call('world_export', ['world', 'export', 'workshop', '-o', 'out.ply'], ['out.ply']),
+        Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0'],
              []),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),

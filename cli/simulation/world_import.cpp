@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/world_import.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/output_files.h"
+#include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
+#include "calib/error.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/simulation/plan_picture.h"
+#include "sim/import/axes_and_unit.h"
+#include "sim/import/imported_world.h"
+#include "sim/import/mesh.h"
+#include "sim/mesh_files/mesh_file.h"
+#include "sim/routing/floor_plan.h"
+#include "sim/routing/route_proposal.h"
+#include "sim/world.h"
+#include "sim/world_file.h"
+
+namespace vernier::cli {
+namespace {
+
+struct ImportArguments {
+  std::string file, output, name, unit, up, plan;
+  ImportOptions options;
+  double eye_height_m = 1.2;
+  bool no_route = false;
+  std::vector<std::string> leave_out;
+};
+
+double unit_of(const std::string& word) {
+  static const std::map<std::string, double> units{
+      {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+  const auto found = units.find(word);
+  if (found != units.end()) return found->second;
+  const std::optional<double> metres = vernier::internal::to_real(word);
+  if (metres && *metres >= 1e-6 && *metres <= 1e6) return *metres;
+  throw Error("--unit " + vernier::internal::shortened(word), "is no unit of length",
+              "use m, cm, mm, in, ft, or the number of metres of one");
+}
+
+int axis_of(const std::string& word) {
+  if (word == "x" || word == "y" || word == "z") return word[0] - 'x';
+  throw Error("--up " + vernier::internal::shortened(word), "is no axis", "use x, y or z");
+}
+
+std::string storeys_text(const ImportReport& report, const ImportOptions& options) {
+  const std::string ends =
+      report.top_m ? fmt::format(", up to {:.2f} m", *report.top_m) : std::string();
+  if (options.floor_m) return fmt::format("floor at {:.2f} m (given){}", report.floor_m, ends);
+  if (report.storeys_m.empty()) {
+    return fmt::format("no storeys found, floor at the lowest point, {:.2f} m{}", report.floor_m,
+                       ends);
+  }
+  if (report.storeys_m.size() == 1) return fmt::format("floor at {:.2f} m{}", report.floor_m, ends);
+  return fmt::format("floors at {:.2f} m; storey {} was taken, from {:.2f} m{}",
+                     fmt::join(report.storeys_m, ", "), options.storey, report.floor_m, ends);
+}
+
+void run(ImportArguments arguments, Session& session) {
+  ImportOptions& options = arguments.options;
+  if (!arguments.unit.empty()) options.unit_m = unit_of(arguments.unit);
+  if (!arguments.up.empty()) options.up_axis = axis_of(arguments.up);
+  if (options.floor_m && options.storey != 1) {
+    throw Error("--storey", "is given beside --floor-m", "leave one out");
+  }
+  const Mesh mesh = read_mesh(arguments.file, arguments.leave_out);
+  if (mesh.doors > 0) {
+    session.info(
+        fmt::format("{}: its {} doors stand as the file has them, mostly closed; "
+                    "--leave-out IfcDoor opens them",
+                    arguments.file, mesh.doors));
+  }
+  ImportedWorld imported = import_world(mesh, options, arguments.file);
+  const ImportReport& report = imported.report;
+  WorldDescription& description = imported.world;
+  description.name = arguments.name.empty() ? std::filesystem::path(arguments.file).stem().string()
+                                            : arguments.name;
+  const bool is_open = description.loose.surfaces_m.empty();
+  if (is_open) {
+    session.warn(arguments.file + ": holds lines only; without surfaces nothing hides anything");
+  }
+  RouteProposal proposal;
+  if (!arguments.no_route) {
+    proposal = propose_route(FloorPlan(build_world(description), arguments.eye_height_m));
+    description.route = proposal.route;
+    if (proposal.route.empty()) {
+      session.warn(
+          arguments.file +
+          ": no floor was found on which a robot can drive; give [[route]] points_m to the "
+          "world file, or another --storey or --floor-m");
+    }
+  }
+  const World world = build_world(description);
+  OutputFiles outputs;
+  outputs.add(arguments.output, format_world(description));
+  if (!arguments.plan.empty()) outputs.add(arguments.plan, plan_svg(world));
+  outputs.commit();
+
+  const WorldExtent box = extent(world);
+  const Eigen::Vector3d size = box.high_m - box.low_m;
+  const char axis = static_cast<char>('x' + report.axes.up_axis);
+  const std::string moved =
+      report.moved_m.isZero()
+          ? ""
+          : fmt::format("  its plan was moved by {:.0f}, {:.0f} m to the origin\n",
+                        -report.moved_m.x(), -report.moved_m.y());
+  const double length_m = route_length_m(world.route);
+  const std::string route =
+      world.route.empty()
+          ? "no route\n"
+          : fmt::format(
+                "a route of {:.1f} m in {} legs, within 2 m of {:.0f} of {:.0f} m2 of floor\n",
+                length_m, world.route.size(), proposal.near_m2, proposal.floor_m2);
+  session.result(
+      {{"file", arguments.output},
+       {"format", mesh.format},
+       {"up", std::string(1, axis)},
+       {"up_because", report.axes.up_because},
+       {"unit_m", report.axes.unit_m},
+       {"unit_because", report.axes.unit_because},
+       {"triangles", report.triangles},
+       {"lines", report.lines},
+       {"storeys_m", report.storeys_m},
+       {"floor_m", report.floor_m},
+       {"parts_left_out", mesh.parts_left_out},
+       {"edges", report.edges},
+       {"edges_of_other_storeys", report.outside},
+       {"edges_too_short", report.shorter},
+       {"segments", world.segments.size()},
+       {"corners", world.corners.size()},
+       {"surfaces", world.surfaces.size()},
+       {"size_m", {size.x(), size.y(), size.z()}},
+       {"moved_m", {report.moved_m.x(), report.moved_m.y()}},
+       {"route_m", length_m},
+       {"legs", world.route.size()},
+       {"floor_m2", proposal.floor_m2},
+       {"floor_near_route_m2", proposal.near_m2}},
+      fmt::format("{}: {}, {} triangles and {} lines\n"
+                  "  {} is up ({}), a unit is {:g} m ({}); {}\n{}"
+                  "  {} edges, of them {} in other storeys and {} shorter than {:g} m\n"
+                  "{}: {:.1f} x {:.1f} x {:.1f} m, {} segments, {} corners, {} surfaces\n  {}",
+                  arguments.file, mesh.format, report.triangles, report.lines, axis,
+                  report.axes.up_because, report.axes.unit_m, report.axes.unit_because,
+                  storeys_text(report, options), moved, report.edges, report.outside,
+                  report.shorter, options.shortest_m, arguments.output, size.x(), size.y(),
+                  size.z(), world.segments.size(), world.corners.size(), world.surfaces.size(),
+                  route));
+}
+
+}  // namespace
+
+void add_world_import(CLI::App& world, Session& session) {
+  auto o = std::make_shared<ImportArguments>();
+  CLI::App* verb = add_verb(
+      world, session, "import",
+      "make a world of one storey of a building: OBJ, PLY, DAE, IFC, glTF, or lists of lines",
+      "vernier world import office.ifc --storey 2 -o office.world.toml --plan office.svg");
+  verb->add_option("file", o->file, "mesh or lines (docs/worlds.md)")->required();
+  verb->add_option("-o,--output", o->output, "world file")->required();
+  verb->add_option("--name", o->name, "name of the world (default: of the file)");
+  verb->add_option("--unit", o->unit,
+                   "of length: m, cm, mm, in, ft or metres (default: the file's, or by its size)");
+  verb->add_option("--up", o->up,
+                   "axis: x, y or z (default: the file's, or by its shape)");
+  verb->add_option("--storey", o->options.storey, "from the lowest, of those found")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--floor-m", o->options.floor_m,
+                   "height of the floor in the building, in place of --storey")
+      ->check(finite);
+  verb->add_option("--top-m", o->options.top_m,
+                   "where the world ends above its floor (default: below the next one)")
+      ->check(finite_and_positive);
+  verb->add_option("--crease-deg", o->options.crease_deg,
+                   "surfaces that meet at a smaller angle make no edge")
+      ->check(CLI::Range(1.0, 90.0))
+      ->capture_default_str();
+  verb->add_option("--shortest-m", o->options.shortest_m, "shorter edges are left out")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  verb->add_option("--leave-out", o->leave_out,
+                   "parts with this word in their name, as IfcDoor (repeatable)");
+  verb->add_flag("--no-route", o->no_route, "propose none");
+  verb->add_option("--height-m", o->eye_height_m, "height of the robot's camera, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--plan", o->plan, "SVG of the floor plan with the route");
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

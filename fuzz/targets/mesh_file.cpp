@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/mesh_files/mesh_file.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fuzz/fuzz_target.h"
+#include "sim/import/imported_world.h"
+#include "sim/import/mesh.h"
+#include "sim/world.h"
+#include "sim/world/world_export.h"
+
+namespace vernier::fuzz {
+namespace {
+
+using namespace sim;
+using namespace sim::internal;
+
+/// A mesh that was read becomes a world, or is refused; a world that came of it can be built.
+void import(const Mesh& mesh) {
+  if (mesh.triangles.size() + mesh.lines.size() > 5000) return;
+  const auto imported = accepted([&] { return import_world(mesh, {}, "mesh"); });
+  if (imported) build_world(imported->world);
+}
+
+void run_ply(std::string_view bytes) {
+  const auto file = input_file(bytes, "input.ply");
+  if (const auto mesh = accepted([&] { return read_ply(file); })) import(*mesh);
+}
+
+void run_line_list(std::string_view bytes) {
+  const auto file = input_file(bytes, "input.lines.txt");
+  if (const auto mesh = accepted([&] { return read_line_list(file); })) import(*mesh);
+}
+
+/// A room with a step in its floor.
+World room() {
+  World world;
+  world.name = "room";
+  const auto wall = [&](Eigen::Vector3d a, Eigen::Vector3d b, const Eigen::Vector3d& up) {
+    world.surfaces.push_back({{a, b, b + up, a + up}, 0});
+    world.segments.push_back({a, b, 0});
+  };
+  const Eigen::Vector3d up(0, 0, 2.5);
+  wall({0, 0, 0}, {6, 0, 0}, up);
+  wall({6, 0, 0}, {6, 4, 0}, up);
+  wall({6, 4, 0}, {0, 4, 0}, up);
+  wall({0, 4, 0}, {0, 0, 0}, up);
+  wall({0, 0, 0}, {6, 0, 0}, {0, 2, 0});
+  wall({0, 2, 0}, {6, 2, 0}, {0, 0, 0.2});
+  return world;
+}
+
+std::vector<std::string> ply_seeds() {
+  return {world_ply(room()),
+          "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+          "property double y\nproperty short z\nelement face 0\n"
+          "property list uchar uint vertex_index\nend_header\n" +
+              std::string(14, '\1')};
+}
+
+std::vector<std::string> line_list_seeds() {
+  return {
+      "# a room\n0 0 0 6 0 0\n6 0 0 6 4 0\n6 4 0 0 4 0\n0 4 0 0 0 0\n0 0 0 0 0 2.5\n"
+      "6,0,0,6,0,2.5\r\n"};
+}
+
+const Registered ply({"ply", 4000, "ply", run_ply, ply_seeds});
+const Registered line_list({"line_list", 2000, "columns", run_line_list, line_list_seeds});
+
+}  // namespace
+}  // namespace vernier::fuzz

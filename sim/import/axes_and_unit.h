@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/import/mesh.h"
+
+namespace vernier::sim::internal {
+
+/// How the coordinates of a file become metres with z up, and why it is thought so.
+struct AxesAndUnit {
+  int up_axis = 2;  ///< 0 to 2: x, y, z
+  double unit_m = 1;
+  std::string up_because, unit_because;
+};
+
+/// What is given, else what the file says, else what the mesh looks like: up is the axis for which
+/// two of three signs speak, which are walls that begin and end at common heights, level surface at
+/// few heights, and the shortest extent; the unit is that with which the building is 1.8 to 8 m
+/// high (else to 60 m) and 3 to 500 m long. Throws Error, asking, where that does not decide.
+AxesAndUnit axes_and_unit(const Mesh& mesh,
+                          std::optional<int> given_up,
+                          std::optional<double> given_unit_m,
+                          const std::string& place);
+
+/// The mesh in metres, z up.
+Mesh upright(Mesh mesh, const AxesAndUnit& axes);
+
+}  // namespace vernier::sim::internal

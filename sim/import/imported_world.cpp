@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/import/imported_world.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "calib/error.h"
+#include "sim/import/axes_and_unit.h"
+#include "sim/import/convex_faces.h"
+#include "sim/import/crease_edges.h"
+#include "sim/import/mesh.h"
+#include "sim/import/point_grid.h"
+#include "sim/import/storeys.h"
+#include "sim/world.h"
+#include "sim/world/world_check.h"
+#include "sim/world/world_limits.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+constexpr double weld_m = 5e-4;
+constexpr double largest_in_file = 1e9;  // in its units; of maps in millimetres too
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check(const Mesh& mesh, const std::string& place) {
+  if (mesh.triangles.empty() && mesh.lines.empty()) {
+    throw Error(place, "holds no triangles and no lines", "export the geometry of a building");
+  }
+  if (mesh.triangles.size() > most_triangles || mesh.lines.size() > most_triangles) {
+    throw Error(place,
+                fmt::format("has {} triangles and {} lines, more than {}", mesh.triangles.size(),
+                            mesh.lines.size(), most_triangles),
+                "export a storey, or fewer details");
+  }
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3d& v = mesh.vertices[i];
+    if (v.allFinite() && v.cwiseAbs().maxCoeff() <= largest_in_file) continue;
+    throw Error(place,
+                fmt::format(v.allFinite() ? "vertex {} is further than 1e9 units away"
+                                          : "vertex {} is not finite",
+                            i),
+                "correct it, or export again");
+  }
+}
+
+/// Where the storey begins and ends.
+std::pair<double, double> heights_of(const ImportOptions& options,
+                                     const Mesh& mesh,
+                                     const std::string& place,
+                                     ImportReport& report) {
+  report.storeys_m = floor_heights_m(mesh);
+  double floor = infinity, top = infinity;
+  if (options.floor_m) {
+    floor = *options.floor_m;
+  } else if (report.storeys_m.empty()) {
+    if (options.storey != 1) throw Error(place, "no storeys were found", "give the floor's height");
+    for (const Eigen::Vector3d& v : mesh.vertices) floor = std::min(floor, v.z());
+  } else {
+    const auto count = static_cast<int>(report.storeys_m.size());
+    if (options.storey < 1 || options.storey > count) {
+      throw Error(place, fmt::format("has {} storeys, and no storey {}", count, options.storey),
+                  "give one of them, or the floor's height");
+    }
+    floor = report.storeys_m[options.storey - 1];
+  }
+  constexpr double slab_m = 0.02;  // the next floor itself is left out
+  for (const double next : report.storeys_m) {
+    if (next > floor + 1) top = std::min(top, next - slab_m);
+  }
+  if (options.top_m) top = floor + *options.top_m;
+  return {floor, top};
+}
+
+/// What to subtract from coordinates of a plan that are more than 1 km from the origin.
+Eigen::Vector2d far_origin_m(const Mesh& mesh) {
+  constexpr double far_m = 1000;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(infinity), high = -low;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    low = low.cwiseMin(v.head<2>());
+    high = high.cwiseMax(v.head<2>());
+  }
+  const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  return most > far_m ? Eigen::Vector2d(low.array().round()) : Eigen::Vector2d::Zero();
+}
+
+/// Points where at least two segments end.
+std::vector<Eigen::Vector3d> corners_of(const std::vector<Segment>& segments) {
+  constexpr double same_m = 1e-3;
+  PointGrid grid(0.05);
+  std::vector<Eigen::Vector3d> ends;
+  std::vector<int> meeting;
+  for (const auto& [a, b] : segments) {
+    for (const Eigen::Vector3d* end : {&a, &b}) {
+      bool known = false;
+      grid.visit_near(*end, [&](std::uint32_t i) {
+        if (known || (ends[i] - *end).norm() >= same_m) return;
+        ++meeting[i];
+        known = true;
+      });
+      if (known) continue;
+      grid.add(*end, static_cast<std::uint32_t>(ends.size()));
+      ends.push_back(*end);
+      meeting.push_back(1);
+    }
+  }
+  std::vector<Eigen::Vector3d> corners;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (meeting[i] > 1) corners.push_back(ends[i]);
+  }
+  return corners;
+}
+
+/// As a world file holds it.
+Eigen::Vector3d to_tenth_mm(const Eigen::Vector3d& p) {
+  return {std::round(p.x() * 1e4) / 1e4, std::round(p.y() * 1e4) / 1e4,
+          std::round(p.z() * 1e4) / 1e4};
+}
+
+}  // namespace
+
+ImportedWorld import_world(const Mesh& mesh,
+                           const ImportOptions& options,
+                           const std::string& place) {
+  check(mesh, place);
+  ImportedWorld imported;
+  ImportReport& report = imported.report;
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  report.lines = mesh.lines.size();
+  report.axes = axes_and_unit(mesh, options.up_axis, options.unit_m, place);
+  Mesh building = upright(mesh, report.axes);
+  report.moved_m = far_origin_m(building);
+  Eigen::Vector3d origin;
+  origin << report.moved_m, 0;
+  for (Eigen::Vector3d& v : building.vertices) {
+    v -= origin;
+    if (v.cwiseAbs().maxCoeff() <= largest_coordinate_m) continue;
+    throw Error(place,
+                fmt::format("is larger than {:g} km with a unit of {:g} m",
+                            largest_coordinate_m / 1000, report.axes.unit_m),
+                "give --unit, or export one building");
+  }
+  building = welded(building, weld_m);
+  const auto [floor, top] = heights_of(options, building, place, report);
+  report.floor_m = floor;
+  if (std::isfinite(top)) report.top_m = top;
+  for (Eigen::Vector3d& v : building.vertices) v.z() -= floor;
+
+  constexpr double below_m = 0.01;  // the floor itself, and what stands on it
+  CreaseOptions crease;
+  crease.crease_rad = options.crease_deg * std::numbers::pi / 180;
+  FeatureSet& features = imported.world.loose;
+  const std::vector<Segment> edges = crease_edges(building, crease);
+  report.edges = edges.size();
+  for (const Segment& edge : edges) {
+    const auto [a, b] = between(edge, -below_m, top - floor);
+    const double length = (b - a).norm();
+    if (length == 0) {
+      ++report.outside;
+    } else if (length < options.shortest_m - 1e-6) {  // rounding must not decide
+      ++report.shorter;
+    } else {
+      features.segments_m.emplace_back(to_tenth_mm(a), to_tenth_mm(b));
+    }
+  }
+  for (const Polygon& face : convex_faces(building)) {
+    Polygon part = between(face, -below_m, top - floor);
+    for (Eigen::Vector3d& p : part) p = to_tenth_mm(p);
+    if (part.empty() || surface_error(part)) continue;
+    features.surfaces_m.push_back(std::move(part));
+  }
+  features.corners_m = corners_of(features.segments_m);
+  if (features.segments_m.empty()) {
+    throw Error(place,
+                fmt::format("has no edges of at least {:g} m in the storey (floor at {:g} m)",
+                            options.shortest_m, floor),
+                "choose another storey or floor, or another unit");
+  }
+  if (const auto fault = size_error(imported.world))
+    throw Error(place, fault->fault, fault->remedy);
+  return imported;
+}
+
+}  // namespace vernier::sim::internal

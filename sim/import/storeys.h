@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "sim/import/mesh.h"
+
+namespace vernier::sim::internal {
+
+/// Heights of the floors of a mesh in metres, z up, ascending: where many walls (upright surfaces
+/// of at least 1.5 m) begin, at least 2.2 m above each other; that of the largest level surface
+/// that faces up, lies up to 0.1 m below or 0.4 m above them and fills a tenth of the plan, if
+/// there is one. Empty if there are no walls.
+std::vector<double> floor_heights_m(const Mesh& mesh);
+
+}  // namespace vernier::sim::internal

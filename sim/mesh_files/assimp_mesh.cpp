@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/version.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/shown_text.h"
+#include "calib/error.h"
+#include "sim/import/mesh.h"
+#include "sim/mesh_files/mesh_file.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+/// What is known of a format, or stands in the file.
+void read_axes(const aiScene& scene, const std::string& ending, Mesh& mesh) {
+  // These formats have a metre and an axis, or assimp makes them so: y is up then.
+  for (const char* metric : {".dae", ".zae", ".ifc", ".ifczip", ".gltf", ".glb"}) {
+    if (ending != metric) continue;
+    mesh.up_axis = 1;
+    mesh.unit_m = 1;
+  }
+  if (ending == ".fbx" && scene.mMetaData != nullptr) {
+    std::int32_t up = 0;
+    double centimetres = 0;
+    if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) mesh.up_axis = up;
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) {
+      mesh.unit_m = 0.01 * centimetres;
+    }
+  }
+}
+
+std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  });
+  return text;
+}
+
+/// Adds the meshes of a scene's nodes. A mesh stands as often as nodes name it.
+class SceneReader {
+ public:
+  SceneReader(const aiScene& scene, const std::vector<std::string>& leave_out, std::string place)
+      : scene_(scene), place_(std::move(place)) {
+    for (const std::string& word : leave_out) leave_out_.push_back(in_small_letters(word));
+  }
+
+  void add_node(const aiNode& node, const aiMatrix4x4& parent, int depth, Mesh& mesh) const {
+    constexpr int deepest = 1000;
+    if (depth > deepest) throw Error(place_, "is nested too deep", "export it flat");
+    const std::string name = in_small_letters(node.mName.C_Str());
+    const bool is_left_out =
+        std::any_of(leave_out_.begin(), leave_out_.end(),
+                    [&](const std::string& word) { return name.find(word) != std::string::npos; });
+    if (is_left_out) {
+      ++mesh.parts_left_out;
+      return;
+    }
+    mesh.doors += name.starts_with("ifcdoor");
+    const aiMatrix4x4 T = parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      add_part(*scene_.mMeshes[node.mMeshes[i]], T, mesh);
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) {
+      add_node(*node.mChildren[i], T, depth + 1, mesh);
+    }
+  }
+
+ private:
+  void add_part(const aiMesh& part, const aiMatrix4x4& T, Mesh& mesh) const {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const aiVector3D at = T * part.mVertices[v];
+      mesh.vertices.emplace_back(at.x, at.y, at.z);
+    }
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      const unsigned* v = face.mIndices;
+      if (std::any_of(v, v + face.mNumIndices,
+                      [&](unsigned k) { return k >= part.mNumVertices; })) {
+        throw Error(place_, "names a vertex that it does not have", "export it again");
+      }
+      if (face.mNumIndices == 2) mesh.lines.push_back({first + v[0], first + v[1]});
+      if (face.mNumIndices == 3) {
+        mesh.triangles.push_back({first + v[0], first + v[1], first + v[2]});
+      }
+    }
+    if (mesh.triangles.size() > most_triangles || mesh.vertices.size() > 4 * most_triangles) {
+      throw Error(place_, "has more than " + std::to_string(most_triangles) + " triangles",
+                  "export a storey, or fewer details");
+    }
+  }
+
+  const aiScene& scene_;
+  std::vector<std::string> leave_out_;
+  std::string place_;
+};
+
+}  // namespace
+
+Mesh read_with_assimp(const std::filesystem::path& file,
+                      const std::vector<std::string>& leave_out) {
+  const std::string ending = in_small_letters(file.extension().string());
+  Assimp::Importer importer;
+  if (!importer.IsExtensionSupported(ending)) {
+    throw Error(file.string(), "is of no known format",
+                "convert it to OBJ, PLY, DAE, IFC, glTF or a list of lines (.txt)");
+  }
+  // The scene belongs to the importer.
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    throw Error(file.string(), vernier::internal::shortened(importer.GetErrorString()),
+                "check the file, or convert it to another format");
+  }
+  Mesh mesh;
+  mesh.format = ending.substr(1);
+  std::transform(mesh.format.begin(), mesh.format.end(), mesh.format.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  });
+  read_axes(*scene, ending, mesh);
+  SceneReader(*scene, leave_out, file.string()).add_node(*scene->mRootNode, aiMatrix4x4(), 0, mesh);
+  return mesh;
+}
+
+std::string assimp_version() {
+  return std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor());
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/base/text_lines.h"
+#include "calib/error.h"
+#include "sim/import/mesh.h"
+#include "sim/mesh_files/mesh_file.h"
+
+namespace vernier::sim::internal {
+
+using vernier::internal::split_fields;
+using vernier::internal::to_real;
+
+namespace {
+
+enum class Kind { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::optional<Kind> kind_of(std::string_view word) {
+  static const std::map<std::string_view, Kind> kinds{
+      {"char", Kind::int8},      {"int8", Kind::int8},       {"uchar", Kind::uint8},
+      {"uint8", Kind::uint8},    {"short", Kind::int16},     {"int16", Kind::int16},
+      {"ushort", Kind::uint16},  {"uint16", Kind::uint16},   {"int", Kind::int32},
+      {"int32", Kind::int32},    {"uint", Kind::uint32},     {"uint32", Kind::uint32},
+      {"float", Kind::float32},  {"float32", Kind::float32}, {"double", Kind::float64},
+      {"float64", Kind::float64}};
+  const auto found = kinds.find(word);
+  return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+struct Property {
+  std::string name;
+  Kind kind = Kind::float32;
+  std::optional<Kind> count;  // of a list
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+enum class Encoding { ascii, little_endian, big_endian };
+
+/// The parts of a PLY file in their order.
+class PlyReader {
+ public:
+  explicit PlyReader(const std::filesystem::path& file) : place_(file.string()) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw Error(place_, "cannot be read", "check its permissions");
+    bytes_.assign(std::istreambuf_iterator<char>(in), {});
+    read_header();
+  }
+
+  Mesh mesh() {
+    Mesh mesh;
+    mesh.format = "PLY";
+    for (const Element& element : elements_) {
+      if (element.count > most_triangles * 4) {
+        fail("has " + std::to_string(element.count) + " of element " + element.name,
+             "export fewer details");
+      }
+      for (std::uint64_t i = 0; i < element.count; ++i) read_one(element, i, mesh);
+    }
+    check_indices(mesh);
+    return mesh;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& fault, const std::string& remedy) const {
+    throw Error(place_, fault, remedy);
+  }
+
+  std::string_view header_line() {
+    const std::size_t end = bytes_.find('\n', at_);
+    if (end == std::string::npos || end - at_ > 1000) {
+      fail("has no header that ends with end_header", "use a PLY file");
+    }
+    std::string_view line = std::string_view(bytes_).substr(at_, end - at_);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    at_ = end + 1;
+    return line;
+  }
+
+  void read_header() {
+    if (bytes_.compare(0, 3, "ply") != 0) fail("does not begin with ply", "use a PLY file");
+    header_line();
+    bool has_format = false;
+    for (std::string_view line = header_line(); line != "end_header"; line = header_line()) {
+      const auto words = split_fields(line, " \t");
+      if (words.empty() || words[0] == "comment" || words[0] == "obj_info" || words[0].empty())
+        continue;
+      if (words[0] == "format" && words.size() >= 2) {
+        has_format = true;
+        if (words[1] == "ascii") {
+          encoding_ = Encoding::ascii;
+        } else if (words[1] == "binary_little_endian") {
+          encoding_ = Encoding::little_endian;
+        } else if (words[1] == "binary_big_endian") {
+          encoding_ = Encoding::big_endian;
+        } else {
+          fail("has an unknown format", "use ascii or binary_little_endian");
+        }
+      } else if (words[0] == "element" && words.size() == 3) {
+        const std::optional<double> count = to_real(words[2]);
+        if (!count || !(*count >= 0 && *count < 1e12) || *count != std::floor(*count)) {
+          fail("has a number of elements that is none", "correct its header");
+        }
+        elements_.push_back({std::string(words[1]), static_cast<std::uint64_t>(*count), {}});
+      } else if (words[0] == "property" && !elements_.empty()) {
+        add_property(words);
+      } else {
+        fail("has a header line that is not understood", "correct it, or export again");
+      }
+    }
+    if (!has_format) fail("does not say its format", "correct its header");
+  }
+
+  void add_property(const std::vector<std::string_view>& words) {
+    Property property;
+    const bool is_list = words.size() == 5 && words[1] == "list";
+    const std::optional<Kind> kind = kind_of(words[is_list ? 3 : 1]);
+    if (is_list) property.count = kind_of(words[2]);
+    if ((words.size() != 3 && !is_list) || !kind || (is_list && !property.count)) {
+      fail("has a property that is not understood", "correct its header");
+    }
+    property.kind = *kind;
+    property.name = words.back();
+    elements_.back().properties.push_back(property);
+  }
+
+  double number(Kind kind) {
+    if (encoding_ == Encoding::ascii) {
+      const std::size_t begin = bytes_.find_first_not_of(" \t\r\n", at_);
+      if (begin == std::string::npos) fail("ends too early", "copy or export it again");
+      const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", begin), bytes_.size());
+      const std::optional<double> value =
+          to_real(std::string_view(bytes_).substr(begin, end - begin));
+      if (!value) fail("holds a word where a number belongs", "export it again");
+      at_ = end;
+      return *value;
+    }
+    switch (kind) {
+      case Kind::int8:
+        return binary<std::int8_t>();
+      case Kind::uint8:
+        return binary<std::uint8_t>();
+      case Kind::int16:
+        return binary<std::int16_t>();
+      case Kind::uint16:
+        return binary<std::uint16_t>();
+      case Kind::int32:
+        return binary<std::int32_t>();
+      case Kind::uint32:
+        return binary<std::uint32_t>();
+      case Kind::float32:
+        return binary<float>();
+      case Kind::float64:
+        return binary<double>();
+    }
+    return 0;
+  }
+
+  template <class T>
+  double binary() {
+    std::array<char, sizeof(T)> raw;
+    if (bytes_.size() - at_ < raw.size()) fail("ends too early", "copy or export it again");
+    std::memcpy(raw.data(), bytes_.data() + at_, raw.size());
+    at_ += raw.size();
+    const bool swapped =
+        (encoding_ == Encoding::big_endian) == (std::endian::native == std::endian::little);
+    if (swapped) std::reverse(raw.begin(), raw.end());
+    T value;
+    std::memcpy(&value, raw.data(), raw.size());
+    return static_cast<double>(value);
+  }
+
+  std::uint32_t index(double value) const {
+    if (!(value >= 0 && value < std::numeric_limits<std::uint32_t>::max())) {
+      fail("names a vertex that it does not have", "export it again");
+    }
+    return static_cast<std::uint32_t>(value);
+  }
+
+  void read_one(const Element& element, std::uint64_t i, Mesh& mesh) {
+    Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
+    std::array<double, 2> ends{-1, -1};
+    for (const Property& property : element.properties) {
+      if (property.count) {
+        const double count = number(*property.count);
+        if (!(count >= 0 && count <= 1e6)) fail("has a list too long", "export it again");
+        corners_.clear();
+        for (double k = 0; k < count; ++k) corners_.push_back(number(property.kind));
+        const bool is_face = element.name == "face" &&
+                             (property.name == "vertex_indices" || property.name == "vertex_index");
+        for (std::size_t k = 2; is_face && k < corners_.size(); ++k) {
+          mesh.triangles.push_back(
+              {index(corners_[0]), index(corners_[k - 1]), index(corners_[k])});
+        }
+        if (mesh.triangles.size() > most_triangles)
+          fail("has too many triangles", "export fewer details");
+        continue;
+      }
+      const double value = number(property.kind);
+      if (element.name == "vertex") {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (property.name == std::string(1, static_cast<char>('x' + axis))) vertex[axis] = value;
+        }
+      } else if (element.name == "edge") {
+        if (property.name == "vertex1") ends[0] = value;
+        if (property.name == "vertex2") ends[1] = value;
+      }
+    }
+    if (element.name == "vertex") {
+      if (!vertex.allFinite()) {
+        fail("vertex " + std::to_string(i) + " is not finite", "correct it, or export again");
+      }
+      mesh.vertices.push_back(vertex);
+    } else if (element.name == "edge") {
+      mesh.lines.push_back({index(ends[0]), index(ends[1])});
+    }
+  }
+
+  void check_indices(const Mesh& mesh) const {
+    const auto good = [&](std::uint32_t i) { return i < mesh.vertices.size(); };
+    const auto all_good = [&](const auto& ends) {
+      return std::all_of(ends.begin(), ends.end(), good);
+    };
+    if (!std::all_of(mesh.triangles.begin(), mesh.triangles.end(), all_good) ||
+        !std::all_of(mesh.lines.begin(), mesh.lines.end(), all_good)) {
+      fail("names a vertex that it does not have", "export it again");
+    }
+  }
+
+  std::string place_, bytes_;
+  std::size_t at_ = 0;
+  Encoding encoding_ = Encoding::ascii;
+  std::vector<Element> elements_;
+  std::vector<double> corners_;
+};
+
+}  // namespace
+
+Mesh read_ply(const std::filesystem::path& file) { return PlyReader(file).mesh(); }
+
+}  // namespace vernier::sim::internal

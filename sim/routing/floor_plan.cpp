@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/routing/floor_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "calib/error.h"
+#include "sim/study/free_floor.h"
+#include "sim/study/standing_place.h"
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+constexpr double wide_m = 2;    // a gap in the walls through which the outside comes in
+constexpr double around_m = 2;  // of the plan, around the world
+
+constexpr std::array<std::pair<int, int>, 4> beside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+
+/// Lines of a world without surfaces as what stands on the floor.
+World with_walls(const World& world, double top_m) {
+  constexpr double low_m = -0.1, thin_m = 0.01, wall_m = 1;
+  World walls = world;
+  for (const WorldSegment& segment : world.segments) {
+    Eigen::Vector3d a = segment.a_m, b = segment.b_m;
+    const auto [low, high] = std::minmax(a.z(), b.z());
+    if (high < low_m || low > top_m) continue;
+    if ((b - a).head<2>().norm() < thin_m) b.x() = a.x() + thin_m;
+    a.z() = 0;
+    b.z() = 0;
+    const Eigen::Vector3d up(0, 0, wall_m);
+    walls.surfaces.push_back({{a, b, b + up, a + up}, segment.object});
+  }
+  return walls;
+}
+
+}  // namespace
+
+FloorPlan::FloorPlan(const World& world, double eye_height_m) {
+  constexpr double most_cells = 4e6;
+  const WorldExtent box = standing_box(world);
+  const Eigen::Vector2d size = (box.high_m - box.low_m).head<2>();
+  const double cells = (size.x() + 2 * around_m) / cell_m * ((size.y() + 2 * around_m) / cell_m);
+  if (!(cells <= most_cells)) {
+    throw Error("route",
+                fmt::format("the floor of {:.0f} x {:.0f} m is too large to propose one", size.x(),
+                            size.y()),
+                "give [[route]] points_m yourself");
+  }
+  low_m_ = box.low_m.head<2>() - Eigen::Vector2d::Constant(around_m);
+  width_ = static_cast<int>((size.x() + 2 * around_m) / cell_m) + 1;
+  height_ = static_cast<int>((size.y() + 2 * around_m) / cell_m) + 1;
+  const World walls =
+      world.surfaces.empty() ? with_walls(world, eye_height_m + robot_top_m) : world;
+  const Standing standing(walls, eye_height_m);
+  const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  free_.resize(count);
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) free_[index(x, y)] = standing.is_free(centre_m(x, y));
+  }
+  const std::vector<bool> outside = outdoors();
+  std::vector<bool> indoors(count);
+  for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && !outside[i];
+  inside_ = largest_part(indoors);
+  constexpr double least_m2 = 4;  // a room
+  // Without walls around, the floor that there is.
+  if (inside_m2() < least_m2) {
+    const std::vector<bool> floored = over_floor(world);
+    for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && floored[i];
+    inside_ = largest_part(indoors);
+  }
+  if (inside_m2() < least_m2) inside_ = largest_part(free_);
+  clearance_ = distances_to_others(inside_);
+}
+
+Eigen::Vector2d FloorPlan::centre_m(int x, int y) const {
+  return low_m_ + cell_m * Eigen::Vector2d(x + 0.5, y + 0.5);
+}
+
+double FloorPlan::inside_m2() const {
+  return cell_m * cell_m * static_cast<double>(std::count(inside_.begin(), inside_.end(), true));
+}
+
+std::vector<bool> FloorPlan::outdoors() const {
+  const std::vector<float> room = distances_to_others(free_, true);
+  std::vector<bool> reached(free_.size());
+  std::vector<std::pair<int, int>> open;
+  const auto reach = [&](int x, int y) {
+    if (!has(x, y) || reached[index(x, y)] || room[index(x, y)] < wide_m / 2) return;
+    reached[index(x, y)] = true;
+    open.emplace_back(x, y);
+  };
+  for (int x = 0; x < width_; ++x) {
+    reach(x, 0);
+    reach(x, height_ - 1);
+  }
+  for (int y = 0; y < height_; ++y) {
+    reach(0, y);
+    reach(width_ - 1, y);
+  }
+  while (!open.empty()) {
+    const auto [x, y] = open.back();
+    open.pop_back();
+    for (const auto& [dx, dy] : beside) reach(x + dx, y + dy);
+  }
+  // and what is so close to it that it cannot be a room
+  std::vector<bool> others(reached.size());
+  for (std::size_t i = 0; i < reached.size(); ++i) others[i] = !reached[i];
+  const std::vector<float> away = distances_to_others(others, true);
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    reached[i] = reached[i] || (free_[i] && away[i] <= wide_m / 2);
+  }
+  return reached;
+}
+
+std::vector<bool> FloorPlan::over_floor(const World& world) const {
+  constexpr double thick_m = 0.1;
+  std::vector<bool> floored(free_.size());
+  for (const WorldSurface& surface : world.surfaces) {
+    Eigen::Vector3d low = surface.polygon_m[0], high = low;
+    for (const Eigen::Vector3d& p : surface.polygon_m) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    if (high.z() > thick_m || low.z() < -thick_m) continue;
+    const auto column = [&](double at, double from, int most) {
+      return std::clamp(static_cast<int>((at - from) / cell_m), 0, most - 1);
+    };
+    for (int y = column(low.y(), low_m_.y(), height_); y <= column(high.y(), low_m_.y(), height_);
+         ++y) {
+      for (int x = column(low.x(), low_m_.x(), width_); x <= column(high.x(), low_m_.x(), width_);
+           ++x) {
+        if (inside_plan(centre_m(x, y), surface.polygon_m)) floored[index(x, y)] = true;
+      }
+    }
+  }
+  return floored;
+}
+
+std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {
+  std::vector<bool> seen(cells.size());
+  std::vector<std::size_t> best;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (!cells[index(x, y)] || seen[index(x, y)]) continue;
+      std::vector<std::size_t> part;
+      std::vector<std::pair<int, int>> open{{x, y}};
+      seen[index(x, y)] = true;
+      while (!open.empty()) {
+        const auto [u, v] = open.back();
+        open.pop_back();
+        part.push_back(index(u, v));
+        for (const auto& [dx, dy] : beside) {
+          const int s = u + dx, t = v + dy;
+          if (!has(s, t) || !cells[index(s, t)] || seen[index(s, t)]) continue;
+          seen[index(s, t)] = true;
+          open.emplace_back(s, t);
+        }
+      }
+      if (part.size() > best.size()) best = std::move(part);
+    }
+  }
+  std::vector<bool> largest(cells.size());
+  for (const std::size_t i : best) largest[i] = true;
+  return largest;
+}
+
+std::vector<float> FloorPlan::distances_to_others(const std::vector<bool>& cells,
+                                                  bool is_endless) const {
+  constexpr float far = 1e6f;
+  const auto straight = static_cast<float>(cell_m), slanted = static_cast<float>(cell_m * 4 / 3);
+  std::vector<float> distances(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) distances[i] = cells[i] ? far : 0;
+  const auto shorten = [&](int x, int y, int dx, int dy) {
+    const bool is_there = has(x + dx, y + dy);
+    if (!is_there && is_endless) return;
+    const float there = is_there ? distances[index(x + dx, y + dy)] : 0;
+    float& here = distances[index(x, y)];
+    here = std::min(here, there + (dx != 0 && dy != 0 ? slanted : straight));
+  };
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      for (const auto& [dx, dy] : {std::pair(-1, 0), {-1, -1}, {0, -1}, {1, -1}}) {
+        shorten(x, y, dx, dy);
+      }
+    }
+  }
+  for (int y = height_ - 1; y >= 0; --y) {
+    for (int x = width_ - 1; x >= 0; --x) {
+      for (const auto& [dx, dy] : {std::pair(1, 0), {1, 1}, {0, 1}, {-1, 1}}) {
+        shorten(x, y, dx, dy);
+      }
+    }
+  }
+  return distances;
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace vernier::sim::internal {
+
+/// The floor in square cells: where a robot can stand, and how far from what is in its way.
+class FloorPlan {
+ public:
+  static constexpr double cell_m = 0.15;
+
+  /// The robot's camera is at `eye_height_m`. Of a world without surfaces its lines on the floor
+  /// and at the robot's height stand for walls. Throws Error if the floor is larger than 90,000 m².
+  FloorPlan(const World& world, double eye_height_m);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool has(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+  Eigen::Vector2d centre_m(int x, int y) const;
+
+  /// Whether the cell belongs to the largest part of the floor that is inside: free, and not
+  /// connected with the surroundings of the world through gaps wider than 2 m, so that outer doors
+  /// may stand open; in a world without walls around, free and over a floor, or just free.
+  bool inside(int x, int y) const { return inside_[index(x, y)]; }
+  /// Distance from a cell of the inside to the nearest cell that is not free, metres.
+  double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
+  double inside_m2() const;
+
+ private:
+  std::vector<bool> outdoors() const;
+  std::vector<bool> over_floor(const World& world) const;
+  std::vector<bool> largest_part(const std::vector<bool>& cells) const;
+  /// From each cell of a set to the nearest of the others (0 in these), by two passes of chamfer
+  /// steps (Borgefors, Computer Vision, Graphics, and Image Processing 34, 1986), 8 % too long or
+  /// short at most. What lies beyond the plan counts as one of the others unless it is endless.
+  std::vector<float> distances_to_others(const std::vector<bool>& cells,
+                                         bool is_endless = false) const;
+
+  Eigen::Vector2d low_m_;
+  int width_ = 0, height_ = 0;
+  std::vector<bool> free_, inside_;
+  std::vector<float> clearance_;
+};
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/import/imported_world.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "sim/import/axes_and_unit.h"
+#include "sim/import/mesh.h"
+#include "sim/import/storeys.h"
+#include "sim/routing/floor_plan.h"
+#include "sim/routing/route_proposal.h"
+#include "sim/study/free_floor.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "tests/sim/import/made_meshes.h"
+#include "tests/support/error_message.h"
+
+namespace vernier::sim::internal {
+namespace {
+
+using test::add_box;
+using test::add_rectangle;
+using vernier::test::error_message;
+
+/// Two storeys of the house and their slabs.
+Mesh two_storeys() {
+  Mesh mesh = test::house();
+  const Mesh upper = test::house(3, false);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), upper.vertices.begin(), upper.vertices.end());
+  for (const auto& [a, b, c] : upper.triangles) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  add_box(mesh, {-0.1, -0.1, 2.7}, {8.2, 3.1, 3});
+  return mesh;
+}
+
+Mesh turned_and_scaled(Mesh mesh, int up, double unit_m) {
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    if (up == 1) v = Eigen::Vector3d(v.x(), v.z(), -v.y());
+    if (up == 0) v = Eigen::Vector3d(v.z(), v.y(), -v.x());
+    v /= unit_m;
+  }
+  return mesh;
+}
+
+TEST(Storeys, AreWhereWallsBegin) {
+  const std::vector<double> floors = floor_heights_m(welded(two_storeys(), 5e-4));
+  ASSERT_EQ(floors.size(), 2u);
+  EXPECT_NEAR(floors[0], 0, 1e-9);
+  EXPECT_NEAR(floors[1], 3, 1e-9);
+  // Furniture is no storey, and a building without a floor has one.
+  Mesh furnished = test::house(0, false);
+  for (int i = 0; i < 3; ++i) add_box(furnished, {1.0 + i, 1, 0.7}, {1.8 + i, 2, 0.75});
+  EXPECT_EQ(floor_heights_m(welded(furnished, 5e-4)).size(), 1u);
+}
+
+TEST(AxesAndUnit, AreRecognised) {
+  for (const int up : {0, 1, 2}) {
+    for (const double unit : {1.0, 0.001}) {
+      const Mesh mesh = turned_and_scaled(test::house(), up, unit);
+      const AxesAndUnit axes = axes_and_unit(mesh, {}, {}, "m.obj");
+      EXPECT_EQ(axes.up_axis, up);
+      EXPECT_EQ(axes.unit_m, unit);
+      Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+      for (const Eigen::Vector3d& v : upright(mesh, axes).vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+      }
+      EXPECT_NEAR(high.z() - low.z(), 2.5, 1e-9);
+      EXPECT_NEAR(low.z(), 0, 1e-9);
+    }
+  }
+}
+
+TEST(AxesAndUnit, AreAskedForWhereTheyAreNotClear) {
+  Mesh cube;
+  add_box(cube, {0, 0, 0}, {5, 5, 5});
+  EXPECT_EQ(error_message([&] { axes_and_unit(cube, {}, {}, "m.obj"); }),
+            "m.obj: does not say which axis is up, and its shape does not show it; say so with "
+            "--up x, y or z");
+  Mesh hall;
+  add_box(hall, {0, 0, 0}, {60, 40, 8});
+  EXPECT_NE(error_message([&] { axes_and_unit(hall, {}, {}, "m.obj"); }).find("which may be m ("),
+            std::string::npos);
+  Mesh dust;
+  add_box(dust, {0, 0, 0}, {1e-5, 1e-5, 2e-6});
+  EXPECT_NE(error_message([&] { axes_and_unit(dust, {}, {}, "m.obj"); }).find("it is no building"),
+            std::string::npos);
+  // What is given is not questioned.
+  EXPECT_EQ(axes_and_unit(cube, 1, 0.0254, "m.obj").unit_m, 0.0254);
+}
+
+// Property: unit, axis, and where a building stands change nothing but the plan's origin.
+TEST(ImportedWorld, IsTheSameInAnyUnitAndAxis) {
+  const ImportedWorld plain = import_world(test::house(), {}, "m.obj");
+  EXPECT_EQ(plain.report.outside, 0u);
+  EXPECT_GE(plain.world.loose.segments_m.size(), 45u);
+  for (const int up : {0, 1, 2}) {
+    for (const double unit : {1.0, 0.001}) {
+      const ImportedWorld other =
+          import_world(turned_and_scaled(test::house(), up, unit), {}, "m.obj");
+      ASSERT_EQ(other.world.loose.segments_m.size(), plain.world.loose.segments_m.size());
+      EXPECT_EQ(other.world.loose.surfaces_m.size(), plain.world.loose.surfaces_m.size());
+    }
+  }
+  Mesh far = test::house();
+  for (Eigen::Vector3d& v : far.vertices) v += Eigen::Vector3d(512'000, -4'000'000, 120);
+  const ImportedWorld moved = import_world(far, {}, "m.obj");
+  EXPECT_EQ(moved.world.loose.segments_m.size(), plain.world.loose.segments_m.size());
+  EXPECT_NEAR(moved.report.moved_m.x(), 512'000, 1);
+  EXPECT_NEAR(moved.report.floor_m, 120, 1e-6);
+}
+
+TEST(ImportedWorld, IsOneStorey) {
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const ImportedWorld lower = import_world(two_storeys(), options, "m.obj");
+  options.storey = 2;
+  const ImportedWorld upper = import_world(two_storeys(), options, "m.obj");
+  for (const ImportedWorld* world : {&lower, &upper}) {
+    double low = 1e9, high = -1e9;
+    for (const auto& [a, b] : world->world.loose.segments_m) {
+      low = std::min({low, a.z(), b.z()});
+      high = std::max({high, a.z(), b.z()});
+    }
+    EXPECT_NEAR(low, 0, 0.02);
+    EXPECT_LT(high, 3);
+  }
+  EXPECT_NEAR(upper.report.floor_m, 3, 1e-9);
+  options.storey = 3;
+  EXPECT_EQ(error_message([&] { import_world(two_storeys(), options, "m.obj"); }),
+            "m.obj: has 2 storeys, and no storey 3; give one of them, or the floor's height");
+}
+
+TEST(ImportedWorld, RefusesWhatIsNone) {
+  EXPECT_EQ(error_message([] { import_world({}, {}, "m.obj"); }),
+            "m.obj: holds no triangles and no lines; export the geometry of a building");
+  Mesh bad = test::house();
+  bad.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(error_message([&] { import_world(bad, {}, "m.obj"); }),
+            "m.obj: vertex 5 is not finite; correct it, or export again");
+}
+
+// Property: the route leads through both rooms, where a robot can stand, and each leg begins where
+// a robot gets to from the first.
+TEST(ProposedRoute, LeadsThroughAllRooms) {
+  WorldDescription description = import_world(test::house(), {}, "m.obj").world;
+  const RouteProposal proposal = propose_route(FloorPlan(build_world(description), 1.2));
+  ASSERT_FALSE(proposal.route.empty());
+  EXPECT_GT(proposal.near_m2, 0.85 * proposal.floor_m2);
+  EXPECT_NEAR(proposal.floor_m2, 8 * 2.7, 4);  // the robot keeps away from walls
+  description.route = {proposal.route[0]};
+  const World world = build_world(description);
+  const Visibility visibility(world);
+  const FreeFloor floor(visibility, 1.2);
+  bool left = false, right = false;
+  const double length = route_length_m(proposal.route);
+  for (double s = 0; s < length; s += 0.1) {
+    const auto pose = route_point(proposal.route, s).pose;
+    EXPECT_TRUE(floor.reaches({pose.x_m, pose.y_m})) << pose.x_m << ' ' << pose.y_m;
+    EXPECT_TRUE(pose.x_m > 0 && pose.x_m < 8.2) << "it leaves the house by its open door";
+    left = left || pose.x_m < 2;
+    right = right || pose.x_m > 6;
+  }
+  EXPECT_TRUE(left && right);
+}
+
+TEST(ProposedRoute, IsEmptyWithoutFloor) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, 0}, {0.3, 0.3, 2.5});
+  add_rectangle(mesh, {0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0});
+  ImportOptions options;
+  options.unit_m = 1;
+  options.up_axis = 2;
+  const RouteProposal proposal =
+      propose_route(FloorPlan(build_world(import_world(mesh, options, "m.obj").world), 1.2));
+  EXPECT_LT(proposal.near_m2, 40);  // around the box at most
+}
+
+}  // namespace
+}  // namespace vernier::sim::internal

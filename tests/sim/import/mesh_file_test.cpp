@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/mesh_files/mesh_file.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "datasets/shipped.h"
+#include "sim/import/imported_world.h"
+#include "sim/import/mesh.h"
+#include "sim/world.h"
+#include "sim/world/office.h"
+#include "sim/world/world_export.h"
+#include "tests/support/error_message.h"
+#include "tests/support/foreign_files.h"
+
+namespace vernier::sim::internal {
+namespace {
+
+using vernier::test::error_message;
+using vernier::test::Folder;
+
+std::string said_of(const std::string& name, const std::string& text) {
+  const Folder folder;
+  const std::filesystem::path file = folder.write(name, text);
+  std::string said = error_message([&] { read_mesh(file); });
+  const std::string path = folder.path().string() + "/";
+  if (const std::size_t at = said.find(path); at != std::string::npos) said.erase(at, path.size());
+  return said;
+}
+
+constexpr const char* square =
+    "ply\nformat ascii 1.0\ncomment made\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty uchar red\nelement face 1\n"
+    "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\n"
+    "property int vertex2\nend_header\n0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n1 3\n";
+
+/// The square in binary.
+std::string binary_square(bool is_big) {
+  std::string text = square;
+  text = text.substr(0, text.find("end_header") + 11);
+  text.replace(text.find("ascii"), 5, is_big ? "binary_big_endian" : "binary_little_endian");
+  const auto add = [&](auto value) {
+    std::string bytes(sizeof value, 0);
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (is_big == (std::endian::native == std::endian::little)) {
+      bytes = std::string(bytes.rbegin(), bytes.rend());
+    }
+    text += bytes;
+  };
+  for (const auto& [x, y] : {std::pair(0.f, 0.f), {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
+    add(x);
+    add(y);
+    add(0.f);
+    add(std::uint8_t{9});
+  }
+  add(std::uint8_t{4});
+  for (const std::int32_t i : {0, 1, 2, 3, 1, 3}) add(i);
+  return text;
+}
+
+TEST(PlyFile, IsReadInAllItsEncodings) {
+  const Folder folder;
+  for (const std::string& text : {std::string(square), binary_square(false), binary_square(true)}) {
+    const Mesh mesh = read_mesh(folder.write("a.PLY", text));
+    ASSERT_EQ(mesh.vertices.size(), 4u);
+    EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(1, 1, 0));
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+    ASSERT_EQ(mesh.lines.size(), 1u);
+    EXPECT_EQ(mesh.lines[0], (std::array<std::uint32_t, 2>{1, 3}));
+  }
+}
+
+TEST(PlyFile, SaysWhatIsWrong) {
+  const std::string text = square;
+  const auto with = [&](const std::string& was, const std::string& is) {
+    std::string changed = text;
+    changed.replace(changed.find(was), was.size(), is);
+    return said_of("a.ply", changed);
+  };
+  EXPECT_EQ(said_of("a.ply", "solid"), "a.ply: does not begin with ply; use a PLY file");
+  EXPECT_EQ(said_of("a.ply", "ply\nformat ascii 1.0\n"),
+            "a.ply: has no header that ends with end_header; use a PLY file");
+  EXPECT_EQ(with("format ascii 1.0", "comment"),
+            "a.ply: does not say its format; correct its header");
+  EXPECT_EQ(with("ascii", "latin"),
+            "a.ply: has an unknown format; use ascii or binary_little_endian");
+  EXPECT_EQ(with("vertex 4", "vertex -4"),
+            "a.ply: has a number of elements that is none; correct its header");
+  EXPECT_EQ(with("vertex 4", "vertex 99999999999"),
+            "a.ply: has 99999999999 of element vertex; export fewer details");
+  EXPECT_EQ(with("float x", "flaot x"),
+            "a.ply: has a property that is not understood; correct its header");
+  EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 7"),
+            "a.ply: names a vertex that it does not have; export it again");
+  EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 -1"),
+            "a.ply: names a vertex that it does not have; export it again");
+  EXPECT_EQ(with("1 1 0 9", "1 nan 0 9"),
+            "a.ply: vertex 2 is not finite; correct it, or export again");
+  EXPECT_EQ(with("1 1 0 9", "1 one 0 9"),
+            "a.ply: holds a word where a number belongs; export it again");
+  // Cut anywhere it is refused, or nothing of its content is missing.
+  for (std::size_t size = 0; size + 1 < text.size(); ++size) {
+    EXPECT_NE(said_of("a.ply", text.substr(0, size)), "") << size;
+  }
+  const std::string binary = binary_square(false);
+  for (std::size_t size = 0; size < binary.size(); ++size) {
+    EXPECT_NE(said_of("a.ply", binary.substr(0, size)), "") << size;
+  }
+}
+
+TEST(LineList, IsReadAndSaysWhatIsWrong) {
+  const Folder folder;
+  const Mesh mesh =
+      read_mesh(folder.write("a.lines.txt", "# floor\n0 0 0 1 0 0\n\n1,0,0,1,2,0\r\n"));
+  EXPECT_EQ(mesh.lines.size(), 2u);
+  EXPECT_EQ(mesh.unit_m, 1);
+  EXPECT_EQ(mesh.up_axis, 2);
+  EXPECT_EQ(said_of("a.txt", "0 0 0 1 0 0\n0 0 0 1 0\n"),
+            "a.txt:2: has 5 numbers; give x1 y1 z1 x2 y2 z2, in metres");
+  EXPECT_NE(said_of("a.txt", "0 0 0 1 0 one\n").find("a.txt:1:"), std::string::npos);
+}
+
+TEST(MeshFile, RefusesWhatItCannotRead) {
+  const Folder folder;
+  EXPECT_NE(error_message([&] { read_mesh(folder.path() / "no.obj"); }).find("no such file"),
+            std::string::npos);
+  EXPECT_NE(error_message([&] { read_mesh(folder.path()); }).find("is no regular file"),
+            std::string::npos);
+  EXPECT_NE(said_of("a.docx", "text"), "");
+  EXPECT_NE(said_of("a.ifc", "ISO-10303-21;\nHEADER;\n"), "");
+  EXPECT_NE(error_message([&] {
+              read_mesh(folder.write("a.ply", square), {"door"});
+            }).find("no names of parts"),
+            std::string::npos);
+}
+
+// Property: a world that is exported and imported again has the same edges, but for those shorter
+// than what is asked for; pieces in a line are joined.
+TEST(WorldExport, ComesBack) {
+  const Folder folder;
+  const World world = build_world(make_office(41));
+  std::vector<std::pair<std::string, std::string>> files{{"o.ply", world_ply(world)}};
+  if (!assimp_version().empty()) files.emplace_back("o.obj", world_obj(world));
+  double length = 0, area_of_all = 0;
+  for (const WorldSegment& s : world.segments) length += (s.b_m - s.a_m).norm();
+  for (const auto& [name, text] : files) {
+    ImportOptions options;
+    options.shortest_m = 0.001;
+    options.up_axis = 2;
+    options.unit_m = 1;
+    const ImportedWorld back = import_world(read_mesh(folder.write(name, text)), options, name);
+    double again = 0;
+    for (const auto& [a, b] : back.world.loose.segments_m) again += (b - a).norm();
+    // Surfaces add the edges that a world leaves out, those of walls at the floor for instance.
+    EXPECT_GT(again, 0.97 * length) << name;
+    EXPECT_LT(again, 1.25 * length) << name;
+    EXPECT_GT(back.world.loose.surfaces_m.size(), 0.5 * static_cast<double>(world.surfaces.size()));
+    if (area_of_all == 0) area_of_all = again;
+    EXPECT_NEAR(again, area_of_all, 0.01 * length) << "OBJ and PLY differ";
+  }
+}
+
+}  // namespace
+}  // namespace vernier::sim::internal

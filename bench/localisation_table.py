@@ -70,7 +70,8 @@ def run_study(program, text, folder, threads):
 def world_files(program, options):
     """Name and file of each world."""
     if not options.worlds:
-        return [(options.world, options.world)]
+        file = pathlib.Path(options.world)  # or a shipped name
+        return [(file.name.split(".")[0], file.resolve() if file.is_file() else options.world)]
     first, last = (int(x) for x in options.worlds.split("-"))
     made = []
     for seed in range(first, last + 1):

@@ -44,9 +44,8 @@ void check(const Mesh& mesh, const std::string& place) {
     const Eigen::Vector3d& v = mesh.vertices[i];
     if (v.allFinite() && v.cwiseAbs().maxCoeff() <= largest_in_file) continue;
     throw Error(place,
-                fmt::format(v.allFinite() ? "vertex {} is further than 1e9 units away"
-                                          : "vertex {} is not finite",
-                            i),
+                fmt::format("vertex {} is {}", i,
+                            v.allFinite() ? "further than 1e9 units away" : "not finite"),
                 "correct it, or export again");
   }
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/import/mesh.h"
+#include "sim/mesh_files/child_process.h"
 #include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::sim::internal {
@@ -107,27 +109,102 @@ class SceneReader {
 
 }  // namespace
 
-Mesh read_with_assimp(const std::filesystem::path& file,
-                      const std::vector<std::string>& leave_out) {
-  const std::string ending = in_small_letters(file.extension().string());
+namespace {
+
+Mesh read_here(const std::filesystem::path& file,
+               const std::string& ending,
+               const std::vector<std::string>& leave_out) {
   Assimp::Importer importer;
-  if (!importer.IsExtensionSupported(ending)) {
-    throw Error(file.string(), "is of no known format",
-                "convert it to OBJ, PLY, DAE, IFC, glTF or a list of lines (.txt)");
-  }
   // The scene belongs to the importer.
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw Error(file.string(), vernier::internal::shortened(importer.GetErrorString()),
+    throw Error(file.string(),
+                vernier::internal::in_quotes(importer.GetErrorString()) + " says its reader",
                 "check the file, or convert it to another format");
   }
   Mesh mesh;
+  read_axes(*scene, ending, mesh);
+  SceneReader(*scene, leave_out, file.string()).add_node(*scene->mRootNode, aiMatrix4x4(), 0, mesh);
+  return mesh;
+}
+
+/// The numbers of a mesh as bytes of this machine, for the parent process.
+struct MeshHead {
+  std::uint64_t vertices, triangles, lines, parts_left_out, doors;
+  double unit_m;         // 0: not said
+  std::int64_t up_axis;  // -1: not said
+};
+
+template <class T>
+void put(std::string& bytes, const std::vector<T>& values) {
+  if (values.empty()) return;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+template <class T>
+void take(const std::string& bytes, std::size_t& at, std::vector<T>& values) {
+  if (!values.empty()) {
+    std::memcpy(static_cast<void*>(values.data()), bytes.data() + at, values.size() * sizeof(T));
+  }
+  at += values.size() * sizeof(T);
+}
+
+std::string bytes_of(const Mesh& mesh) {
+  const MeshHead head{
+      mesh.vertices.size(), mesh.triangles.size(),   mesh.lines.size(),        mesh.parts_left_out,
+      mesh.doors,           mesh.unit_m.value_or(0), mesh.up_axis.value_or(-1)};
+  std::string bytes(reinterpret_cast<const char*>(&head), sizeof head);
+  put(bytes, mesh.vertices);
+  put(bytes, mesh.triangles);
+  put(bytes, mesh.lines);
+  return bytes;
+}
+
+Mesh mesh_of(const std::string& bytes, const std::string& place) {
+  MeshHead head{};
+  if (bytes.size() >= sizeof head) std::memcpy(&head, bytes.data(), sizeof head);
+  Mesh mesh;
+  mesh.vertices.resize(head.vertices);
+  mesh.triangles.resize(head.triangles);
+  mesh.lines.resize(head.lines);
+  std::size_t at = sizeof head;
+  const std::size_t whole = at + head.vertices * sizeof mesh.vertices[0] +
+                            head.triangles * sizeof mesh.triangles[0] +
+                            head.lines * sizeof mesh.lines[0];
+  if (bytes.size() != whole) {
+    throw Error(place, "was not read to its end", "run it again where there is more memory");
+  }
+  take(bytes, at, mesh.vertices);
+  take(bytes, at, mesh.triangles);
+  take(bytes, at, mesh.lines);
+  mesh.parts_left_out = head.parts_left_out;
+  mesh.doors = head.doors;
+  if (head.unit_m > 0) mesh.unit_m = head.unit_m;
+  if (head.up_axis >= 0) mesh.up_axis = static_cast<int>(head.up_axis);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_with_assimp(const std::filesystem::path& file,
+                      const std::vector<std::string>& leave_out) {
+  const std::string ending = in_small_letters(file.extension().string());
+  if (!Assimp::Importer().IsExtensionSupported(ending)) {
+    throw Error(file.string(), "is of no known format",
+                "convert it to OBJ, PLY, DAE, IFC, glTF or a list of lines (.txt)");
+  }
+  // Damaged files make assimp 5.2 crash (IFC) and hang (DAE).
+  constexpr double least_s = 30, s_per_byte = 1e-5;
+  std::error_code fault;
+  const auto size = static_cast<double>(std::filesystem::file_size(file, fault));
+  const std::string bytes =
+      in_child_process([&] { return bytes_of(read_here(file, ending, leave_out)); },
+                       least_s + (fault ? 0 : s_per_byte * size), file.string());
+  Mesh mesh = mesh_of(bytes, file.string());
   mesh.format = ending.substr(1);
   std::transform(mesh.format.begin(), mesh.format.end(), mesh.format.begin(), [](unsigned char c) {
     return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   });
-  read_axes(*scene, ending, mesh);
-  SceneReader(*scene, leave_out, file.string()).add_node(*scene->mRootNode, aiMatrix4x4(), 0, mesh);
   return mesh;
 }
 

@@ -3,16 +3,22 @@
 #include "sim/mesh_files/mesh_file.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <stdexcept>
 #include <string>
 
+#include "calib/error.h"
 #include "datasets/shipped.h"
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
+#include "sim/mesh_files/child_process.h"
 #include "sim/world.h"
 #include "sim/world/office.h"
 #include "sim/world/world_export.h"
@@ -139,6 +145,37 @@ TEST(MeshFile, RefusesWhatItCannotRead) {
               read_mesh(folder.write("a.ply", square), {"door"});
             }).find("no names of parts"),
             std::string::npos);
+}
+
+// What a library does to itself does not reach its caller.
+TEST(ChildProcess, KeepsCrashesToItself) {
+  const auto said = [](const std::function<std::string()>& work) {
+    return error_message([&] { in_child_process(work, 1, "a.ifc"); });
+  };
+  EXPECT_EQ(in_child_process([] { return std::string(1'000'000, 'x'); }, 1, "a").size(),
+            1'000'000u);
+  EXPECT_EQ(in_child_process([] { return std::string(); }, 1, "a"), "");
+  const std::string damaged =
+      "a.ifc: is damaged, or of a kind on which its reader fails; check the file, or convert it to "
+      "another format";
+  EXPECT_EQ(said([]() -> std::string {
+              ::raise(SIGSEGV);
+              return "";
+            }),
+            damaged);
+  EXPECT_EQ(said([]() -> std::string { ::_exit(0); }), damaged);
+  EXPECT_EQ(said([]() -> std::string { throw Error("a.ifc:7", "is wrong", "mend it"); }),
+            "a.ifc:7: is wrong; mend it");
+  EXPECT_EQ(said([]() -> std::string { throw std::runtime_error("no"); }),
+            "a.ifc: cannot be read: no; check the file, or convert it to another format");
+  EXPECT_EQ(said([]() -> std::string {
+              volatile bool go_on = true;
+              while (go_on) {
+              }
+              return "";
+            }),
+            "a.ifc: was not read within 1 s of CPU time; check the file, or convert it to another "
+            "format");
 }
 
 // Property: a world that is exported and imported again has the same edges, but for those shorter

@@ -175,8 +175,7 @@ void add_world_import(CLI::App& world, Session& session) {
   verb->add_option("--name", o->name, "name of the world (default: of the file)");
   verb->add_option("--unit", o->unit,
                    "of length: m, cm, mm, in, ft or metres (default: the file's, or by its size)");
-  verb->add_option("--up", o->up,
-                   "axis: x, y or z (default: the file's, or by its shape)");
+  verb->add_option("--up", o->up, "axis: x, y or z (default: the file's, or by its shape)");
   verb->add_option("--storey", o->options.storey, "from the lowest, of those found")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -83,6 +83,15 @@ Finding assimp_finding() {
           !version.empty()};
 }
 
+Finding world_view_finding() {
+  const bool there = !shipped_file("page/three.js").empty();
+  return {"three.js",
+          there ? "found"
+                : "missing: install Debian's libjs-three and esbuild, configure and "
+                  "rebuild; used by vernier world view",
+          there};
+}
+
 Finding library_finding() {
   const bool there = mrcal_available();
   return {"mrcal, C library",
@@ -134,6 +143,7 @@ std::vector<Finding> findings() {
       plots_finding(),
       library_finding(),
       assimp_finding(),
+      world_view_finding(),
       python_finding(),
       image_finding(),
       {"VERNIER_DATA",

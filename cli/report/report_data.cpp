@@ -10,6 +10,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
+#include "cli/program/page.h"
 #include "cli/program/session.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
@@ -40,28 +41,6 @@ Json trial_json(const TrialResult& t) {
   }
   row.push_back(t.success() ? 1 : 0);
   return row;
-}
-
-/// Replaces the template's placeholders in one pass; inserted text is not searched again.
-std::string fill(const std::string& page,
-                 const std::vector<std::pair<std::string, std::string>>& parts) {
-  std::string filled;
-  std::size_t at = 0;
-  while (at < page.size()) {
-    std::size_t next = page.size();
-    const std::pair<std::string, std::string>* which = nullptr;
-    for (const auto& part : parts) {
-      const std::size_t found = page.find(part.first, at);
-      if (found < next) {
-        next = found;
-        which = &part;
-      }
-    }
-    filled.append(page, at, next - at);
-    if (which) filled += which->second;
-    at = which ? next + which->first.size() : page.size();
-  }
-  return filled;
 }
 
 }  // namespace
@@ -166,25 +145,15 @@ void check_script(const fs::path& folder) {
 }
 
 std::string assemble_page(const fs::path& folder, const Json& data) {
-  std::string json;
-  // file names may contain invalid UTF-8; "<" is escaped so that it cannot open or close a tag
-  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<') {
-      json += "\\u003c";
-    } else {
-      json += c;
-    }
-  }
   std::string plotly;
   if (has_plots(folder)) {
     plotly = "<script id=\"plotly\">" + read_whole(folder / plotly_file) + "</script>";
   }
-  return fill(read_whole(folder / "report.html"),
-              {{"<!--VERNIER:CSS-->", read_whole(folder / "report.css")},
-               {"<!--VERNIER:PLOTLY-->", plotly},
-               {"<!--VERNIER:DATA-->",
-                "<script type=\"application/json\" id=\"data\">" + json + "</script>"},
-               {"<!--VERNIER:JS-->", read_whole(folder / script_file)}});
+  return fill_page(read_whole(folder / "report.html"),
+                   {{"<!--VERNIER:CSS-->", read_whole(folder / "report.css")},
+                    {"<!--VERNIER:PLOTLY-->", plotly},
+                    {"<!--VERNIER:DATA-->", data_script(data)},
+                    {"<!--VERNIER:JS-->", read_whole(folder / script_file)}});
 }
 
 }  // namespace vernier::cli

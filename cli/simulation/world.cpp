@@ -19,6 +19,7 @@
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_picture.h"
 #include "cli/simulation/world_import.h"
+#include "cli/simulation/world_view.h"
 #include "sim/routing/floor_plan.h"
 #include "sim/routing/route_proposal.h"
 #include "sim/world/office.h"
@@ -183,6 +184,7 @@ void add_world(CLI::App& app, Session& session) {
   router->callback([r, &session] { session.action = [=, &session] { route(*r, session); }; });
 
   add_world_import(*verb, session);
+  add_world_view(*verb, session);
 }
 
 }  // namespace vernier::cli

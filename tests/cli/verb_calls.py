@@ -158,6 +158,7 @@ def calls():
         Call('world_import', ['world', 'import', 'room.ply', '-o', 'out.toml', '--plan', 'out.svg'],
              ['out.toml', 'out.svg']),
         Call('world_export', ['world', 'export', 'workshop', '-o', 'out.ply'], ['out.ply']),
+        Call('world_view', ['world', 'view', 'workshop', '--poses', '3', '-o', 'out.html'], ['out.html']),
         Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0'],
              []),

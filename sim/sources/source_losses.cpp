@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/sources/source_losses.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/rig.h"
+#include "sim/noise_free_view.h"
+#include "sim/sense.h"
+#include "sim/sources.h"
+#include "sim/uncertainty_source.h"
+#include "stereo/rectification.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+constexpr double displaced_px = 2, shortest_m = 1e-6;
+
+/// A part of an edge, by the shares of its length at which it begins and ends.
+using Part = std::pair<double, double>;
+
+/// The parts of each feature that stereo gets.
+std::map<std::uint32_t, std::vector<Part>> parts_of(
+    const SensedView& view, const std::map<std::uint32_t, VisibleEdge>& whole) {
+  std::map<std::uint32_t, std::vector<Part>> parts;
+  for (const SensedEdge& edge : view.edges) {
+    const auto of = whole.find(edge.truth.feature);
+    if (!edge.in_stereo || of == whole.end()) continue;
+    const Eigen::Vector3d d = of->second.b_m - of->second.a_m;
+    const auto share = [&](const Eigen::Vector3d& p) {
+      return (p - of->second.a_m).dot(d) / d.squaredNorm();
+    };
+    const double a = share(edge.truth.a_m), b = share(edge.truth.b_m);
+    parts[edge.truth.feature].emplace_back(std::min(a, b), std::max(a, b));
+  }
+  for (auto& [feature, list] : parts) std::sort(list.begin(), list.end());
+  return parts;
+}
+
+/// What one list of parts has and the other, sorted, has not.
+std::vector<Part> difference(const std::vector<Part>& before, const std::vector<Part>& after) {
+  std::vector<Part> gone;
+  for (const Part& part : before) {
+    double from = part.first;
+    for (const Part& left : after) {
+      if (left.second <= from || left.first >= part.second) continue;
+      if (left.first > from) gone.emplace_back(from, left.first);
+      from = std::max(from, left.second);
+    }
+    if (part.second > from) gone.emplace_back(from, part.second);
+  }
+  return gone;
+}
+
+SpaceEdge part_of(const VisibleEdge& edge, const Part& part) {
+  const Eigen::Vector3d d = edge.b_m - edge.a_m;
+  return {edge.a_m + part.first * d, edge.a_m + part.second * d};
+}
+
+bool is_displaced(const SensedEdge& before, const SensedEdge& after) {
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      const double moved = (after.offset_px[eye][end] - before.offset_px[eye][end]).norm();
+      if (moved >= displaced_px) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+SensedEdges source_losses(const Rig& true_rig,
+                          const SourceSettings& settings,
+                          const NoiseFreeView& view,
+                          const SensingDraw& draw) {
+  constexpr double min_length_px = 10;  // as Sensor has it
+  const stereo::Rectification rectification = stereo::rectification(true_rig);
+  const SensingContext context{true_rig, rectification, draw.seed, draw.trial, draw.frame};
+  std::map<std::uint32_t, VisibleEdge> whole;
+  SensedView sensed;
+  for (const VisibleEdge& edge : view.edges) {
+    sensed.edges.emplace_back().truth = edge;
+    whole.emplace(edge.feature, edge);
+  }
+  SensedEdges result;
+  auto before = parts_of(sensed, whole);
+  for (const auto& source : standard_sources(settings, min_length_px)) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, SensedEdge> edges_before;
+    for (const SensedEdge& edge : sensed.edges) {
+      edges_before.emplace(std::pair(edge.truth.feature, edge.piece), edge);
+    }
+    source->apply(context, sensed);
+    auto after = parts_of(sensed, whole);
+    SourceLosses losses{std::string(source->name()), {}, {}};
+    for (const auto& [feature, parts] : before) {
+      for (const Part& gone : difference(parts, after[feature])) {
+        const SpaceEdge edge = part_of(whole.at(feature), gone);
+        if ((edge.second - edge.first).norm() > shortest_m) losses.lost.push_back(edge);
+      }
+    }
+    for (const SensedEdge& edge : sensed.edges) {
+      const auto was = edges_before.find(std::pair(edge.truth.feature, edge.piece));
+      if (was != edges_before.end() && edge.in_stereo && is_displaced(was->second, edge)) {
+        losses.displaced.emplace_back(edge.truth.a_m, edge.truth.b_m);
+      }
+    }
+    result.sources.push_back(std::move(losses));
+    before = std::move(after);
+  }
+  for (const SensedEdge& edge : sensed.edges) {
+    if (edge.in_stereo) result.told.emplace_back(edge.truth.a_m, edge.truth.b_m);
+  }
+  return result;
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/rig.h"
+#include "sim/noise_free_view.h"
+#include "sim/sense.h"
+#include "sim/sources.h"
+
+namespace vernier::sim::internal {
+
+using SpaceEdge = std::pair<Eigen::Vector3d, Eigen::Vector3d>;  ///< true left camera frame, metres
+
+/// What a source did to the edges that those before it left.
+struct SourceLosses {
+  std::string source;
+  std::vector<SpaceEdge> lost;       ///< parts of edges that stereo does not get any more
+  std::vector<SpaceEdge> displaced;  ///< by 2 px or more at an end in one of the images
+};
+
+struct SensedEdges {
+  std::vector<SpaceEdge> told;  ///< what stereo gets, where it truly is
+  std::vector<SourceLosses> sources;
+};
+
+/// Sends a view through the sources one by one and keeps what each took away. The draws are those
+/// of Sensor::sense().
+SensedEdges source_losses(const Rig& true_rig,
+                          const SourceSettings& settings,
+                          const NoiseFreeView& view,
+                          const SensingDraw& draw);
+
+}  // namespace vernier::sim::internal

@@ -5,23 +5,31 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/output_files.h"
 #include "calib/base/shown_text.h"
 #include "calib/base/utf8.h"
 #include "calib/error.h"
+#include "calib/rig_file.h"
+#include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_picture.h"
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_view.h"
+#include "sim/experiment.h"
+#include "sim/noise_free_view.h"
 #include "sim/routing/floor_plan.h"
 #include "sim/routing/route_proposal.h"
+#include "sim/study/ceiling.h"
+#include "sim/visibility.h"
 #include "sim/world/office.h"
 #include "sim/world/world_export.h"
 #include "sim/world_file.h"
@@ -35,7 +43,8 @@ struct MakeOptions {
 };
 
 struct InfoOptions {
-  std::string world, plan;
+  std::string world, plan, rig = "nominal";
+  int poses = 200;
 };
 
 struct ExportOptions {
@@ -47,28 +56,66 @@ struct RouteOptions {
   double eye_height_m = 1.2;
 };
 
-void report(const World& world, const std::string& file, Session& session) {
+Json world_json(const World& world, const std::string& file) {
   const WorldExtent box = extent(world);
   const Eigen::Vector3d size = box.high_m - box.low_m;
-  const double route = route_length_m(world.route);
-  session.result(
-      {{"file", file},
-       {"name", world.name},
-       {"segments", world.segments.size()},
-       {"corners", world.corners.size()},
-       {"surfaces", world.surfaces.size()},
-       {"objects", world.objects.size()},
-       {"repeated_share", repeated_share(world)},
-       {"size_m", {size.x(), size.y(), size.z()}},
-       {"route_m", route},
-       {"legs", world.route.size()}},
-      fmt::format("{} ({})\n"
-                  "  {:.2f} x {:.2f} x {:.2f} m, {} segments ({:.1f} % from repeated templates),\n"
-                  "  {} corners, {} surfaces, {} objects; route of {:.1f} m in {} legs\n",
-                  world.name.empty() ? "unnamed world" : world.name, file, size.x(), size.y(),
-                  size.z(), world.segments.size(), 100 * repeated_share(world),
-                  world.corners.size(), world.surfaces.size(), world.objects.size(), route,
-                  world.route.size()));
+  return {{"file", file},
+          {"name", world.name},
+          {"segments", world.segments.size()},
+          {"corners", world.corners.size()},
+          {"surfaces", world.surfaces.size()},
+          {"objects", world.objects.size()},
+          {"repeated_share", repeated_share(world)},
+          {"size_m", {size.x(), size.y(), size.z()}},
+          {"route_m", route_length_m(world.route)},
+          {"legs", world.route.size()}};
+}
+
+std::string world_text(const World& world, const std::string& file) {
+  const WorldExtent box = extent(world);
+  const Eigen::Vector3d size = box.high_m - box.low_m;
+  return fmt::format(
+      "{} ({})\n"
+      "  {:.2f} x {:.2f} x {:.2f} m, {} segments ({:.1f} % from repeated templates),\n"
+      "  {} corners, {} surfaces, {} objects; route of {:.1f} m in {} legs\n",
+      world.name.empty() ? "unnamed world" : world.name, file, size.x(), size.y(), size.z(),
+      world.segments.size(), 100 * repeated_share(world), world.corners.size(),
+      world.surfaces.size(), world.objects.size(), route_length_m(world.route), world.route.size());
+}
+
+void report(const World& world, const std::string& file, Session& session) {
+  session.result(world_json(world, file), world_text(world, file));
+}
+
+std::vector<double> segment_lengths_m(const World& world) {
+  std::vector<double> lengths;
+  for (const WorldSegment& segment : world.segments) {
+    lengths.push_back((segment.b_m - segment.a_m).norm());
+  }
+  return lengths;
+}
+
+/// How far places look alike, at poses of the protocol `path`.
+struct Aliasing {
+  double unique_share = 0, undetermined_share = 0, ceiling = 0;
+};
+
+Aliasing aliasing_of(const World& world, const InfoOptions& options) {
+  constexpr double eye_height_m = 1.2;
+  const Visibility visibility(world);
+  NoiseFreeViewOptions looking;
+  looking.mount.height_m = eye_height_m;
+  const AliasFinder finder(visibility, read_rig(find_rig(options.rig)).estimate.rig, looking);
+  const QueryPlaces places(visibility, QueryProtocol::path, eye_height_m);
+  Aliasing sum;
+  for (int i = 0; i < options.poses; ++i) {
+    const Aliases aliases = finder.aliases(places.draw(1, static_cast<std::uint32_t>(i)));
+    sum.unique_share += aliases.unique();
+    sum.undetermined_share += !aliases.determined;
+    sum.ceiling += aliases.ceiling();
+  }
+  const double poses = options.poses;
+  return {sum.unique_share / poses, sum.undetermined_share / poses, sum.ceiling / poses};
 }
 
 void make(const MakeOptions& options, Session& session) {
@@ -99,7 +146,28 @@ void info(const InfoOptions& options, Session& session) {
   if (world.route.empty()) {
     session.warn(file.string() + ": has no route; vernier world route proposes one");
   }
-  report(world, file.string(), session);
+  Json json = world_json(world, file.string());
+  std::string text = world_text(world, file.string());
+  const std::vector<double> lengths = segment_lengths_m(world);
+  if (!lengths.empty()) {
+    const auto at = [&](double share) { return quantile(lengths, share, QuantileKind::linear); };
+    json["segment_lengths_m"] = {{"p5", at(0.05)}, {"median", at(0.5)}, {"p95", at(0.95)}};
+    text += fmt::format("  segments of {:.2f} m (median; 5 % below {:.2f}, 5 % above {:.2f})\n",
+                        at(0.5), at(0.05), at(0.95));
+  }
+  if (!world.route.empty() && options.poses > 0) {
+    const Aliasing aliasing = aliasing_of(world, options);
+    json["aliasing"] = {{"poses", options.poses},
+                        {"unique_share", aliasing.unique_share},
+                        {"ceiling", aliasing.ceiling},
+                        {"undetermined_share", aliasing.undetermined_share}};
+    text += fmt::format(
+        "  of {} views beside the route {:.1f} % are like no other place's, {:.1f} % leave the "
+        "pose open;\n  at best {:.1f} % can be localised (noise-free, guesses counted)\n",
+        options.poses, 100 * aliasing.unique_share, 100 * aliasing.undetermined_share,
+        100 * aliasing.ceiling);
+  }
+  session.result(json, text);
 }
 
 void write_exported(const ExportOptions& options, Session& session) {
@@ -159,6 +227,11 @@ void add_world(CLI::App& app, Session& session) {
       add_verb(*verb, session, "info", "print feature counts, size and route of a world",
                "vernier world info workshop --plan workshop.svg");
   info_verb->add_option("world", i->world, "world file, or a shipped name (workshop)")->required();
+  info_verb->add_option("--rig", i->rig, "rig file or shipped name, of the aliasing figure")
+      ->capture_default_str();
+  info_verb->add_option("--poses", i->poses, "of the aliasing figure, beside the route; 0: none")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
   info_verb->add_option("--plan", i->plan, "SVG of the floor plan with the route");
   info_verb->callback([i, &session] { session.action = [=, &session] { info(*i, session); }; });
 

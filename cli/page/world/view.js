@@ -48,7 +48,7 @@ function rods(numbers, colour, radius, eye) {
     const length = along.length();
     turn.setFromUnitVectors(x, along.normalize());
     const middle = a.add(b).multiplyScalar(0.5);
-    const wide = eye ? 0.005 * middle.distanceTo(eye) : radius;
+    const wide = eye ? 0.0035 * middle.distanceTo(eye) : radius;
     place.compose(middle, turn, new THREE.Vector3(length, wide, wide));
     mesh.setMatrixAt(i, place);
   }

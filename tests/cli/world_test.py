@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""vernier world as a user calls it: import, route, info, export, view.
+
+    world_test.py PROGRAM [unittest's options]
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+import verb_calls
+
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+
+
+class World(unittest.TestCase):
+    def setUp(self):
+        keeper = tempfile.TemporaryDirectory()
+        self.addCleanup(keeper.cleanup)
+        self.folder = pathlib.Path(keeper.name)
+        verb_calls.write_inputs(self.folder)
+
+    def run_program(self, *words):
+        return subprocess.run([PROGRAM, 'world', *map(str, words)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=120)
+
+    def done(self, *words):
+        run = self.run_program(*words, '--json')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(run.stdout)
+
+    def refused(self, *words):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertEqual(run.stderr.count('\n'), 1, run.stderr)
+        self.assertTrue(run.stderr.startswith('vernier: '))
+        return run.stderr
+
+    def test_a_room_becomes_a_world_that_a_study_reads(self):
+        made = self.done('import', 'room.ply', '-o', 'room.world.toml', '--plan', 'room.svg')
+        self.assertEqual((made['up'], made['unit_m']), ('z', 1))
+        self.assertEqual(made['up_because'], 'by its shape')
+        self.assertEqual(made['triangles'], 18)
+        # 12 edges of the room and of the column 12, its foot and top open; no floor is cut out.
+        self.assertEqual(made['segments'], 24)
+        self.assertGreater(made['route_m'], 3)
+        self.assertGreater(made['floor_near_route_m2'], 0.9 * made['floor_m2'])
+        self.assertIn('<svg', (self.folder / 'room.svg').read_text())
+        info = self.done('info', 'room.world.toml', '--poses', 20)
+        self.assertEqual(info['segments'], made['segments'])
+        self.assertLessEqual(info['aliasing']['unique_share'], info['aliasing']['ceiling'])
+        (self.folder / 'study.toml').write_text(
+            '[study]\ntrials = 3\n[world]\nfile = "room.world.toml"\n')
+        study = subprocess.run([PROGRAM, 'study', 'study.toml', '-o', 'out', '--threads', '1'],
+                               capture_output=True, text=True, cwd=self.folder, timeout=120)
+        self.assertIn(study.returncode, (0, 3), study.stderr)
+
+    def test_units_and_axes_are_given_or_asked_for(self):
+        text = (self.folder / 'room.ply').read_text()
+        head, body = text.split('end_header\n')
+        points = body.split('\n')[:36]
+        inches = [' '.join(str(float(x) / 0.0254) for x in point.split()) for point in points]
+        (self.folder / 'inch.ply').write_text(
+            head + 'end_header\n' + '\n'.join(inches + body.split('\n')[36:]))
+        made = self.done('import', 'inch.ply', '-o', 'inch.world.toml', '--unit', 'in')
+        self.assertAlmostEqual(made['size_m'][0], 6, places=3)
+        self.assertEqual(made['unit_because'], 'given')
+        self.assertIn('is no unit of length', self.refused('import', 'room.ply', '-o', 'x', '--unit', 'ell'))
+        self.assertIn('is no axis', self.refused('import', 'room.ply', '-o', 'x', '--up', 'w'))
+        tiny = [' '.join(str(float(x) * 1e-7) for x in point.split()) for point in points]
+        (self.folder / 'tiny.ply').write_text(
+            head + 'end_header\n' + '\n'.join(tiny + body.split('\n')[36:]))
+        self.assertIn('no building in m, cm, mm, in or ft', self.refused('import', 'tiny.ply', '-o', 'x'))
+        self.assertFalse((self.folder / 'x').exists())
+
+    def test_lines_alone_are_said_to_hide_nothing(self):
+        (self.folder / 'a.lines.txt').write_text(
+            '0 0 0 6 0 0\n6 0 0 6 4 0\n6 4 0 0 4 0\n0 4 0 0 0 0\n0 0 0 0 0 2.5\n6 4 0 6 4 2.5\n')
+        run = self.run_program('import', 'a.lines.txt', '-o', 'a.world.toml')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('nothing hides anything', run.stderr)
+        self.assertIn('route of', run.stdout)
+
+    def test_bad_files_cost_one_line(self):
+        for name, text, said in (
+                ('a.ply', 'ply\n', 'end_header'),
+                ('a.txt', '1 2 3\n', 'a.txt:1: has 3 numbers'),
+                ('b.txt', '0 0 0 1 0 nan\n', 'is not finite'),
+                ('c.txt', '', 'holds no triangles and no lines'),
+                ('a.docx', 'x', 'a.docx: '),
+                ('a.ifc', 'ISO-10303-21;\n', 'a.ifc: '),
+                ('a.obj', 'v 0 0 0\nf 1 2 3\n', 'a.obj: ')):
+            with self.subTest(name):
+                (self.folder / name).write_text(text)
+                self.assertIn(said, self.refused('import', name, '-o', 'out.world.toml'))
+                self.assertFalse((self.folder / 'out.world.toml').exists())
+        self.assertIn('no storey 4', self.refused('import', 'room.ply', '-o', 'x', '--storey', 4))
+        self.assertIn('leave one out', self.refused('import', 'room.ply', '-o', 'x', '--storey', 2,
+                                                    '--floor-m', 0))
+        self.assertIn('no names of parts', self.refused('import', 'room.ply', '-o', 'x',
+                                                        '--leave-out', 'door'))
+        self.assertIn('neither an OBJ nor a PLY', self.refused('export', 'workshop', '-o', 'x.dae'))
+
+    def test_a_route_is_proposed_for_any_world(self):
+        made = self.done('route', 'workshop', '-o', 'my.world.toml', '--plan', 'my.svg')
+        self.assertGreater(made['route_m'], 50)
+        self.assertEqual(made['segments'], 9541)
+        # Its own is as good: the world without its route is told what to do.
+        text = (self.folder / 'my.world.toml').read_text()
+        (self.folder / 'bare.world.toml').write_text(text[:text.index('[[route]]')])
+        run = self.run_program('info', 'bare.world.toml')
+        self.assertIn('vernier world route', run.stderr)
+
+    def test_the_page_holds_all_it_needs(self):
+        run = self.run_program('view', 'workshop', '--poses', 4, '-o', 'view.html')
+        if 'libjs-three' in run.stderr:
+            self.skipTest('built without three.js')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        page = (self.folder / 'view.html').read_text()
+        self.assertNotIn('VERNIER:', page)
+        self.assertFalse(re.findall(r'(?:src|href)="(?!data:)', page.split('<script')[0]))
+        data = json.loads(page.split('id="data">')[1].split('</script>')[0])
+        self.assertEqual(len(data['views']), 4)
+        self.assertEqual(len(data['edges']) + len(data['edges_above']), 6 * 9541)
+        names = {kind['name'] for kind in data['kinds']}
+        self.assertIn('lost:edge_loss', names)
+        for view in data['views']:
+            self.assertLessEqual(set(view['edges']), names)
+        bare = self.done('view', 'workshop', '--poses', 2, '--source', 'none', '-o', 'bare.html')
+        self.assertEqual(bare['poses'], 2)
+        page = (self.folder / 'bare.html').read_text()
+        data = json.loads(page.split('id="data">')[1].split('</script>')[0])
+        self.assertEqual([kind['name'] for kind in data['kinds']], ['told'])
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/base/atomic_file.h"
 #include "calib/base/error_place.h"
 #include "calib/error.h"
 #include "calib/rig.h"
@@ -19,6 +21,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/observation_json.h"
+#include "cli/simulation/sighting_picture.h"
 #include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
@@ -30,12 +33,13 @@
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
+#include "stereo/segment.h"
 
 namespace vernier::cli {
 namespace {
 
 struct SimulateArguments {
-  std::string world = "workshop", rig = "nominal", pose;
+  std::string world = "workshop", rig = "nominal", pose, picture;
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
   std::uint32_t trial = 0;
@@ -43,6 +47,12 @@ struct SimulateArguments {
 };
 
 void run(const SimulateArguments& options, Session& session) {
+  const std::string ending = std::filesystem::path(options.picture).extension().string();
+  const bool is_png = ending == ".png";
+  if (!options.picture.empty() && !is_png && ending != ".svg") {
+    throw Error("--picture " + options.picture, "is neither an SVG nor a PNG file",
+                "end its name in .svg or .png");
+  }
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   SourceSettings initial;
   initial.calibration = 0;
@@ -78,7 +88,12 @@ void run(const SimulateArguments& options, Session& session) {
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
   json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(estimator_rig)}};
-  json["space"] = space_json(reconstruct(estimator_rig, sighting, settings));
+  const std::vector<SpaceSegment> space = reconstruct(estimator_rig, sighting, settings);
+  json["space"] = space_json(space);
+  if (!options.picture.empty()) {
+    const SightingPicture picture(rig.estimate.rig, seen, sighting, space);
+    write_atomically(options.picture, is_png ? picture.png() : picture.svg());
+  }
   const std::string estimator_text =
       sources.calibration > 0
           ? fmt::format("the estimator uses a rig sampled with psi_c = {:g}\n", sources.calibration)
@@ -110,6 +125,10 @@ void add_simulate(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--source", o->sources,
                    "setting of an error source, such as edge_loss=0.2, or none (repeatable)");
+  verb->add_option(
+      "--picture", o->picture,
+      "SVG or PNG of both images: edges as they are, as sensed, as the estimator places "
+      "them");
   verb->add_option("--seed", o->seed, "random seed")->capture_default_str();
   verb->add_option("--trial", o->trial, "number of the random draw for this seed")
       ->capture_default_str();

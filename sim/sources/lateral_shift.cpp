@@ -41,6 +41,11 @@ class LateralShift : public UncertaintySource {
   }
 
  private:
+  /// The edge of the world, so that its parts share a shift; a false edge is one by itself.
+  static std::uint32_t identity(const VisibleEdge& edge) {
+    return edge.is_false() ? edge.feature : static_cast<std::uint32_t>(edge.segment);
+  }
+
   /// Along the left normal of the image line, pixels; `side` is +1 if that points outward.
   double draw_shift(const SensingContext& any_frame,
                     const SensedEdge& edge,
@@ -48,8 +53,8 @@ class LateralShift : public UncertaintySource {
                     double side) const {
     const bool independent = mode_ == ShiftMode::independent;
     const auto stream = static_cast<std::uint32_t>(independent ? eye + 1 : 0);
-    RandomStream of_edge = draws_of(any_frame, DrawSource::lateral_shift,
-                                    static_cast<std::uint32_t>(edge.truth.segment), stream);
+    RandomStream of_edge =
+        draws_of(any_frame, DrawSource::lateral_shift, identity(edge.truth), stream);
     const double size = size_ * of_edge.uniform(0.5, 1.5);
     if (independent || edge.truth.object == 0) return of_edge.uniform() < 0.5 ? -size : size;
     // Index 3 in the eye's position of the key marks draws of surfaces.

@@ -22,8 +22,6 @@
 #include <exception>
 #include <limits>
 #include <memory>
-#include <numbers>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +31,7 @@
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/moved_furniture.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world/office.h"
@@ -75,25 +74,6 @@ class WithClutter : public localise::Localiser {
   std::uint64_t seed_;
   mutable std::uint32_t queries_ = 0;
 };
-
-/// The world with a part of its furniture elsewhere.
-WorldDescription rearranged(WorldDescription world, std::uint64_t seed) {
-  const std::set<std::string> fixed{"door_frame",   "door_leaf_right", "door_leaf_left",
-                                    "window",       "radiator",        "ceiling_light",
-                                    "ceiling_vent", "door_sign",       "notice_board",
-                                    "whiteboard",   "socket",          "light_switch"};
-  for (std::size_t i = 0; i < world.instances.size(); ++i) {
-    WorldInstance& instance = world.instances[i];
-    vernier::internal::RandomStream draws({.seed = seed, .feature = static_cast<std::uint32_t>(i)});
-    const bool moves = draws.uniform() < moved_share;
-    const double far = draws.uniform(0.3, 1), way = draws.uniform(0, 2 * std::numbers::pi);
-    const double turn = draws.uniform(-0.8, 0.8);
-    if (!moves || fixed.contains(instance.template_name)) continue;
-    instance.at_m += Eigen::Vector3d(far * std::cos(way), far * std::sin(way), 0);
-    instance.yaw_rad += turn;
-  }
-  return world;
-}
 
 struct Counts {
   int queries = 0, right = 0, answered = 0, answered_right = 0;
@@ -168,8 +148,8 @@ WorldCounts conditions(std::uint64_t seed, std::uint32_t queries) {
   settings.sources.calibration = 1;
   settings.seed = seed;
   settings.localiser.max_error_rate = 0.005;
-  const WorldDescription description = make_office(seed);
-  const World world = build_world(description), later = build_world(rearranged(description, seed));
+  const World world = build_world(make_office(seed)),
+              later = with_moved_furniture(world, moved_share, seed);
   const Visibility visibility(world), later_visibility(later);
   const RigEstimate rig = datasets::nominal();
   const auto views = std::make_shared<MapViews>(map_views(visibility, rig.rig, settings));

@@ -15,6 +15,8 @@
 #include "localise/place.h"
 #include "localise/topological_map.h"
 #include "sim/corner_appearance.h"
+#include "sim/mount_error.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -116,6 +118,7 @@ struct TrialResult {
   double score = 0, runner_up = 0;
   double probability = 0;          ///< that the answer is right, as the localiser states it
   double cpu_ms = 0, wall_ms = 0;  ///< from features in memory to the answer
+  std::string failure;  ///< why the localiser or a source failed; studies do not store it
 
   bool answered() const { return status == localise::LocalisationStatus::answered; }
   bool success() const { return answered() && error_m <= success_radius_m; }
@@ -135,18 +138,27 @@ MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings);
 
+/// The views from a true mount that is not the told one (draw_mount).
+MapViews map_views(const Visibility& visibility,
+                   const Rig& true_rig,
+                   const ExperimentSettings& settings,
+                   const TrueMount& stands);
+
 /// A simulated robot that records a map with one calibration of its rig and localises with another.
 /// The estimate is the true rig; the rigs assumed by the estimator are drawn around it.
 class LocalisationExperiment {
  public:
   /// Keeps a reference to `visibility`; `looks` is needed for maps and blocks only. Throws Error
-  /// for settings out of range, or a rig without covariance if sources.calibration > 0. `places`
-  /// are those of the settings' protocol and height; without, it makes its own.
+  /// for settings out of range, or a rig without covariance if sources.calibration > 0. `changed`
+  /// is the world as queries find it if furniture has moved (sources.moved), `places` those of the
+  /// settings' protocol and height in that world; without, it makes its own. The map is recorded in
+  /// the world of `visibility`.
   LocalisationExperiment(const Visibility& visibility,
                          const RigEstimate& rig,
                          std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings,
-                         std::shared_ptr<const QueryPlaces> places = nullptr);
+                         std::shared_ptr<const QueryPlaces> places = nullptr,
+                         std::shared_ptr<const ChangedWorld> changed = nullptr);
 
   /// Runs the trials of one block: the map is recorded once, with draws of its own. With
   /// MapRig::same the map is recorded again for every trial. Results depend on (settings, block,
@@ -159,7 +171,8 @@ class LocalisationExperiment {
                         const localise::TopologicalMap& map,
                         const localise::Localiser& localiser) const;
 
-  /// The map as recorded in a block under the assumption of `rig`.
+  /// The map as recorded in a block under the assumption of `rig`. Throws Error if a source of
+  /// one's own fails.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
   /// The rig assumed by the estimator in a trial.
@@ -167,19 +180,31 @@ class LocalisationExperiment {
   Rig map_estimator_rig(std::uint32_t block) const;
 
  private:
+  /// The first failure of a source, if there is one, is told in `failure`; the map is then a part.
+  localise::TopologicalMap record(std::uint32_t block,
+                                  const Rig& rig,
+                                  const MapViews& views,
+                                  std::string& failure) const;
+  /// What the map's drive of a block sees, by a camera that stands as it does in this block.
+  std::shared_ptr<const MapViews> views_of(std::uint32_t block) const;
+  localise::Pose2D place_of(std::uint32_t trial) const;
   Rig draw_rig(std::uint32_t trial, bool of_map) const;
   std::vector<localise::StereoCorner> described(const StereoObservation& sighting,
                                                 const localise::Pose2D& pose,
-                                                const SensingDraw& draw) const;
+                                                const SensingDraw& draw,
+                                                const CornerAppearance* appearance) const;
 
-  const Visibility& visibility_;
+  const Visibility& visibility_;                 // of the recorded world
+  std::shared_ptr<const ChangedWorld> changed_;  // null if nothing has moved
+  const Visibility& queried_;                    // of the world that queries see
   RigEstimate rig_;
   std::shared_ptr<const MapViews> map_views_;
   std::shared_ptr<const QueryPlaces> places_;
   ExperimentSettings settings_;
   Sensor sensor_;
-  std::unique_ptr<RigSampler> sampler_;           // null without calibration error
-  std::unique_ptr<CornerAppearance> appearance_;  // null if views hold no corners
+  std::unique_ptr<RigSampler> sampler_;                   // null without calibration error
+  std::unique_ptr<CornerAppearance> appearance_;          // null if views hold no corners
+  std::unique_ptr<CornerAppearance> changed_appearance_;  // in the changed world, if there is one
 };
 
 }  // namespace vernier::sim

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "calib/rig.h"
@@ -18,10 +19,13 @@ namespace vernier::sim {
 /// The measurements that an estimator gets, with the ground truth for scoring only.
 struct StereoObservation {
   std::vector<stereo::StereoSegment> segments;
-  std::vector<VisibleEdge> true_edges;  ///< one per segment
+  /// One per segment; some may be false (VisibleEdge::is_false), which nothing in the world
+  /// explains.
+  std::vector<VisibleEdge> true_edges;
   /// Lines of the left image without a partner in the right one: those along epipolar lines.
   std::vector<stereo::ImageSegment> left_only;
   std::vector<SensedCorner> corners;
+  std::string failure;  ///< why a source of one's own failed; the view is then worth nothing
 };
 
 /// Where in an experiment a look stands: with it every draw has its place.

@@ -2,11 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vernier::sim {
+
+/// Numeric options of a source by name.
+using SourceOptions = std::map<std::string, double>;
+
+/// A source of one's own: the name it was registered with (register_source), and its options.
+struct OwnSource {
+  std::string name;
+  SourceOptions options;
+};
 
 /// Whether an edge is displaced alike in both cameras.
 enum class ShiftMode { common, independent };
@@ -14,8 +25,14 @@ enum class ShiftMode { common, independent };
 /// Magnitudes of the sources of geometric error. Defaults and ranges: Tina Memo 2017-001;
 /// definitions: docs/simulation.md. A value of 0 disables a source.
 struct SourceSettings {
+  double moved = 0;             ///< share of the furniture moved since the map was recorded
+  double mount_height_m = 0;    ///< standard deviation of the camera's height from what is told
+  double mount_pitch_deg = 0;   ///< of its pitch
+  double mount_roll_deg = 0;    ///< of its roll, which is told to be 0
+  double clutter = 0;           ///< false edges, as a fraction of the edges in view
   double lateral_shift_px = 3;  ///< psi_l: |shift| ~ U[s/2, 3s/2] along the image normal
   ShiftMode lateral_shift_mode = ShiftMode::common;
+  double merge_px = 0;              ///< parallel lines nearer than this are detected as one
   double edge_loss = 0.1125;        ///< psi_e: fraction of each edge's length that is missing
   double endpoint_sigma_px = 0.15;  ///< psi_g: isotropic, of every end in each camera
   double epipolar_reject_deg = 5;   ///< edges nearer than this to their epipolar line are dropped
@@ -27,6 +44,11 @@ struct SourceSettings {
   double corner_mismatch_px = 10;   ///< displacement: uniform in a disc of this radius
   /// Psi_c: factor on the standard deviations of the calibration covariance.
   double calibration = 1;
+  /// Sources of one's own, after all others and in this order (docs/own-source.md).
+  std::vector<OwnSource> own;
+  /// A source that is a program, after these: it and its arguments, quoted as in a shell.
+  std::string command;
+  double time_limit_s = 10;  ///< of the program, for a view; above 0
 };
 
 /// One setting, with its name in study files.
@@ -36,12 +58,15 @@ struct SourceParameter {
   double low, high;  ///< accepted, inclusive
   bool is_switch;    ///< 0 disables a source; false: a magnitude used when a source is enabled
   std::string_view about;
+  /// Results are stored under keys that leave it out while it has its default: stores older than
+  /// the setting stay valid.
+  bool is_newer = false;
 };
 
 /// All numeric settings, in the order in which the sources act.
 std::span<const SourceParameter> source_parameters();
 
-/// Throws Error naming the setting for a value out of range.
+/// Throws Error naming the setting for a value out of range, and a command that is none.
 void check(const SourceSettings& settings, const std::string& place);
 
 /// All sources disabled; magnitudes keep their defaults.

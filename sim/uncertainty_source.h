@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +42,7 @@ struct SensedCorner {
 struct SensedView {
   std::vector<SensedEdge> edges;
   std::vector<SensedCorner> corners;
+  std::string failure;  ///< set by a source that failed: the sources after it do not act
 };
 
 /// The true rig and the trial's identity, which keys every random draw.
@@ -56,7 +59,8 @@ stereo::ImageSegment image_of(const Rig& rig, const SensedEdge& edge, int eye);
 
 /// One source of geometric error. Sources act in a fixed order on the noise-free view of the true
 /// rig; each draws from its own stream, keyed by the feature it acts on, so that enabling or
-/// disabling one does not change the draws of the others.
+/// disabling one does not change the draws of the others. One source may be used by several threads
+/// at once.
 class UncertaintySource {
  public:
   virtual ~UncertaintySource() = default;
@@ -64,10 +68,29 @@ class UncertaintySource {
   virtual void apply(const SensingContext& context, SensedView& view) const = 0;
 };
 
-/// The sources enabled by these settings, in order: lateral shift, edge loss, end-point error,
-/// epipolar rejection, stereo mismatch, corner loss, corner error, corner mismatch. (The memo's
-/// seventh source, calibration, acts on the rig assumed by the estimator: see RigSampler.)
+/// The sources enabled by these settings, in order: clutter, lateral shift, merging of lines, edge
+/// loss, end-point error, epipolar rejection, stereo mismatch, corner loss, corner error, corner
+/// mismatch, then those of one's own (SourceSettings::own, in their order) and the program. The
+/// memo's seventh source, calibration, acts on the rig assumed by the estimator (RigSampler), the
+/// mount on the pose of a look (draw_mount), and moved furniture on the world
+/// (with_moved_furniture). `rig` is what the program is told. Throws Error for an own source that
+/// is not registered, and a program that cannot be started.
+std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
+                                                                 double min_length_px,
+                                                                 const Rig& rig);
+/// The same for settings without a program.
 std::vector<std::unique_ptr<UncertaintySource>> standard_sources(const SourceSettings& settings,
                                                                  double min_length_px);
+
+/// Creates a source from its options. Throws Error for options it does not accept.
+using SourceFactory = std::function<std::unique_ptr<UncertaintySource>(const SourceOptions&)>;
+
+/// Makes a source of one's own known by name to SourceSettings::own, and so to Sensor and to
+/// studies of this process. Safe with threads. Throws Error for a name that is taken or not made of
+/// small letters, digits and underscores.
+void register_source(const std::string& name, SourceFactory factory);
+
+/// Names of the registered sources, ascending.
+std::vector<std::string> registered_sources();
 
 }  // namespace vernier::sim

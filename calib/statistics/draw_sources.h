@@ -32,6 +32,9 @@ enum class DrawSource : std::uint32_t {
   corner_appearance = 28,  // descriptors of simulated corners
   corner_sighting = 29,    // noise of their descriptors, a sighting
   corner_consensus = 30,   // pairs of corners from which poses on a map are drawn
+  clutter = 31,            // false edges
+  mount = 32,              // height, pitch and roll of the camera
+  moved_furniture = 33,    // which objects moved since the map was recorded, and whereto
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

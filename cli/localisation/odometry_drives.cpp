@@ -111,6 +111,7 @@ void for_each_simulated_drive(const OdometryOptions& options,
   ExperimentSettings settings;
   settings.sources = sources_of(options.sources, SourceSettings());
   settings.mount = {options.height_m, options.pitch_deg * degree};
+  settings.sources.moved = 0;  // there is no map
   settings.seed = options.seed;
   if (settings.sources.calibration > 0) required_covariance(rig, options.rig);
   const Eigen::MatrixXd calibration =

@@ -75,6 +75,10 @@ SimulatedQuery SimulatedRobot::run_query(std::uint32_t query,
   const LocalisationExperiment robot(visibility_, rig_, nullptr, settings_);
   SimulatedQuery run;
   run.result = robot.run_trial(query, robot.estimator_rig(query), map, Overheard(by, run.answer));
+  if (run.result.status == LocalisationStatus::failed) {  // a source may have, without an answer
+    run.answer.status = run.result.status;
+    run.answer.failure = run.result.failure;
+  }
   return run;
 }
 

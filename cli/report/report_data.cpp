@@ -16,6 +16,8 @@
 #include "cli/simulation/study_folder.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/mount_error.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/study/study.h"
@@ -69,7 +71,7 @@ Json report_study(const Study& study, const StudyResults& results) {
   if (study.file.sweep_keys.size() == 1) {
     const std::string& key = study.file.sweep_keys[0];
     Json values = Json::array();
-    for (const Json& cell : json["cells"]) values.push_back(cell["settings"][key]);
+    for (const Json& cell : json["cells"]) values.push_back(cell["settings"].value(key, Json()));
     json["sweep"] = {
         {"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : key}, {"values", values}};
   }
@@ -101,11 +103,16 @@ Json report_world(const World& world) {
 
 Json report_view(const Study& study) {
   const ExperimentSettings& settings = study.file.cells[study.file.cells.size() / 2].experiment;
-  const Visibility visibility(study.world);
+  const World world = settings.sources.moved > 0
+                          ? with_moved_furniture(study.world, settings.sources.moved, settings.seed)
+                          : study.world;
+  const Visibility visibility(world);
   const Pose2D pose =
       draw_query(visibility, settings.protocol, settings.mount.height_m, settings.seed, 0);
+  const TrueMount stands = draw_mount(settings.mount, settings.sources, settings.seed, 0);
   NoiseFreeViewOptions options;
-  options.mount = settings.mount;
+  options.mount = stands.mount;
+  options.roll_rad = stands.roll_rad;
   options.with_corners = true;
   const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);

@@ -41,7 +41,7 @@ void add_identities(const NoiseFreeView& seen, const StereoObservation& sighting
   for (const char* key : {"feature", "edge", "segment"}) sensed[key] = Json::array();
   for (const StereoSegment& s : sighting.segments) sensed["feature"].push_back(s.feature);
   for (const VisibleEdge& edge : sighting.true_edges) {
-    sensed["edge"].push_back(place.at(edge.feature));
+    sensed["edge"].push_back(edge.is_false() ? Json() : Json(place.at(edge.feature)));
     sensed["segment"].push_back(edge.segment);
   }
 }

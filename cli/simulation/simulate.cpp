@@ -25,6 +25,8 @@
 #include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/mount_error.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
@@ -57,7 +59,8 @@ void run(const SimulateArguments& options, Session& session) {
   SourceSettings initial;
   initial.calibration = 0;
   const SourceSettings sources = sources_of(options.sources, initial);
-  const World world = build_world(read_world(find_world(options.world)));
+  World world = build_world(read_world(find_world(options.world)));
+  if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);
   constexpr double degree = std::numbers::pi / 180;
@@ -72,19 +75,27 @@ void run(const SimulateArguments& options, Session& session) {
   if (sources.calibration > 0) required_covariance(rig.estimate, options.rig);
   ExperimentSettings settings;
   settings.sources = sources;
+  settings.sources.moved = 0;  // moved already
+  settings.sources.command.clear();
   settings.seed = options.seed;
   const Rig estimator_rig = with_errors_of(options.rig, [&] {
     return LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
         .estimator_rig(options.trial);
   });
   NoiseFreeViewOptions looking;
-  looking.mount = {options.height_m, options.pitch_deg * degree};
+  const TrueMount stands = draw_mount({options.height_m, options.pitch_deg * degree}, sources,
+                                      options.seed, options.trial);
+  looking.mount = stands.mount;
+  looking.roll_rad = stands.roll_rad;
   looking.with_corners = true;
   const NoiseFreeView seen = with_errors_of(
       options.rig, [&] { return look(visibility, rig.estimate.rig, pose, looking); });
   const Sensor sensor(rig.estimate.rig, sources);
   const StereoObservation sighting =
       sensor.sense(seen, {.seed = options.seed, .trial = options.trial});
+  if (!sighting.failure.empty()) {
+    throw Error("--source command", sighting.failure, "correct the program (docs/own-source.md)");
+  }
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
   json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(estimator_rig)}};

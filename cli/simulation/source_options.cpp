@@ -20,7 +20,7 @@ const SourceParameter& source_named(const std::string& word) {
     if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
     names += ", " + std::string(parameter.name) + "=…";
   }
-  throw Error("--source " + word, "unknown error source", "supported: " + names);
+  throw Error("--source " + word, "unknown error source", "supported: " + names + ", command=…");
 }
 
 /// Refuses settings without effect: the range of a source that is off.
@@ -45,6 +45,11 @@ SourceSettings sources_of(const std::vector<std::string>& words, SourceSettings 
         throw Error("--source none", "would override the sources given before it", "give it first");
       }
       settings = no_sources();
+      continue;
+    }
+    constexpr std::string_view program = "command=";
+    if (word.starts_with(program)) {
+      settings.command = word.substr(program.size());
       continue;
     }
     const SourceParameter& chosen = source_named(word);

@@ -15,6 +15,7 @@
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_merge.h"
+#include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 
 namespace vernier::cli {
@@ -33,9 +34,12 @@ void print(const Study& study, const fs::path& folder, Session& session) {
   for (const CellResult& cell : results.cells) {
     const int failed = summarise(cell).failed;
     if (failed == 0) continue;
+    const SourceSettings& sources = cell.cell.experiment.sources;
     session.add_trust_warning(fmt::format(
-        "the localiser failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
+        "{} failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
         "settings says why",
+        sources.command.empty() && sources.own.empty() ? "the localiser"
+                                                       : "the localiser or a source of error",
         failed, cell.trials.size(), cell.cell.label));
   }
   session.result(study_json(study, results), study_table(study, results));

@@ -25,7 +25,9 @@ CornerDrive drive_past_corners(const Visibility& visibility,
                                std::span<const Pose2D> poses,
                                std::uint64_t seed,
                                std::uint32_t trial) {
-  const Sensor sensor(true_rig, sources);
+  SourceSettings of_corners = sources;
+  of_corners.command.clear();  // a program is asked about edges
+  const Sensor sensor(true_rig, of_corners);
   const CornerAppearance appearance(visibility.world());
   NoiseFreeViewOptions looking;
   looking.mount = mount;

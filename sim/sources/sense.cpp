@@ -18,7 +18,7 @@ using namespace stereo;
 Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px)
     : rig_(true_rig),
       rectification_(rectification(true_rig)),
-      sources_((check(settings, "sources"), standard_sources(settings, min_length_px))) {}
+      sources_((check(settings, "sources"), standard_sources(settings, min_length_px, true_rig))) {}
 
 StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& draw) const {
   SensedView view;
@@ -31,7 +31,10 @@ StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& dr
     view.corners.push_back({corner, {pixel(0), pixel(1)}, false});
   }
   const SensingContext context{rig_, rectification_, draw.seed, draw.trial, draw.frame};
-  for (const auto& source : sources_) source->apply(context, view);
+  for (const auto& source : sources_) {
+    source->apply(context, view);
+    if (!view.failure.empty()) break;
+  }
 
   StereoObservation sighting;
   sighting.segments.reserve(view.edges.size());
@@ -45,6 +48,7 @@ StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& dr
     sighting.true_edges.push_back(edge.truth);
   }
   sighting.corners = std::move(view.corners);
+  sighting.failure = std::move(view.failure);
   return sighting;
 }
 

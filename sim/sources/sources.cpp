@@ -4,14 +4,27 @@
 
 #include <fmt/format.h>
 
+#include "calib/base/program_run.h"
 #include "calib/error.h"
 
 namespace vernier::sim {
 namespace {
 
 constexpr SourceParameter parameters[] = {
+    {"moved", &SourceSettings::moved, 0, 1, true,
+     "share of the furniture moved since the map was recorded", true},
+    {"mount_height_m", &SourceSettings::mount_height_m, 0, 1, true,
+     "standard deviation of the camera's height from what is told", true},
+    {"mount_pitch_deg", &SourceSettings::mount_pitch_deg, 0, 30, true,
+     "standard deviation of the camera's pitch from what is told", true},
+    {"mount_roll_deg", &SourceSettings::mount_roll_deg, 0, 30, true,
+     "standard deviation of the camera's roll, which is told to be 0", true},
+    {"clutter", &SourceSettings::clutter, 0, 5, true,
+     "false edges in a view, as a fraction of its edges", true},
     {"lateral_shift_px", &SourceSettings::lateral_shift_px, 0, 100, true,
      "psi_l: illumination displaces an edge by U[s/2, 3s/2] pixels"},
+    {"merge_px", &SourceSettings::merge_px, 0, 100, true,
+     "parallel lines nearer than this are detected as one", true},
     {"edge_loss", &SourceSettings::edge_loss, 0, 0.95, true,
      "psi_e: fraction of each edge's length lost in one gap"},
     {"endpoint_sigma_px", &SourceSettings::endpoint_sigma_px, 0, 10, true,
@@ -45,6 +58,13 @@ void check(const SourceSettings& settings, const std::string& place) {
       throw Error(place, fmt::format("sources.{} = {} is out of range", parameter.name, value),
                   fmt::format("use {} to {}", parameter.low, parameter.high));
     }
+  }
+  if (settings.command.empty()) return;
+  if (!(settings.time_limit_s > 0 && settings.time_limit_s <= 1e6)) {
+    throw Error(place, "sources.time_limit_s is not above 0 and at most 1e6", "use 10 seconds");
+  }
+  if (command_words(settings.command, place + ": sources.command").empty()) {
+    throw Error(place, "sources.command is blank", "name the program, or leave it out");
   }
 }
 

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/sampler.h"
@@ -18,8 +19,11 @@
 #include "localise/place.h"
 #include "localise/topological_map.h"
 #include "sim/corner_appearance.h"
+#include "sim/mount_error.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "sim/sources.h"
 #include "sim/study/told_rig.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
@@ -41,10 +45,25 @@ double clock_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-NoiseFreeViewOptions look_options(const ExperimentSettings& settings) {
+NoiseFreeViewOptions look_options(const TrueMount& stands) {
   NoiseFreeViewOptions options;
-  options.mount = settings.mount;
+  options.mount = stands.mount;
+  options.roll_rad = stands.roll_rad;
   return options;
+}
+
+bool has_mount_error(const SourceSettings& sources) {
+  return sources.mount_height_m > 0 || sources.mount_pitch_deg > 0 || sources.mount_roll_deg > 0;
+}
+
+/// The changed world of an experiment, given or made.
+std::shared_ptr<const ChangedWorld> changed_world(std::shared_ptr<const ChangedWorld> given,
+                                                  const Visibility& recorded,
+                                                  const ExperimentSettings& settings) {
+  if (given || !(settings.sources.moved > 0)) return given;
+  check(settings.sources, "sources");
+  return std::make_shared<const ChangedWorld>(recorded.world(), settings.sources.moved,
+                                              settings.seed);
 }
 
 PlaceView interpret(const Rig& told,
@@ -81,8 +100,15 @@ double newest_turn_rad(const std::vector<Look>& looks) {
 MapViews map_views(const Visibility& visibility,
                    const Rig& true_rig,
                    const ExperimentSettings& settings) {
+  return map_views(visibility, true_rig, settings, {settings.mount, 0});
+}
+
+MapViews map_views(const Visibility& visibility,
+                   const Rig& true_rig,
+                   const ExperimentSettings& settings,
+                   const TrueMount& stands) {
   MapViews looks;
-  NoiseFreeViewOptions looking = look_options(settings);
+  NoiseFreeViewOptions looking = look_options(stands);
   looking.with_corners = needs_corners(settings.method, settings.localiser);
   for (const Pose2D& place :
        map_poses(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
@@ -95,30 +121,37 @@ LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
                                                const RigEstimate& rig,
                                                std::shared_ptr<const MapViews> looks,
                                                ExperimentSettings settings,
-                                               std::shared_ptr<const QueryPlaces> places)
+                                               std::shared_ptr<const QueryPlaces> places,
+                                               std::shared_ptr<const ChangedWorld> changed)
     : visibility_(visibility),
+      changed_(changed_world(std::move(changed), visibility, settings)),
+      queried_(changed_ ? changed_->visibility : visibility),
       rig_(rig),
       map_views_(std::move(looks)),
       places_(std::move(places)),
       settings_(std::move(settings)),
       sensor_(rig.rig, settings_.sources) {
   if (!places_ && settings_.protocol == QueryProtocol::free) {
-    places_ = std::make_shared<const QueryPlaces>(visibility, settings_.protocol,
-                                                  settings_.mount.height_m);
+    places_ =
+        std::make_shared<const QueryPlaces>(queried_, settings_.protocol, settings_.mount.height_m);
   }
   if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
   check(settings_.appearance, "appearance of corners");
   if (needs_corners(settings_.method, settings_.localiser)) {
     appearance_ = std::make_unique<CornerAppearance>(visibility.world(), settings_.appearance);
+    if (changed_) {
+      changed_appearance_ =
+          std::make_unique<CornerAppearance>(changed_->world, settings_.appearance);
+    }
   }
 }
 
 std::vector<StereoCorner> LocalisationExperiment::described(const StereoObservation& sighting,
                                                             const Pose2D& pose,
-                                                            const SensingDraw& draw) const {
-  if (!appearance_) return {};
-  return stereo_corners(sighting, *appearance_, settings_.sources, eye_of(pose, settings_.mount),
-                        draw);
+                                                            const SensingDraw& draw,
+                                                            const CornerAppearance* of) const {
+  if (!of) return {};
+  return stereo_corners(sighting, *of, settings_.sources, eye_of(pose, settings_.mount), draw);
 }
 
 Rig LocalisationExperiment::draw_rig(std::uint32_t trial, bool of_map) const {
@@ -134,18 +167,32 @@ Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
   return draw_rig(block, true);
 }
 
-TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
+std::shared_ptr<const MapViews> LocalisationExperiment::views_of(std::uint32_t block) const {
+  if (!has_mount_error(settings_.sources)) return map_views_;
+  const TrueMount stands =
+      draw_mount(settings_.mount, settings_.sources, settings_.seed, map_trial + block);
+  return std::make_shared<const MapViews>(map_views(visibility_, rig_.rig, settings_, stands));
+}
+
+TopologicalMap LocalisationExperiment::record(std::uint32_t block,
+                                              const Rig& rig,
+                                              const MapViews& views,
+                                              std::string& failure) const {
   TopologicalMap map;
   const auto told = std::make_shared<const Rig>(rig);
-  map.nodes.reserve(map_views_->size());
-  for (std::size_t i = 0; i < map_views_->size(); ++i) {
-    const NoiseFreeView& place = (*map_views_)[i];
+  map.nodes.reserve(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const NoiseFreeView& place = views[i];
     const SensingDraw draw{
         .seed = settings_.seed, .trial = map_trial + block, .frame = static_cast<std::uint32_t>(i)};
-    const StereoObservation sighting = sensor_.sense(place, draw);
+    StereoObservation sighting = sensor_.sense(place, draw);
+    if (!sighting.failure.empty()) {
+      failure = std::move(sighting.failure);
+      break;
+    }
     map.nodes.push_back({place.pose, interpret(rig, sighting, settings_)});
     PlaceView& view = map.nodes.back().view;
-    view.corners = described(sighting, place.pose, draw);
+    view.corners = described(sighting, place.pose, draw, appearance_.get());
     // Maps are large: one copy of the rig, and nothing that is not used.
     view.rig = told;
     view.monocular_lines = {};
@@ -155,16 +202,28 @@ TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig
   return map;
 }
 
+TopologicalMap LocalisationExperiment::record_map(std::uint32_t block, const Rig& rig) const {
+  std::string failure;
+  TopologicalMap map = record(block, rig, *views_of(block), failure);
+  if (!failure.empty()) throw Error("recording of the map", failure, "correct the source of yours");
+  return map;
+}
+
+Pose2D LocalisationExperiment::place_of(std::uint32_t trial) const {
+  return places_ ? places_->draw(settings_.seed, trial)
+                 : draw_query(queried_, settings_.protocol, settings_.mount.height_m,
+                              settings_.seed, trial);
+}
+
 TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
                                               const Rig& told,
                                               const TopologicalMap& map,
                                               const Localiser& localiser) const {
   TrialResult result;
   result.trial = trial;
-  result.truth = places_ ? places_->draw(settings_.seed, trial)
-                         : draw_query(visibility_, settings_.protocol, settings_.mount.height_m,
-                                      settings_.seed, trial);
-  NoiseFreeViewOptions looking = look_options(settings_);
+  result.truth = place_of(trial);
+  NoiseFreeViewOptions looking =
+      look_options(draw_mount(settings_.mount, settings_.sources, settings_.seed, trial));
   looking.with_corners = true;
   std::vector<Look> looks;
   LocalisationAnswer answer;
@@ -173,11 +232,19 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   for (int taken = 0; taken < std::max(1, settings_.looks); ++taken) {
     Pose2D pose = result.truth;
     pose.heading_rad += turn_rad;
-    const NoiseFreeView seen = look(visibility_, rig_.rig, pose, looking);
+    const NoiseFreeView seen = look(queried_, rig_.rig, pose, looking);
     const SensingDraw draw{
         .seed = settings_.seed, .trial = trial, .frame = static_cast<std::uint32_t>(taken)};
     StereoObservation sighting = sensor_.sense(seen, draw);
-    std::vector<StereoCorner> corners = described(sighting, pose, draw);
+    if (!sighting.failure.empty()) {
+      answer = {};
+      answer.status = LocalisationStatus::failed;
+      answer.failure = sighting.failure;
+      if (looks.empty()) looks.push_back({});
+      break;
+    }
+    std::vector<StereoCorner> corners =
+        described(sighting, pose, draw, changed_ ? changed_appearance_.get() : appearance_.get());
 
     const double cpu = clock_ms(CLOCK_THREAD_CPUTIME_ID), wall = clock_ms(CLOCK_MONOTONIC);
     looks.push_back({interpret(told, sighting, settings_), turn_rad});
@@ -193,6 +260,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   }
 
   result.status = answer.status;
+  result.failure = answer.failure;
   result.corners = static_cast<int>(first.corners.size());
   result.corner_mismatches =
       static_cast<int>(std::count_if(first.corners.begin(), first.corners.end(),
@@ -220,17 +288,31 @@ std::vector<TrialResult> LocalisationExperiment::run_block(const TrialBlock& tri
   const auto [block, first, count] = trials;
   std::vector<TrialResult> results;
   results.reserve(count);
+  const std::shared_ptr<const MapViews> views = views_of(block);
   TopologicalMap map;
+  std::string failure;  // of a source, when the map was recorded
   std::unique_ptr<Localiser> localiser;
   for (std::uint32_t trial = first; trial < first + count; ++trial) {
     const Rig told = estimator_rig(trial);
     const bool same = settings_.map_rig == MapRig::same;
-    if (same || !localiser) {
+    if (same || trial == first) {
+      failure.clear();
       localiser.reset();
-      map = record_map(block, same ? told : map_estimator_rig(block));
-      localiser = make_localiser(settings_.method, map, settings_.localiser);
+      map = record(block, same ? told : map_estimator_rig(block), *views, failure);
+      if (failure.empty()) localiser = make_localiser(settings_.method, map, settings_.localiser);
     }
-    results.push_back(run_trial(trial, told, map, *localiser));
+    if (failure.empty()) {
+      results.push_back(run_trial(trial, told, map, *localiser));
+      continue;
+    }
+    // Without its map a trial cannot be run.
+    TrialResult& spoilt = results.emplace_back();
+    spoilt.trial = trial;
+    spoilt.truth = place_of(trial);
+    spoilt.status = LocalisationStatus::failed;
+    spoilt.failure = failure;
+    spoilt.error_m = spoilt.node_error_m = spoilt.heading_error_rad =
+        std::numeric_limits<double>::quiet_NaN();
   }
   return results;
 }

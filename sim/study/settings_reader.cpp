@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/base/program_run.h"
@@ -15,6 +17,7 @@
 #include "sim/corner_appearance.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/uncertainty_source.h"
 
 namespace vernier::sim::internal {
 
@@ -40,8 +43,15 @@ double SettingsReader::number_in(const toml::node& node,
 }
 
 void SettingsReader::read_sources(const toml::table& table, SourceSettings& sources) const {
-  Keys keys{"file", "lateral_shift_mode"};
+  read_own_sources(table, sources);
+  Keys keys{"file", "lateral_shift_mode", "own", "command", "time_limit_s"};
   for (const SourceParameter& parameter : source_parameters()) keys.push_back(parameter.name);
+  for (const OwnSource& own : sources.own) {
+    keys.push_back(own.name);
+    for (const auto& [key, value] : table) {  // a sweep of an option gives such a key
+      if (key.str().starts_with(own.name + ".")) keys.push_back(key.str());
+    }
+  }
   check_keys(table, keys, "[sources]");
   for (const SourceParameter& parameter : source_parameters()) {
     if (const auto* node = table.get(parameter.name)) {
@@ -56,6 +66,58 @@ void SettingsReader::read_sources(const toml::table& table, SourceSettings& sour
     }
     sources.lateral_shift_mode = mode == "common" ? ShiftMode::common : ShiftMode::independent;
   }
+}
+
+void SettingsReader::read_own_sources(const toml::table& table, SourceSettings& sources) const {
+  if (const auto* node = table.get("own")) {
+    const std::vector<std::string> known = registered_sources();
+    const std::vector<OwnSource> before = std::exchange(sources.own, {});
+    for (const toml::node& value : list(*node, "sources.own")) {
+      const std::string name = text(value, "an entry of sources.own");
+      const auto has_name = [&](const OwnSource& own) { return own.name == name; };
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        fail(value, "unknown source " + in_quotes(name) + " in sources.own",
+             known.empty() ? "register it (docs/own-source.md)" : "use " + alternatives(known));
+      }
+      if (std::any_of(sources.own.begin(), sources.own.end(), has_name)) {
+        fail(value, "sources.own lists " + in_quotes(name) + " twice", "remove one");
+      }
+      const auto old = std::find_if(before.begin(), before.end(), has_name);
+      sources.own.push_back(old == before.end() ? OwnSource{name, {}} : *old);
+    }
+  }
+  for (OwnSource& own : sources.own) {
+    const std::string start = own.name + ".";
+    if (const auto* node = table.get(own.name)) {
+      for (const auto& [key, value] : this->table(*node, "[sources." + own.name + "]")) {
+        own.options[std::string(key.str())] =
+            number(value, "sources." + start + std::string(key.str()));
+      }
+    }
+    for (const auto& [key, value] : table) {
+      if (!key.str().starts_with(start)) continue;
+      const std::string option(key.str().substr(start.size()));
+      own.options[option] = number(value, "sources." + start + option);
+    }
+  }
+  if (const auto* node = table.get("command")) {
+    sources.command = command(*node, "sources.command");
+  }
+  if (const auto* limit = table.get("time_limit_s")) {
+    sources.time_limit_s = number_in(*limit, "sources.time_limit_s", 1e-3, 86400);
+  }
+}
+
+std::string SettingsReader::command(const toml::node& node, const std::string& what) const {
+  std::string command = text(node, what);
+  std::vector<std::string> words;
+  try {
+    words = command_words(command, what);
+  } catch (const Error& error) {
+    fail(node, what + " has an " + error.fault(), error.remedy());
+  }
+  if (words.empty()) fail(node, what + " is empty", "name the program that answers");
+  return command;
 }
 
 void SettingsReader::read_camera(const toml::table& table, CameraMount& mount) const {
@@ -184,15 +246,8 @@ void SettingsReader::read_views(const toml::table& table, LocaliserOptions& opti
 
 void SettingsReader::read_program(const toml::table& table, ExperimentSettings& settings) const {
   if (settings.method != "program") return;  // a sweep may set both
-  const toml::node& command = required(table, "command", "[localiser]");
-  settings.localiser.command = text(command, "localiser.command");
-  std::vector<std::string> words;
-  try {
-    words = command_words(settings.localiser.command, "localiser.command");
-  } catch (const Error& error) {
-    fail(command, "localiser.command has an " + error.fault(), error.remedy());
-  }
-  if (words.empty()) fail(command, "localiser.command is empty", "name the program that answers");
+  settings.localiser.command =
+      command(required(table, "command", "[localiser]"), "localiser.command");
   if (const auto* limit = table.get("time_limit_s")) {
     settings.localiser.time_limit_s = number_in(*limit, "localiser.time_limit_s", 1e-3, 86400);
   }

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -28,6 +29,7 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "sim/experiment.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/stored_results.h"
@@ -124,26 +126,53 @@ struct MissingCeiling {
   std::vector<int> mine;      ///< the queries to compute
 };
 
-/// Where the queries of a cell's experiments stand, by places_key.
-using AllPlaces = std::map<std::string, std::shared_ptr<const QueryPlaces>>;
+/// Where queries stand and what they see there.
+struct QueryWorld {
+  std::shared_ptr<const ChangedWorld> changed;  ///< null if nothing has moved
+  std::shared_ptr<const QueryPlaces> places;
+};
 
-std::string places_key(const ExperimentSettings& settings) {
-  return fmt::format("{} {}", name(settings.protocol), settings.mount.height_m);
-}
+/// The query worlds of a study's cells. Of those with moved furniture only the latest are kept.
+class QueryWorlds {
+ public:
+  QueryWorlds(const Study& study, const Visibility& recorded)
+      : study_(study), recorded_(recorded) {}
 
-AllPlaces all_places(const Study& study, const Visibility& visibility) {
-  AllPlaces all;
-  for (const StudyCell& cell : study.file.cells) {
-    const ExperimentSettings& settings = cell.experiment;
-    auto& places = all[places_key(settings)];
-    if (places) continue;
-    places = with_errors_of(study.file.world, [&] {
-      return std::make_shared<const QueryPlaces>(visibility, settings.protocol,
-                                                 settings.mount.height_m);
+  QueryWorld of(const ExperimentSettings& settings) {
+    const double moved = settings.sources.moved;
+    std::string key = fmt::format("{} {}", name(settings.protocol), settings.mount.height_m);
+    if (moved > 0) key += fmt::format(" {} {}", moved, settings.seed);
+    const std::lock_guard lock(mutex_);
+    if (const auto found = worlds_.find(key); found != worlds_.end()) return found->second;
+    QueryWorld world;
+    with_errors_of(study_.file.world, [&] {
+      if (moved > 0) {
+        world.changed =
+            std::make_shared<const ChangedWorld>(recorded_.world(), moved, settings.seed);
+      }
+      world.places =
+          std::make_shared<const QueryPlaces>(world.changed ? world.changed->visibility : recorded_,
+                                              settings.protocol, settings.mount.height_m);
+      return 0;
     });
+    if (moved > 0) {
+      constexpr std::size_t most_changed = 16;
+      changed_keys_.push_back(key);
+      if (changed_keys_.size() > most_changed) {
+        worlds_.erase(changed_keys_.front());
+        changed_keys_.pop_front();
+      }
+    }
+    return worlds_.emplace(key, std::move(world)).first->second;
   }
-  return all;
-}
+
+ private:
+  const Study& study_;
+  const Visibility& recorded_;
+  std::mutex mutex_;
+  std::map<std::string, QueryWorld> worlds_;
+  std::deque<std::string> changed_keys_;  // oldest first
+};
 
 /// Computes this shard's queries of a ceiling until asked to stop, and stores them some hundred at
 /// a time under the ceiling's key; calls `one_done` after each.
@@ -194,7 +223,7 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
 void add_ceilings(const Study& study,
                   const Visibility& visibility,
                   const StudyRun& run,
-                  const AllPlaces& places,
+                  QueryWorlds& worlds,
                   std::map<std::string, MissingCeiling> missing,
                   tbb::task_arena& arena,
                   StudyStore& store) {
@@ -212,9 +241,10 @@ void add_ceilings(const Study& study,
   for (const auto& [key, ceiling] : missing) {
     NoiseFreeViewOptions options;
     options.mount = ceiling.settings->mount;
-    const AliasFinder finder(visibility, study.rig.rig, options);
-    compute_queries(finder, *places.at(places_key(*ceiling.settings)), key, ceiling, arena,
-                    run.stop, one_done, store);
+    const QueryWorld world = worlds.of(*ceiling.settings);
+    const AliasFinder finder(world.changed ? world.changed->visibility : visibility, study.rig.rig,
+                             options);
+    compute_queries(finder, *world.places, key, ceiling, arena, run.stop, one_done, store);
   }
 }
 
@@ -230,17 +260,19 @@ void check_processor(const StoredResults& stored, const std::filesystem::path& f
 }
 
 /// Throws Error if a cell cannot be run, before anything is written.
-void check_cells(const Study& study, const Visibility& visibility, const AllPlaces& places) {
+void check_cells(const Study& study, const Visibility& visibility, QueryWorlds& worlds) {
   for (const StudyCell& cell : study.file.cells) {
-    const LocalisationExperiment tried(visibility, study.rig, nullptr, cell.experiment,
-                                       places.at(places_key(cell.experiment)));
+    ExperimentSettings settings = cell.experiment;
+    settings.sources.moved = 0;  // a changed world takes time
+    const LocalisationExperiment tried(visibility, study.rig, nullptr, settings,
+                                       worlds.of(settings).places);
   }
 }
 
 /// Runs the blocks and stores each as soon as it is done.
 void run_jobs(const Study& study,
               const Visibility& visibility,
-              const AllPlaces& places,
+              QueryWorlds& worlds,
               const StudyRun& run,
               const std::vector<Job>& jobs,
               tbb::task_arena& arena,
@@ -260,9 +292,10 @@ void run_jobs(const Study& study,
   const auto do_job = [&](int i) {
     if (run.stop.stop_requested()) return;
     const Job& job = jobs[i];
-    const LocalisationExperiment experiment(
-        visibility, study.rig, looks.at(looks_key(job.cell->experiment)), job.cell->experiment,
-        places.at(places_key(job.cell->experiment)));
+    const QueryWorld world = worlds.of(job.cell->experiment);
+    const LocalisationExperiment experiment(visibility, study.rig,
+                                            looks.at(looks_key(job.cell->experiment)),
+                                            job.cell->experiment, world.places, world.changed);
     const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
                             .first = static_cast<std::uint32_t>(job.first),
                             .count = static_cast<std::uint32_t>(job.count)};
@@ -297,8 +330,8 @@ void run_study(const Study& study, const StudyRun& run) {
   }
   check_processor(stored, run.folder);
   const Visibility visibility(study.world);
-  const AllPlaces places = all_places(study, visibility);
-  check_cells(study, visibility, places);
+  QueryWorlds worlds(study, visibility);
+  check_cells(study, visibility, worlds);
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);
@@ -310,9 +343,9 @@ void run_study(const Study& study, const StudyRun& run) {
 
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  add_ceilings(study, visibility, run, places, missing_ceilings(study, run, stored.notes), arena,
+  add_ceilings(study, visibility, run, worlds, missing_ceilings(study, run, stored.notes), arena,
                store);
-  run_jobs(study, visibility, places, run, jobs, arena, store);
+  run_jobs(study, visibility, worlds, run, jobs, arena, store);
 }
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -61,10 +62,22 @@ std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
   return pairs;
 }
 
+/// Settings of sources that have their default and that older stores have no keys of.
+std::set<std::string> newer_at_default(const SourceSettings& sources) {
+  const SourceSettings usual;
+  std::set<std::string> names;
+  for (const SourceParameter& p : source_parameters()) {
+    if (p.is_newer && sources.*p.value == usual.*p.value) {
+      names.insert(fmt::format("sources.{}", p.name));
+    }
+  }
+  return names;
+}
+
 /// The content of the files that are words of a command: a program that has changed is another one.
 std::string files_named_in(const std::string& command) {
   std::string content;
-  for (const std::string& word : command_words(command, "localiser.command")) {
+  for (const std::string& word : command_words(command, "command")) {
     std::error_code unknown;
     constexpr std::uintmax_t most_bytes = 10'000'000;
     if (!std::filesystem::is_regular_file(word, unknown) ||
@@ -88,6 +101,17 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   }
   const bool common = s.sources.lateral_shift_mode == ShiftMode::common;
   all["sources.lateral_shift_mode"] = common ? "common" : "independent";
+  for (const OwnSource& own : s.sources.own) {
+    std::string& names = all["sources.own"];
+    names += (names.empty() ? "" : ", ") + own.name;
+    for (const auto& [option, value] : own.options) {
+      all[fmt::format("sources.{}.{}", own.name, option)] = fmt::format("{}", value);
+    }
+  }
+  if (!s.sources.command.empty()) {
+    all["sources.command"] = s.sources.command;
+    all["sources.time_limit_s"] = fmt::format("{}", s.sources.time_limit_s);
+  }
   all["camera.height_m"] = fmt::format("{}", s.mount.height_m);
   all["camera.pitch_deg"] = fmt::format("{}", s.mount.pitch_rad / degree);
   all["map.spacing_m"] = fmt::format("{}", s.map_spacing_m);
@@ -129,8 +153,9 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
                              {"rig", study.rig_fingerprint}};
+  const std::set<std::string> left_out = newer_at_default(cell.experiment.sources);
   for (const auto& [name, value] : cell.settings) {
-    if (name != "localiser.knows_endpoint_sigma") key[name] = value;
+    if (name != "localiser.knows_endpoint_sigma" && !left_out.contains(name)) key[name] = value;
   }
   // Older stores had no such setting and this value; their results remain valid.
   const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
@@ -139,6 +164,9 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   }
   if (study.file.trials_per_block != usual_block) {
     key["study.trials_per_block"] = study.file.trials_per_block;
+  }
+  if (const std::string& command = cell.experiment.sources.command; !command.empty()) {
+    key["sources.files"] = fingerprint(files_named_in(command));
   }
   if (cell.experiment.method == "lines") key["localiser.version"] = lines_version;
   if (cell.experiment.method == "program") {
@@ -153,9 +181,11 @@ std::string looks_key(const ExperimentSettings& s) {
 }
 
 std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
-  return fmt::format("ceiling {} {} {} {} {} {} {}", ceiling_version, study.world_fingerprint,
-                     study.rig_fingerprint, name(s.protocol), s.mount.height_m, s.mount.pitch_rad,
-                     s.seed);
+  std::string key = fmt::format("ceiling {} {} {} {} {} {} {}", ceiling_version,
+                                study.world_fingerprint, study.rig_fingerprint, name(s.protocol),
+                                s.mount.height_m, s.mount.pitch_rad, s.seed);
+  if (s.sources.moved > 0) key += fmt::format(" moved {}", s.sources.moved);  // of that world
+  return key;
 }
 
 int ceiling_queries(const Study& study, const std::string& ceiling) {

@@ -49,9 +49,11 @@ void for_common_stretches(const std::vector<VisibleInterval>& left,
 
 }  // namespace
 
-Pose T_left_world(const Pose2D& pose, const CameraMount& mount) {
+Pose T_left_world(const Pose2D& pose, const CameraMount& mount, double roll_rad) {
   const Pose T_world_robot{rotation_from_vector({0, 0, pose.heading_rad}), {pose.x_m, pose.y_m, 0}};
-  return (T_world_robot * T_robot_camera(mount)).inverse();
+  const Pose T_world_left = T_world_robot * T_robot_camera(mount);
+  if (roll_rad == 0) return T_world_left.inverse();
+  return (T_world_left * Pose{rotation_from_vector({0, 0, roll_rad}), {0, 0, 0}}).inverse();
 }
 
 NoiseFreeView look(const Visibility& visibility,
@@ -63,7 +65,7 @@ NoiseFreeView look(const Visibility& visibility,
                 "use a rig of two cameras");
   }
   const World& world = visibility.world();
-  const Pose T_left = T_left_world(pose, options.mount);
+  const Pose T_left = T_left_world(pose, options.mount, options.roll_rad);
   const Pose T_right = rig.T_camera_first[1] * T_left;
   // The length limit applies to the part visible in both cameras.
   VisibilityOptions any_length = options.visibility;

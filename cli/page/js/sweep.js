@@ -8,6 +8,12 @@ import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 
 const SOURCE_MEANING = {
   "sources.calibration": PSI_MEANING,
+  "sources.moved": "moved is the fraction of the furniture that stands elsewhere than on the map.",
+  "sources.mount_height_m": "The camera's height differs from what is told by this standard deviation, in metres.",
+  "sources.mount_pitch_deg": "The camera's pitch differs from what is told by this standard deviation, in degrees.",
+  "sources.mount_roll_deg": "The camera's roll, told to be 0, has this standard deviation, in degrees.",
+  "sources.clutter": "clutter is the number of false edges, as a fraction of the edges in view.",
+  "sources.merge_px": "Parallel lines nearer than merge_px, in pixels, are detected as one.",
   "sources.lateral_shift_px": "ψ_l is the shift of edges by illumination, in pixels.",
   "sources.edge_loss": "ψ_e is the missing fraction of each edge's length.",
   "sources.endpoint_sigma_px": "ψ_g is the standard deviation of line endpoints, in pixels.",

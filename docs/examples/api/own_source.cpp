@@ -8,6 +8,7 @@
 
 #include "calib/rig_file.h"
 #include "sim/noise_free_view.h"
+#include "sim/sense.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world_file.h"
@@ -42,9 +43,17 @@ int main(int, char** argv) {
   const World world = build_world(read_world(share + "/worlds/workshop.world.toml"));
   const NoiseFreeView seen = look(Visibility(world), rig, {.x_m = 10, .y_m = 7.5});
 
-  auto sources = standard_sources(SourceSettings{}, /*min_length_px=*/10);
-  sources.insert(sources.begin(), std::make_unique<MissedEdges>(0.2));
+  // Registered, it is in studies of this process, and wherever settings name it.
+  register_source("missed_edges", [](const SourceOptions& options) {
+    return std::make_unique<MissedEdges>(options.at("share"));
+  });
+  SourceSettings settings;
+  settings.own = {{"missed_edges", {{"share", 0.2}}}};
+  const StereoObservation sensed = Sensor(rig, settings).sense(seen, {.seed = 1});
+  std::printf("%zu edges are sensed\n", sensed.segments.size());
 
+  // One after the other, as Sensor applies them.
+  const auto sources = standard_sources(settings, /*min_length_px=*/10);
   SensedView view;
   for (const VisibleEdge& edge : seen.edges) view.edges.emplace_back().truth = edge;
   const stereo::Rectification turned = stereo::rectification(rig);

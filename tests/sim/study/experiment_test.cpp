@@ -9,12 +9,15 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "calib/rig_estimate.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
+#include "sim/moved_furniture.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -261,6 +264,133 @@ TEST(RepeatedRooms, ConfuseCorners) {
   };
   EXPECT_LT(answered_of(true), 0.3);
   EXPECT_GT(answered_of(false), 0.8);
+}
+
+bool same(const TrialResult& a, const TrialResult& b) {
+  return a.truth.x_m == b.truth.x_m && a.truth.heading_rad == b.truth.heading_rad &&
+         a.status == b.status && a.answer.x_m == b.answer.x_m && a.score == b.score &&
+         a.lines == b.lines;
+}
+
+/// The told mount stays, the true one varies: queries stand where they stood, and see otherwise.
+TEST_F(Experiments, MountErrorsActOnWhatIsSeen) {
+  ExperimentSettings s = settings(QueryProtocol::path);
+  const TrialBlock block{.block = 0, .first = 0, .count = 12};
+  const auto exact = experiment(s).run_block(block);
+  s.sources.mount_height_m = 0.02;
+  s.sources.mount_pitch_deg = 1;
+  s.sources.mount_roll_deg = 1;
+  const LocalisationExperiment robot = experiment(s);
+  const auto off = robot.run_block(block), again = experiment(s).run_block(block);
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_EQ(exact[i].truth.x_m, off[i].truth.x_m);
+    EXPECT_FALSE(same(exact[i], off[i]));
+    EXPECT_TRUE(same(off[i], again[i]));
+    before += exact[i].error_m <= 1;
+    after += off[i].error_m <= 1;
+  }
+  EXPECT_LE(after, before);
+  // Each map's drive has a mount of its own.
+  const TopologicalMap a = robot.record_map(0, rig_.rig), b = robot.record_map(1, rig_.rig);
+  s.sources.mount_height_m = s.sources.mount_pitch_deg = s.sources.mount_roll_deg = 0;
+  const TopologicalMap told = experiment(s).record_map(0, rig_.rig);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  EXPECT_EQ(a.nodes[1].view.mount.height_m, s.mount.height_m);
+  EXPECT_EQ(a.nodes[1].pose.x_m, told.nodes[1].pose.x_m);
+  EXPECT_NE(a.nodes[1].view.lines[0].a_m, told.nodes[1].view.lines[0].a_m);
+  EXPECT_NE(a.nodes[1].view.lines[0].a_m, b.nodes[1].view.lines[0].a_m);
+}
+
+/// The map is of the world as it was, queries of the changed one, where they can stand.
+TEST_F(Experiments, MovedFurnitureActsOnQueriesOnly) {
+  ExperimentSettings s = settings(QueryProtocol::anywhere);
+  const auto before = experiment(s).run_block({.block = 0, .first = 0, .count = 16});
+  const TopologicalMap recorded = experiment(s).record_map(0, rig_.rig);
+  s.sources.moved = 0.5;
+  const LocalisationExperiment robot = experiment(s);
+  const TopologicalMap map = robot.record_map(0, rig_.rig);
+  for (std::size_t i = 0; i < map.nodes.size(); ++i) {
+    ASSERT_EQ(map.nodes[i].view.lines.size(), recorded.nodes[i].view.lines.size());
+    for (std::size_t k = 0; k < map.nodes[i].view.lines.size(); ++k) {
+      EXPECT_EQ(map.nodes[i].view.lines[k].a_m, recorded.nodes[i].view.lines[k].a_m);
+    }
+  }
+  const ChangedWorld changed(world_, 0.5, s.seed);
+  const auto after = robot.run_block({.block = 0, .first = 0, .count = 16});
+  int differ = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const auto trial = static_cast<std::uint32_t>(i);
+    const Pose2D stands =
+        draw_query(changed.visibility, s.protocol, s.mount.height_m, s.seed, trial);
+    EXPECT_EQ(after[i].truth.x_m, stands.x_m);
+    EXPECT_EQ(after[i].truth.y_m, stands.y_m);
+    differ += !same(before[i], after[i]);
+  }
+  EXPECT_GT(differ, 8);
+}
+
+/// Everything together, by blocks in 1, 2 and 8 threads.
+TEST_F(Experiments, AreTheSameInAnyNumberOfThreads) {
+  ExperimentSettings s = settings(QueryProtocol::path);
+  s.sources.clutter = 0.2;
+  s.sources.merge_px = 2;
+  s.sources.mount_height_m = 0.01;
+  s.sources.mount_roll_deg = 0.5;
+  s.sources.moved = 0.1;
+  const LocalisationExperiment robot = experiment(s);
+  constexpr std::uint32_t blocks = 8;
+  const auto all = [&](std::uint32_t threads) {
+    std::vector<std::vector<TrialResult>> results(blocks);
+    std::vector<std::thread> running;
+    for (std::uint32_t t = 0; t < threads; ++t) {
+      running.emplace_back([&, t] {
+        for (std::uint32_t i = t; i < blocks; i += threads) {
+          results[i] = robot.run_block({.block = i, .first = 2 * i, .count = 2});
+        }
+      });
+    }
+    for (std::thread& thread : running) thread.join();
+    return results;
+  };
+  const auto one = all(1);
+  for (const std::uint32_t threads : {2u, 8u}) {
+    const auto many = all(threads);
+    for (std::uint32_t i = 0; i < blocks; ++i) {
+      for (int k = 0; k < 2; ++k) EXPECT_TRUE(same(one[i][k], many[i][k])) << i;
+    }
+  }
+}
+
+/// A source's program that gives up in a query spoils its trial, in the map all trials of it.
+TEST_F(Experiments, SurviveASourceThatDies) {
+  const test::Folder folder;
+  const auto run = [&](const std::string& when) {
+    const auto program = folder.write("mine.py",
+                                      "import json, sys\n"
+                                      "sys.stdin.readline()\n"
+                                      "print('{\"ready\": true}', flush=True)\n"
+                                      "for line in sys.stdin:\n"
+                                      "    view = json.loads(line)\n"
+                                      "    if " +
+                                          when +
+                                          ": sys.exit('no more')\n"
+                                          "    print(json.dumps({'edges': [{'id': e['id']} for e "
+                                          "in view['edges']]}), flush=True)\n");
+    ExperimentSettings s = settings(QueryProtocol::path);
+    s.map_spacing_m = 2;
+    s.sources.command = "python3 '" + program.string() + "'";
+    return experiment(s).run_block({.block = 0, .first = 0, .count = 6});
+  };
+  const auto query_fails = run("view['trial'] == 3"),
+             map_fails = run("view['trial'] == 2**31 and view['frame'] == 2");
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(query_fails[i].status == LocalisationStatus::failed, i == 3) << i;
+    EXPECT_EQ(query_fails[i].failure.find("no more") != std::string::npos, i == 3) << i;
+    EXPECT_EQ(map_fails[i].status, LocalisationStatus::failed);
+    EXPECT_EQ(map_fails[i].truth.x_m, query_fails[i].truth.x_m);
+    EXPECT_FALSE(map_fails[i].success());
+  }
 }
 
 }  // namespace

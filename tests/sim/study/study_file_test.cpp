@@ -4,13 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
+#include "sim/study/study.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/told_rig.h"
+#include "sim/uncertainty_source.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
 
@@ -254,6 +262,78 @@ TEST(StudyFile, LeavesDefaultsWhereNothingWasMeasured) {
     EXPECT_EQ(study.cells[0].experiment.sources.*parameter.value, SourceSettings().*parameter.value)
         << parameter.name;
   }
+}
+
+std::string key_of(const std::string& sources) {
+  Study study;
+  study.file = parse_study("[study]\n[sources]\n" + sources, "s.toml");
+  return cell_key(study, study.file.cells[0]);
+}
+
+/// Stores that are older than a source stay valid as long as it is off.
+TEST(StudyFile, NewerSourcesAreInTheKeyOnlyWhereTheyAct) {
+  const std::string usual = key_of("");
+  for (const SourceParameter& parameter : source_parameters()) {
+    const std::string name(parameter.name);
+    EXPECT_EQ(usual.find("sources." + name + "\"") == std::string::npos, parameter.is_newer)
+        << name;
+    if (!parameter.is_newer) continue;
+    EXPECT_EQ(SourceSettings().*parameter.value, 0) << name;
+    EXPECT_EQ(key_of(name + " = 0\n"), usual) << name;
+    EXPECT_NE(key_of(name + " = 0.5\n"), usual) << name;
+    EXPECT_NE(
+        complaint_of("[study]\n[sources]\n" + name + " = -1\n").find("is out of range; use 0 to"),
+        std::string::npos);
+  }
+}
+
+TEST(StudyFile, ReadsSourcesOfOnesOwn) {
+  class Nothing : public UncertaintySource {
+    std::string_view name() const override { return "nothing"; }
+    void apply(const SensingContext&, SensedView&) const override {}
+  };
+  for (const char* name : {"dust", "rain"}) {
+    register_source(name, [](const SourceOptions&) { return std::make_unique<Nothing>(); });
+  }
+  const StudyFile study = parse_study(
+      "[study]\n[sources]\nown = [\"rain\", \"dust\"]\n[sources.rain]\nshare = 0.5\n"
+      "[sweep]\n\"sources.dust.size_px\" = [0, 3]\n",
+      "s.toml");
+  ASSERT_EQ(study.cells.size(), 2u);
+  const std::vector<OwnSource>& own = study.cells[1].experiment.sources.own;
+  ASSERT_EQ(own.size(), 2u);
+  EXPECT_EQ(own[0].name, "rain");
+  EXPECT_EQ(own[0].options.at("share"), 0.5);
+  EXPECT_EQ(own[1].options.at("size_px"), 3);
+  EXPECT_EQ(study.cells[1].settings.at("sources.own"), "rain, dust");
+  EXPECT_EQ(study.cells[1].settings.at("sources.dust.size_px"), "3");
+  EXPECT_NE(key_of("own = [\"rain\"]\n"), key_of("own = [\"dust\"]\n"));
+
+  const auto complaint = [](const std::string& sources) {
+    return complaint_of("[study]\n[sources]\n" + sources);
+  };
+  EXPECT_NE(complaint("own = [\"snow\"]\n").find("s.toml:3: unknown source"), std::string::npos);
+  EXPECT_NE(complaint("own = [\"rain\", \"rain\"]\n").find("twice"), std::string::npos);
+  EXPECT_NE(complaint("own = \"rain\"\n").find("s.toml:3"), std::string::npos);
+  EXPECT_NE(complaint("[sources.rain]\nshare = 1\n").find("unknown key 'rain'"), std::string::npos);
+  EXPECT_NE(complaint("own = [\"rain\"]\n[sources.rain]\nshare = \"x\"\n").find("s.toml:5"),
+            std::string::npos);
+}
+
+TEST(StudyFile, ReadsASourceThatIsAProgram) {
+  const StudyFile study =
+      parse_study("[study]\n[sources]\ncommand = \"mine --hard\"\ntime_limit_s = 3\n", "s.toml");
+  EXPECT_EQ(study.cells[0].experiment.sources.command, "mine --hard");
+  EXPECT_EQ(study.cells[0].experiment.sources.time_limit_s, 3);
+  EXPECT_EQ(study.cells[0].settings.at("sources.command"), "mine --hard");
+  EXPECT_NE(key_of("command = \"a\"\n"), key_of("command = \"b\"\n"));
+  const auto complaint = [](const std::string& sources) {
+    return complaint_of("[study]\n[sources]\n" + sources);
+  };
+  EXPECT_NE(complaint("command = \"\"\n").find("s.toml:3: sources.command is empty"),
+            std::string::npos);
+  EXPECT_NE(complaint("command = \"'x\"\n").find("unclosed quote"), std::string::npos);
+  EXPECT_NE(complaint("time_limit_s = 0\n").find("out of range"), std::string::npos);
 }
 
 TEST(StudyFile, ComplaintsAboutAFileOfSourcesNameIt) {

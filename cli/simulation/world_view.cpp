@@ -115,6 +115,10 @@ class PoseViews {
         add_kind("lost:" + source.source, "lost to " + source.source);
         add("lost:" + source.source, source.lost);
       }
+      if (!source.added.empty()) {
+        add_kind("added:" + source.source, "added by " + source.source);
+        add("added:" + source.source, source.added);
+      }
       // Every edge is displaced by the lateral shift.
       if (!source.displaced.empty() && source.source != "lateral_shift_px") {
         add_kind("displaced:" + source.source, "displaced by " + source.source);

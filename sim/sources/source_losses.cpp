@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/error.h"
 #include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
@@ -91,14 +92,17 @@ SensedEdges source_losses(const Rig& true_rig,
   }
   SensedEdges result;
   auto before = parts_of(sensed, whole);
-  for (const auto& source : standard_sources(settings, min_length_px)) {
+  for (const auto& source : standard_sources(settings, min_length_px, true_rig)) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, SensedEdge> edges_before;
     for (const SensedEdge& edge : sensed.edges) {
       edges_before.emplace(std::pair(edge.truth.feature, edge.piece), edge);
     }
     source->apply(context, sensed);
+    if (!sensed.failure.empty()) {
+      throw Error("source " + std::string(source->name()), sensed.failure, "mend it");
+    }
     auto after = parts_of(sensed, whole);
-    SourceLosses losses{std::string(source->name()), {}, {}};
+    SourceLosses losses{std::string(source->name()), {}, {}, {}};
     for (const auto& [feature, parts] : before) {
       for (const Part& gone : difference(parts, after[feature])) {
         const SpaceEdge edge = part_of(whole.at(feature), gone);
@@ -107,6 +111,9 @@ SensedEdges source_losses(const Rig& true_rig,
     }
     for (const SensedEdge& edge : sensed.edges) {
       const auto was = edges_before.find(std::pair(edge.truth.feature, edge.piece));
+      if (was == edges_before.end() && whole.count(edge.truth.feature) == 0) {
+        losses.added.emplace_back(edge.truth.a_m, edge.truth.b_m);
+      }
       if (was != edges_before.end() && edge.in_stereo && is_displaced(was->second, edge)) {
         losses.displaced.emplace_back(edge.truth.a_m, edge.truth.b_m);
       }

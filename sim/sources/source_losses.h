@@ -21,6 +21,7 @@ struct SourceLosses {
   std::string source;
   std::vector<SpaceEdge> lost;       ///< parts of edges that stereo does not get any more
   std::vector<SpaceEdge> displaced;  ///< by 2 px or more at an end in one of the images
+  std::vector<SpaceEdge> added;      ///< that nothing in the world explains
 };
 
 struct SensedEdges {
@@ -29,7 +30,7 @@ struct SensedEdges {
 };
 
 /// Sends a view through the sources one by one and keeps what each took away. The draws are those
-/// of Sensor::sense().
+/// of Sensor::sense(). Throws Error where a source fails.
 SensedEdges source_losses(const Rig& true_rig,
                           const SourceSettings& settings,
                           const NoiseFreeView& view,

@@ -63,7 +63,7 @@ void check(const SourceSettings& settings, const std::string& place) {
   if (!(settings.time_limit_s > 0 && settings.time_limit_s <= 1e6)) {
     throw Error(place, "sources.time_limit_s is not above 0 and at most 1e6", "use 10 seconds");
   }
-  if (command_words(settings.command, place + ": sources.command").empty()) {
+  if (vernier::internal::command_words(settings.command, place + ": sources.command").empty()) {
     throw Error(place, "sources.command is blank", "name the program, or leave it out");
   }
 }

@@ -26,7 +26,7 @@
 namespace vernier::cli {
 namespace {
 
-constexpr int gap_px = 12, foot_px = 26;
+constexpr int gap_px = 12, legend_px = 26;
 constexpr double nearest_m = 0.05;  // nothing is projected from closer to the camera's plane
 
 cv::Scalar bgr(const char* colour) {
@@ -104,7 +104,7 @@ std::string SightingPicture::image_svg(const Image& image, int number, double le
 
 std::string SightingPicture::svg() const {
   const double width = images_[0].width + gap_px + images_[1].width;
-  const double height = std::max(images_[0].height, images_[1].height) + foot_px;
+  const double height = std::max(images_[0].height, images_[1].height) + legend_px;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1 -1 {0:.0f} {1:.0f}\" "
       "font-family=\"sans-serif\" font-size=\"14\">\n<rect x=\"-1\" y=\"-1\" width=\"{0:.0f}\" "

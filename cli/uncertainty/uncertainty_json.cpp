@@ -50,7 +50,7 @@ Json deviations(const Matrix& covariance) {
 
 /// A rows x columns array with `value(i)` for cell i.
 template <typename Value>
-Json grid_rows(int columns, int rows, Value value) {
+Json rows_of_grid(int columns, int rows, Value value) {
   Json all = Json::array();
   for (int r = 0; r < rows; ++r) {
     Json row = Json::array();
@@ -65,7 +65,7 @@ Json sd_rows(int columns,
              int rows,
              GridDetail detail,
              const std::function<double(std::size_t)>& sd) {
-  return grid_rows(columns, rows, [&](std::size_t i) {
+  return rows_of_grid(columns, rows, [&](std::size_t i) {
     const double v = sd(i);
     if (!std::isfinite(v)) return Json(nullptr);
     return Json(detail == GridDetail::covariances ? v : rounded(v));
@@ -81,7 +81,7 @@ Json grid_json(const ProjectionGrid& grid, GridDetail detail) {
   json["sd_px"] = sd_rows(grid.columns, grid.rows, detail,
                           [&](std::size_t i) { return worst_sd(grid.covariance[i]); });
   if (detail == GridDetail::covariances) {
-    json["covariance_px2"] = grid_rows(grid.columns, grid.rows, [&](std::size_t i) {
+    json["covariance_px2"] = rows_of_grid(grid.columns, grid.rows, [&](std::size_t i) {
       return grid.covariance[i].allFinite() ? matrix(grid.covariance[i]) : Json(nullptr);
     });
   }

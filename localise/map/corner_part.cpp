@@ -21,12 +21,12 @@ namespace vernier::localise::internal {
 namespace {
 
 constexpr std::size_t most_corners = 10'000, longest_descriptor = 1024;
-constexpr double most_px = 1e7;
+constexpr double largest_px = 1e7;
 constexpr std::size_t counts_bytes = 8, fixed_bytes = 14 * sizeof(double);
 
 bool is_corner(const StereoCorner& corner) {
   const auto within = [](const auto& x) {
-    return x.allFinite() && x.cwiseAbs().maxCoeff() <= most_px;
+    return x.allFinite() && x.cwiseAbs().maxCoeff() <= largest_px;
   };
   return within(corner.left_px) && within(corner.right_px) && within(corner.covariance_px2) &&
          corner.covariance_px2 == corner.covariance_px2.transpose() &&

@@ -24,7 +24,7 @@ namespace {
 using Vertex = std::uint32_t;
 using Face = std::vector<Vertex>;
 
-constexpr double planar_m = 5e-4, straight_m = 1e-6;
+constexpr double planar_m = 5e-4, bend_m = 1e-6;
 
 Eigen::Vector3d normal_of(const Mesh& mesh, const Face& face) {
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -144,7 +144,7 @@ std::vector<Polygon> convex_faces(const Mesh& mesh) {
       const Eigen::Vector3d &here = mesh.vertices[face[i]],
                             &next = mesh.vertices[face[(i + 1) % face.size()]];
       const Eigen::Vector3d d = (here - before).normalized();
-      if (d.cross(next - here).norm() > straight_m) polygon.push_back(here);
+      if (d.cross(next - here).norm() > bend_m) polygon.push_back(here);
     }
     if (polygon.size() >= 3) polygons.push_back(std::move(polygon));
   }

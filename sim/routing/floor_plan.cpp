@@ -22,7 +22,7 @@ namespace {
 constexpr double wide_m = 2;    // a gap in the walls through which the outside comes in
 constexpr double around_m = 2;  // of the plan, around the world
 
-constexpr std::array<std::pair<int, int>, 4> beside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+constexpr std::array<std::pair<int, int>, 4> four_sides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 /// Lines of a world without surfaces as what stands on the floor.
 World with_walls(const World& world, double top_m) {
@@ -108,7 +108,7 @@ std::vector<bool> FloorPlan::outdoors() const {
   while (!open.empty()) {
     const auto [x, y] = open.back();
     open.pop_back();
-    for (const auto& [dx, dy] : beside) reach(x + dx, y + dy);
+    for (const auto& [dx, dy] : four_sides) reach(x + dx, y + dy);
   }
   // and what is so close to it that it cannot be a room
   std::vector<bool> others(reached.size());
@@ -157,7 +157,7 @@ std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const 
         const auto [u, v] = open.back();
         open.pop_back();
         part.push_back(index(u, v));
-        for (const auto& [dx, dy] : beside) {
+        for (const auto& [dx, dy] : four_sides) {
           const int s = u + dx, t = v + dy;
           if (!has(s, t) || !cells[index(s, t)] || seen[index(s, t)]) continue;
           seen[index(s, t)] = true;

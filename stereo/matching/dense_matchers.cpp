@@ -22,7 +22,7 @@ namespace vernier::stereo::internal {
 namespace {
 
 // OpenCV's subdivisions of a pixel, and the divisor of its number of disparities.
-constexpr int fine = 16;
+constexpr int steps_a_px = 16;
 constexpr int max_px = 2000;  // limit of 16-bit disparities
 
 /// Padding of the images, so that none of their pixels is in OpenCV's unsearched band.
@@ -39,7 +39,7 @@ struct DenseSearch {
 DenseSearch search_of(const DisparityRange& range, int block_px) {
   DenseSearch search;
   search.min_px = range.min_px;
-  search.count = (range.max_px - range.min_px + fine) / fine * fine;
+  search.count = (range.max_px - range.min_px + steps_a_px) / steps_a_px * steps_a_px;
   const int half = block_px / 2 + 1;
   search.border = {half, half + std::max(search.min_px + search.count, 0),
                    half + std::max(-search.min_px, 0)};
@@ -69,8 +69,8 @@ DisparityMap cut_out(const cv::Mat& found,
   for (int y = 0; y < map.height_px; ++y) {
     const auto* row = found.ptr<short>(y + search.border.sides_px) + search.border.left_px;
     for (int x = 0; x < map.width_px; ++x) {
-      const float d = static_cast<float>(row[x]) / fine, right = static_cast<float>(x) - d;
-      const bool known = row[x] >= search.min_px * fine &&
+      const float d = static_cast<float>(row[x]) / steps_a_px, right = static_cast<float>(x) - d;
+      const bool known = row[x] >= search.min_px * steps_a_px &&
                          d < static_cast<float>(range.max_px) + 0.5f && right > -0.5f &&
                          right < static_cast<float>(map.width_px) - 0.5f;
       map.values.push_back(known ? d : std::numeric_limits<float>::quiet_NaN());
@@ -135,7 +135,7 @@ DisparityMap bm_map(const RectifiedPair& pair, const DisparityRange& range, cons
   matcher->setUniquenessRatio(o.uniqueness_percent);
   matcher->setDisp12MaxDiff(o.disp12_max_diff_px);
   matcher->setSpeckleWindowSize(o.speckle_px);
-  matcher->setSpeckleRange(o.speckle_range_px * fine);  // in 1/16 px here, in pixels for SGBM
+  matcher->setSpeckleRange(o.speckle_range_px * steps_a_px);  // in 1/16 px here, in pixels for SGBM
   return run(*matcher, pair, range, search, "bm");
 }
 

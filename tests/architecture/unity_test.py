@@ -6,8 +6,8 @@
     unity_test.py [FILE…]
 
 Fails if two sources of a module define the same name in unnamed namespaces within one namespace:
-which of them meet in a unit changes with every source that is added. Functions may be overloaded.
-With files, these are taken for the sources of one module.
+which of them meet in a unit changes with every source that is added. Functions may be overloaded, but
+not by anything else. With files, these are taken for the sources of one module.
 """
 import collections
 import re
@@ -17,9 +17,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = ("calib", "stereo", "localise", "sim", "cli")
 NAMESPACE = re.compile(r"namespace ([\w:]+) \{")
-TYPE = re.compile(r"(?:struct|class|enum class|enum) (\w+)(?!.*;$)")
-CONSTANT = re.compile(r"(?:constexpr|const|inline constexpr|static const) [^=({]*?\b(\w+)"
-                      r"(?:\[\w*\])?\s*[={;]")
+TYPE = re.compile(r"(?:struct|class|enum class|enum) (\w+)\b(?!;)")
+CONSTANT = re.compile(r"(?:constexpr|const|inline constexpr|static const|static|thread_local|auto) "
+                      r"[^=({]*?\b(\w+)(?:\[\w*\])?\s*[={;]")
+ALIAS = re.compile(r"using (\w+)(?: = |;)|using [\w:]+::(\w+);")
+VARIABLE = re.compile(r"(?!using|return|template|friend|struct|class|enum|namespace)"
+                      r"[\w:<>, ]+?[&* ](\w+)(?:\[\w*\])?\s*(?:=|\{|;$)")
+DECLARATOR = re.compile(r",\s*(\w+)\s*(?==|\{)")
 FUNCTION = re.compile(r"(?!using|return|template)[\w:<>,&* ]+?\b(\w+)\((.*)")
 
 
@@ -48,18 +52,40 @@ def local_names(text):
         elif inside and line and line[0] not in " }/#":
             if found := TYPE.match(line):
                 yield space, "type " + found[1]
-            elif found := CONSTANT.match(line):
+            elif found := ALIAS.match(line):
+                if found[1]:  # what a using declaration brings is the same thing everywhere
+                    yield space, f"{found[1]} = {line[found.end():]}"
+            elif found := CONSTANT.match(line) or VARIABLE.match(line):
                 yield space, found[1]
+                statement = line
+                while ";" not in statement and number + 1 < len(lines):
+                    number += 1
+                    statement += lines[number]
+                for other in DECLARATOR.findall(re.sub(r"\{[^{}]*\}|\([^()]*\)|<[^<>]*>", "{",
+                                                       statement[found.end():])):
+                    yield space, other
             elif found := FUNCTION.match(line):
                 yield space, f"{found[1]}({parameters([found[2]] + lines[number + 1:])})"
 
 
 def twice(files):
     """Names that more than one of the files defines: (name, the files)."""
-    where = collections.defaultdict(set)
+    where, functions = collections.defaultdict(set), collections.defaultdict(set)
+    aliases = collections.defaultdict(lambda: collections.defaultdict(set))
     for file in files:
         for space, name in local_names(file.read_text(encoding="utf-8")):
+            if " = " in name:  # an alias may be given twice, if it is the same
+                aliases[f"{space}::{name.split(' = ')[0]}"][name].add(str(file))
+                continue
             where[f"{space}::{name}"].add(str(file))
+            if "(" in name:
+                functions[f"{space}::{name.split('(')[0]}"].add(str(file))
+    for name, meanings in aliases.items():
+        if len(meanings) > 1 or name in where:
+            where[name] |= set().union(*meanings.values())
+    for name, files_of_function in functions.items():
+        if name in where:
+            where[name] |= files_of_function
     return [(name, sorted(found)) for name, found in sorted(where.items()) if len(found) > 1]
 
 

@@ -20,7 +20,8 @@ const SourceParameter& source_named(const std::string& word) {
     if (equals != std::string::npos && parameter.name == word.substr(0, equals)) return parameter;
     names += ", " + std::string(parameter.name) + "=…";
   }
-  throw Error("--source " + word, "unknown error source", "supported: " + names + ", command=…");
+  throw Error("--source " + word, "unknown error source",
+              "supported: " + names + ", command=…, time_limit_s=…");
 }
 
 /// Refuses settings without effect: the range of a source that is off.
@@ -50,6 +51,14 @@ SourceSettings sources_of(const std::vector<std::string>& words, SourceSettings 
     constexpr std::string_view program = "command=";
     if (word.starts_with(program)) {
       settings.command = word.substr(program.size());
+      if (settings.command.empty()) {
+        throw Error("--source command=", "names no program", "name one, or leave it out");
+      }
+      continue;
+    }
+    constexpr std::string_view limit = "time_limit_s=";
+    if (word.starts_with(limit)) {
+      settings.time_limit_s = parse_numbers(word.substr(limit.size()), 1, "--source " + word)[0];
       continue;
     }
     const SourceParameter& chosen = source_named(word);

@@ -94,9 +94,29 @@ void run(ImportArguments arguments, Session& session) {
   if (is_open) {
     session.warn(arguments.file + ": holds lines only; without surfaces nothing hides anything");
   }
+  if (report.shorter > report.edges / 2) {
+    session.warn(
+        fmt::format("{}: {} of {} edges are shorter than {:g} m and left out, as those of "
+                    "round things are; see --shortest-m",
+                    arguments.file, report.shorter, report.edges, options.shortest_m));
+  }
+  constexpr double highest_storey_m = 5;
+  if (report.storeys_m.empty() && !is_open) {
+    const WorldExtent all = extent(build_world(description));
+    if (all.high_m.z() > highest_storey_m) {
+      session.warn(
+          fmt::format("{}: no storeys were found, and the world is {:.1f} m high; see "
+                      "--floor-m and --top-m",
+                      arguments.file, all.high_m.z()));
+    }
+  }
   RouteProposal proposal;
   if (!arguments.no_route) {
-    proposal = propose_route(FloorPlan(build_world(description), arguments.eye_height_m));
+    try {
+      proposal = propose_route(FloorPlan(build_world(description), arguments.eye_height_m));
+    } catch (const Error& error) {  // a floor that is too large
+      session.warn(error.what());
+    }
     description.route = proposal.route;
     if (proposal.route.empty()) {
       session.warn(

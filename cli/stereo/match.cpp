@@ -110,7 +110,7 @@ std::string check_matches_not_swapped(const std::vector<ImageMatching>& all,
 }
 
 /// Throws Error if both images of a pair are identical.
-void check_two_images(const std::vector<ImageFiles>& files) {
+void check_two_lists(const std::vector<ImageFiles>& files) {
   for (const ImageFiles& pair : files) {
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(pair.left, unknown);
@@ -218,7 +218,7 @@ void run(const MatchArguments& options, Session& session) {
     check_output_is_not_input(inputs(prior_file, files), options.picture);
     check_different("--picture", options.picture, options.output);
   }
-  check_two_images(files);
+  check_two_lists(files);
   const auto all = match_all(files, prior.estimate, options, session);
   const std::string suspicion = check_matches(all, prior.estimate, options, session);
 

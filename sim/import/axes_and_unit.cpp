@@ -9,11 +9,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>
 
 #include "calib/error.h"
+#include "sim/import/convex_faces.h"
 #include "sim/import/mesh.h"
 
 namespace vernier::sim::internal {
@@ -118,9 +120,31 @@ std::optional<int> clear_winner(const std::array<double, 3>& values, double time
   return best;
 }
 
+/// The same mesh 10 m large, with its faces joined where they lie in a plane, each as a fan of
+/// triangles: a wall of small triangles reaches from floor to ceiling like one of two.
+Mesh with_joined_faces(Mesh mesh) {
+  constexpr double size_m = 10, weld_m = 1e-4;
+  const auto [low, high] = extent(mesh);
+  const double scale = size_m / std::max((high - low).norm(), 1e-300);
+  for (Eigen::Vector3d& v : mesh.vertices) v = scale * (v - low);
+  Mesh joined;
+  joined.lines = mesh.lines;
+  if (!mesh.lines.empty()) joined.vertices = mesh.vertices;
+  for (const Polygon& face : convex_faces(welded(mesh, weld_m))) {
+    const auto first = static_cast<std::uint32_t>(joined.vertices.size());
+    joined.vertices.insert(joined.vertices.end(), face.begin(), face.end());
+    for (std::uint32_t i = 1; i + 1 < face.size(); ++i) {
+      joined.triangles.push_back({first, first + i, first + i + 1});
+    }
+  }
+  return joined;
+}
+
 /// The axis for which two of three signs speak: walls that begin and end alike and are low, level
 /// surface at few heights, and the shortest extent.
-int up_axis_by_look(const Mesh& mesh, const std::string& place) {
+int up_axis_by_look(const Mesh& file, const std::string& place) {
+  const Mesh mesh = with_joined_faces(file);
+  if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
   const auto [low, high] = extent(mesh);
   std::array<double, 3> by_walls{}, by_floors{}, by_size{};
   for (int axis = 0; axis < 3; ++axis) {

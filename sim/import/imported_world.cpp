@@ -53,12 +53,14 @@ void check(const Mesh& mesh, const std::string& place) {
 /// Where the storey begins and ends.
 std::pair<double, double> heights_of(const ImportOptions& options,
                                      const Mesh& mesh,
+                                     const std::vector<Polygon>& faces,
+                                     double lift,
                                      const std::string& place,
                                      ImportReport& report) {
-  report.storeys_m = floor_heights_m(mesh);
+  report.storeys_m = floor_heights_m(faces);
   double floor = infinity, top = infinity;
   if (options.floor_m) {
-    floor = *options.floor_m;
+    floor = *options.floor_m - lift;
   } else if (report.storeys_m.empty()) {
     if (options.storey != 1) throw Error(place, "no storeys were found", "give the floor's height");
     for (const Eigen::Vector3d& v : mesh.vertices) floor = std::min(floor, v.z());
@@ -78,16 +80,20 @@ std::pair<double, double> heights_of(const ImportOptions& options,
   return {floor, top};
 }
 
-/// What to subtract from coordinates of a plan that are more than 1 km from the origin.
-Eigen::Vector2d far_origin_m(const Mesh& mesh) {
+/// What to subtract from coordinates that are more than 1 km from the origin, in the plan and in
+/// height.
+Eigen::Vector3d far_origin_m(const Mesh& mesh) {
   constexpr double far_m = 1000;
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(infinity), high = -low;
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
   for (const Eigen::Vector3d& v : mesh.vertices) {
-    low = low.cwiseMin(v.head<2>());
-    high = high.cwiseMax(v.head<2>());
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
   }
-  const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-  return most > far_m ? Eigen::Vector2d(low.array().round()) : Eigen::Vector2d::Zero();
+  const Eigen::Vector3d most = low.cwiseAbs().cwiseMax(high.cwiseAbs());
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  if (most.head<2>().maxCoeff() > far_m) origin.head<2>() = low.head<2>().array().round();
+  if (most.z() > far_m) origin.z() = std::round(low.z());
+  return origin;
 }
 
 /// Points where at least two segments end.
@@ -136,9 +142,14 @@ ImportedWorld import_world(const Mesh& mesh,
   report.lines = mesh.lines.size();
   report.axes = axes_and_unit(mesh, options.up_axis, options.unit_m, place);
   Mesh building = upright(mesh, report.axes);
-  report.moved_m = far_origin_m(building);
-  Eigen::Vector3d origin;
-  origin << report.moved_m, 0;
+  if (const double step_m = mesh.step * report.axes.unit_m; step_m > weld_m) {
+    throw Error(place,
+                fmt::format("is so far from its origin that its reader rounds to {:.2g} m", step_m),
+                "move the building to the origin, or export PLY with doubles");
+  }
+  const Eigen::Vector3d origin = far_origin_m(building);
+  report.moved_m = origin.head<2>();
+  const double lift = origin.z();
   for (Eigen::Vector3d& v : building.vertices) {
     v -= origin;
     if (v.cwiseAbs().maxCoeff() <= largest_coordinate_m) continue;
@@ -148,10 +159,15 @@ ImportedWorld import_world(const Mesh& mesh,
                 "give --unit, or export one building");
   }
   building = welded(building, weld_m);
-  const auto [floor, top] = heights_of(options, building, place, report);
-  report.floor_m = floor;
-  if (std::isfinite(top)) report.top_m = top;
+  std::vector<Polygon> faces = convex_faces(building);
+  const auto [floor, top] = heights_of(options, building, faces, lift, place, report);
   for (Eigen::Vector3d& v : building.vertices) v.z() -= floor;
+  for (Polygon& face : faces) {
+    for (Eigen::Vector3d& v : face) v.z() -= floor;
+  }
+  report.floor_m = floor + lift;
+  if (std::isfinite(top)) report.top_m = top + lift;
+  for (double& storey : report.storeys_m) storey += lift;
 
   constexpr double below_m = 0.01;  // the floor itself, and what stands on it
   CreaseOptions crease;
@@ -164,13 +180,13 @@ ImportedWorld import_world(const Mesh& mesh,
     const double length = (b - a).norm();
     if (length == 0) {
       ++report.outside;
-    } else if (length < options.shortest_m - 1e-6) {  // rounding must not decide
+    } else if (length < options.shortest_m - weld_m) {  // rounding must not decide
       ++report.shorter;
     } else {
       features.segments_m.emplace_back(to_tenth_mm(a), to_tenth_mm(b));
     }
   }
-  for (const Polygon& face : convex_faces(building)) {
+  for (const Polygon& face : faces) {
     Polygon part = between(face, -below_m, top - floor);
     for (Eigen::Vector3d& p : part) p = to_tenth_mm(p);
     if (part.empty() || surface_error(part)) continue;

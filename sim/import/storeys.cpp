@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 
 #include "sim/import/mesh.h"
@@ -19,19 +20,21 @@ constexpr double least_walls = 0.2;  // length at their lower ends, of that of t
 constexpr double least_floor = 0.1;  // level surface that faces up, of the plan's bounding box
 constexpr double floor_below_m = 0.1, floor_above_m = 0.4;  // of where walls begin
 
-double plan_area(const Mesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  Eigen::Vector3d low = mesh.vertices[0], high = low;
-  for (const Eigen::Vector3d& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
+double plan_area(const std::vector<Polygon>& faces) {
+  if (faces.empty()) return 0;
+  Eigen::Vector3d low = faces[0][0], high = low;
+  for (const Polygon& face : faces) {
+    for (const Eigen::Vector3d& v : face) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
   }
   return (high.x() - low.x()) * (high.y() - low.y());
 }
 
 }  // namespace
 
-std::vector<double> floor_heights_m(const Mesh& mesh) {
+std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
   struct Level {
     double amount = 0, moment = 0;
     void add(double much, double z) {
@@ -41,16 +44,20 @@ std::vector<double> floor_heights_m(const Mesh& mesh) {
     double z() const { return moment / amount; }
   };
   std::map<long, Level> floors, walls;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    const Eigen::Vector3d twice = (q - p).cross(r - p);
+  for (const Polygon& face : faces) {
+    Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+    double low = face[0].z(), high = low, middle = 0;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      twice += (face[i] - face[0]).cross(face[(i + 1) % face.size()] - face[0]);
+      low = std::min(low, face[i].z());
+      high = std::max(high, face[i].z());
+      middle += face[i].z() / static_cast<double>(face.size());
+    }
     const double area = 0.5 * twice.norm();
     if (!(area > 0)) continue;
     const double up = 0.5 * twice.z() / area;
-    const auto [low, high] = std::minmax({p.z(), q.z(), r.z()});
     if (up > 0.98) {
-      const double z = (p.z() + q.z() + r.z()) / 3;
-      floors[std::lround(z / level_m)].add(area, z);
+      floors[std::lround(middle / level_m)].add(area, middle);
     } else if (std::abs(up) < 0.2 && high - low >= lowest_wall_m) {
       walls[std::lround(low / level_m)].add(area / (high - low), low);
     }
@@ -60,7 +67,7 @@ std::vector<double> floor_heights_m(const Mesh& mesh) {
     for (const auto& [index, level] : levels) amount = std::max(amount, level.amount);
     return amount;
   };
-  const double most_walls = most(walls), plan = plan_area(mesh);
+  const double most_walls = most(walls), plan = plan_area(faces);
   std::vector<double> heights;
   for (const auto& [index, wall] : walls) {
     if (wall.amount < least_walls * most_walls) continue;

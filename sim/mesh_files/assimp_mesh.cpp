@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,10 +34,10 @@ void read_axes(const aiScene& scene, const std::string& ending, Mesh& mesh) {
   }
   if (ending == ".fbx" && scene.mMetaData != nullptr) {
     std::int32_t up = 0;
-    double centimetres = 0;
+    float centimetres = 0;  // assimp has it so
     if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) mesh.up_axis = up;
     if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) {
-      mesh.unit_m = 0.01 * centimetres;
+      mesh.unit_m = 0.01 * static_cast<double>(centimetres);
     }
   }
 }
@@ -201,6 +202,10 @@ Mesh read_with_assimp(const std::filesystem::path& file,
       in_child_process([&] { return bytes_of(read_here(file, ending, leave_out)); },
                        least_s + (fault ? 0 : s_per_byte * size), file.string());
   Mesh mesh = mesh_of(bytes, file.string());
+  double largest = 0;  // assimp computes in floats
+  for (const Eigen::Vector3d& v : mesh.vertices)
+    largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  mesh.step = largest * std::numeric_limits<float>::epsilon();
   mesh.format = ending.substr(1);
   std::transform(mesh.format.begin(), mesh.format.end(), mesh.format.begin(), [](unsigned char c) {
     return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);

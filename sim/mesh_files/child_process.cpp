@@ -111,7 +111,11 @@ std::string in_child_process(const std::function<std::string()>& work,
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {
+    throw Error(place, "was not read: its reader was ended from outside, as where memory runs out",
+                "try again where there is more memory, or export fewer details");
+  }
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
     throw Error(place, fmt::format("was not read within {:g} s of CPU time", cpu_limit_s),
                 "check the file, or convert it to another format");
   }

@@ -74,6 +74,8 @@ class PlyReader {
         fail("has " + std::to_string(element.count) + " of element " + element.name,
              "export fewer details");
       }
+      check_size(element);
+      if (element.properties.empty()) continue;
       for (std::uint64_t i = 0; i < element.count; ++i) read_one(element, i, mesh);
     }
     check_indices(mesh);
@@ -133,14 +135,51 @@ class PlyReader {
   void add_property(const std::vector<std::string_view>& words) {
     Property property;
     const bool is_list = words.size() == 5 && words[1] == "list";
+    if (words.size() != 3 && !is_list) {
+      fail("has a property that is not understood", "correct its header");
+    }
     const std::optional<Kind> kind = kind_of(words[is_list ? 3 : 1]);
     if (is_list) property.count = kind_of(words[2]);
-    if ((words.size() != 3 && !is_list) || !kind || (is_list && !property.count)) {
+    if (!kind || (is_list && !property.count)) {
       fail("has a property that is not understood", "correct its header");
     }
     property.kind = *kind;
     property.name = words.back();
     elements_.back().properties.push_back(property);
+  }
+
+  /// Before anything is made of it: the file must be large enough for so many.
+  void check_size(const Element& element) const {
+    std::uint64_t bytes = 0, axes = 0;
+    for (const Property& property : element.properties) {
+      // In ASCII a digit and a blank.
+      bytes += encoding_ == Encoding::ascii ? 2 : size_of(property.count.value_or(property.kind));
+      axes += property.name == "x" || property.name == "y" || property.name == "z";
+    }
+    if (element.name == "vertex" && axes != 3) {
+      fail("has vertices without x, y and z", "export it again");
+    }
+    // The last number of ASCII may end the file.
+    if (element.count * bytes > bytes_.size() - at_ + 1)
+      fail("ends too early", "copy or export it again");
+  }
+
+  static std::uint64_t size_of(Kind kind) {
+    switch (kind) {
+      case Kind::int8:
+      case Kind::uint8:
+        return 1;
+      case Kind::int16:
+      case Kind::uint16:
+        return 2;
+      case Kind::int32:
+      case Kind::uint32:
+      case Kind::float32:
+        return 4;
+      case Kind::float64:
+        return 8;
+    }
+    return 1;
   }
 
   double number(Kind kind) {

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
+#include <functional>
 #include <utility>
 
 #include "calib/error.h"
 #include "sim/study/free_floor.h"
 #include "sim/study/standing_place.h"
+#include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -44,7 +46,7 @@ World with_walls(const World& world, double top_m) {
 }  // namespace
 
 FloorPlan::FloorPlan(const World& world, double eye_height_m) {
-  constexpr double most_cells = 4e6;
+  constexpr double most_cells = 1.2e6;
   const WorldExtent box = standing_box(world);
   const Eigen::Vector2d size = (box.high_m - box.low_m).head<2>();
   const double cells = (size.x() + 2 * around_m) / cell_m * ((size.y() + 2 * around_m) / cell_m);
@@ -65,9 +67,11 @@ FloorPlan::FloorPlan(const World& world, double eye_height_m) {
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) free_[index(x, y)] = standing.is_free(centre_m(x, y));
   }
+  block_below(world, eye_height_m + robot_top_m);
   const std::vector<bool> outside = outdoors();
   std::vector<bool> indoors(count);
   for (std::size_t i = 0; i < count; ++i) indoors[i] = free_[i] && !outside[i];
+  leave_out_holes(world, indoors);
   inside_ = largest_part(indoors);
   constexpr double least_m2 = 4;  // a room
   // Without walls around, the floor that there is.
@@ -78,6 +82,37 @@ FloorPlan::FloorPlan(const World& world, double eye_height_m) {
   }
   if (inside_m2() < least_m2) inside_ = largest_part(free_);
   clearance_ = distances_to_others(inside_);
+}
+
+/// Cells where a surface lies between the floor and the robot's top: a ceiling, a roof, a ramp.
+void FloorPlan::block_below(const World& world, double top_m) {
+  constexpr double floor_m = 0.02, upright = 0.05;
+  for (const WorldSurface& surface : world.surfaces) {
+    const PolygonPlane plane = polygon_plane(surface.polygon_m);
+    if (std::abs(plane.normal.z()) < upright) continue;
+    visit_cells(surface, [&](int x, int y) {
+      const Eigen::Vector2d at = centre_m(x, y);
+      const double z = (plane.distance_m - plane.normal.head<2>().dot(at)) / plane.normal.z();
+      if (z > floor_m && z < top_m) free_[index(x, y)] = false;
+    });
+  }
+}
+
+/// Where most of the inside has a floor, what has none is a stairwell or an atrium. The floors of
+/// two rooms may leave a gap below the wall between them, also in its door.
+void FloorPlan::leave_out_holes(const World& world, std::vector<bool>& indoors) const {
+  constexpr double gap_m = 0.3;
+  const std::vector<bool> floored = over_floor(world);
+  std::size_t cells = 0, with_floor = 0;
+  std::vector<bool> bare(indoors.size());
+  for (std::size_t i = 0; i < indoors.size(); ++i) {
+    cells += indoors[i];
+    with_floor += indoors[i] && floored[i];
+    bare[i] = !floored[i];
+  }
+  if (2 * with_floor < cells) return;
+  const std::vector<float> away = distances_to_others(bare, true);
+  for (std::size_t i = 0; i < indoors.size(); ++i) indoors[i] = indoors[i] && away[i] <= gap_m;
 }
 
 Eigen::Vector2d FloorPlan::centre_m(int x, int y) const {
@@ -124,24 +159,33 @@ std::vector<bool> FloorPlan::over_floor(const World& world) const {
   constexpr double thick_m = 0.1;
   std::vector<bool> floored(free_.size());
   for (const WorldSurface& surface : world.surfaces) {
-    Eigen::Vector3d low = surface.polygon_m[0], high = low;
-    for (const Eigen::Vector3d& p : surface.polygon_m) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    if (high.z() > thick_m || low.z() < -thick_m) continue;
-    const auto column = [&](double at, double from, int most) {
-      return std::clamp(static_cast<int>((at - from) / cell_m), 0, most - 1);
-    };
-    for (int y = column(low.y(), low_m_.y(), height_); y <= column(high.y(), low_m_.y(), height_);
-         ++y) {
-      for (int x = column(low.x(), low_m_.x(), width_); x <= column(high.x(), low_m_.x(), width_);
-           ++x) {
-        if (inside_plan(centre_m(x, y), surface.polygon_m)) floored[index(x, y)] = true;
-      }
-    }
+    const auto [low, high] =
+        std::minmax_element(surface.polygon_m.begin(), surface.polygon_m.end(),
+                            [](const auto& a, const auto& b) { return a.z() < b.z(); });
+    if (high->z() > thick_m || low->z() < -thick_m) continue;
+    visit_cells(surface, [&](int x, int y) { floored[index(x, y)] = true; });
   }
   return floored;
+}
+
+/// Calls visit(x, y) for the cells whose centre is over or below a surface.
+void FloorPlan::visit_cells(const WorldSurface& surface,
+                            const std::function<void(int, int)>& visit) const {
+  Eigen::Vector2d low = surface.polygon_m[0].head<2>(), high = low;
+  for (const Eigen::Vector3d& p : surface.polygon_m) {
+    low = low.cwiseMin(p.head<2>());
+    high = high.cwiseMax(p.head<2>());
+  }
+  const auto column = [&](double at, double from, int most) {
+    return std::clamp(static_cast<int>((at - from) / cell_m), 0, most - 1);
+  };
+  for (int y = column(low.y(), low_m_.y(), height_); y <= column(high.y(), low_m_.y(), height_);
+       ++y) {
+    for (int x = column(low.x(), low_m_.x(), width_); x <= column(high.x(), low_m_.x(), width_);
+         ++x) {
+      if (inside_plan(centre_m(x, y), surface.polygon_m)) visit(x, y);
+    }
+  }
 }
 
 std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "sim/world.h"
@@ -16,7 +17,8 @@ class FloorPlan {
   static constexpr double cell_m = 0.15;
 
   /// The robot's camera is at `eye_height_m`. Of a world without surfaces its lines on the floor
-  /// and at the robot's height stand for walls. Throws Error if the floor is larger than 90,000 m².
+  /// and at the robot's height stand for walls. Throws Error if the floor is larger than about
+  /// 27,000 m².
   FloorPlan(const World& world, double eye_height_m);
 
   int width() const { return width_; }
@@ -30,13 +32,17 @@ class FloorPlan {
 
   /// Whether the cell belongs to the largest part of the floor that is inside: free, and not
   /// connected with the surroundings of the world through gaps wider than 2 m, so that outer doors
-  /// may stand open; in a world without walls around, free and over a floor, or just free.
+  /// may stand open, and not over a hole in a floor that most of it has; in a world without walls
+  /// around, free and over a floor, or just free.
   bool inside(int x, int y) const { return inside_[index(x, y)]; }
   /// Distance from a cell of the inside to the nearest cell that is not free, metres.
   double clearance_m(int x, int y) const { return clearance_[index(x, y)]; }
   double inside_m2() const;
 
  private:
+  void block_below(const World& world, double top_m);
+  void leave_out_holes(const World& world, std::vector<bool>& indoors) const;
+  void visit_cells(const WorldSurface& surface, const std::function<void(int, int)>& visit) const;
   std::vector<bool> outdoors() const;
   std::vector<bool> over_floor(const World& world) const;
   std::vector<bool> largest_part(const std::vector<bool>& cells) const;

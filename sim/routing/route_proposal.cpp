@@ -21,6 +21,7 @@ namespace {
 
 constexpr double wished_clearance_m = 0.5, least_end_clearance_m = 0.3;
 constexpr double new_leg_m = 2.5, near_m = 2;
+constexpr std::size_t most_legs = 1000;
 constexpr float unreached = std::numeric_limits<float>::infinity();
 
 struct Cell {
@@ -180,7 +181,7 @@ RouteProposal propose_route(const FloorPlan& plan) {
     if (way.size() > 1) proposal.route.push_back(straightened(plan, way));
     ways.start_from(way);
     const Cell next = ways.furthest();
-    if (next.x < 0 || ways.cost_to(next) < new_leg_m) break;
+    if (next.x < 0 || ways.cost_to(next) < new_leg_m || proposal.route.size() == most_legs) break;
     way = ways.way_to(next);
   }
   std::size_t near = 0;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "sim/import/axes_and_unit.h"
+#include "sim/import/convex_faces.h"
 #include "sim/import/mesh.h"
 #include "sim/import/storeys.h"
 #include "sim/routing/floor_plan.h"
@@ -50,14 +51,37 @@ Mesh turned_and_scaled(Mesh mesh, int up, double unit_m) {
 }
 
 TEST(Storeys, AreWhereWallsBegin) {
-  const std::vector<double> floors = floor_heights_m(welded(two_storeys(), 5e-4));
+  const std::vector<double> floors = floor_heights_m(convex_faces(welded(two_storeys(), 5e-4)));
   ASSERT_EQ(floors.size(), 2u);
   EXPECT_NEAR(floors[0], 0, 1e-9);
   EXPECT_NEAR(floors[1], 3, 1e-9);
   // Furniture is no storey, and a building without a floor has one.
   Mesh furnished = test::house(0, false);
   for (int i = 0; i < 3; ++i) add_box(furnished, {1.0 + i, 1, 0.7}, {1.8 + i, 2, 0.75});
-  EXPECT_EQ(floor_heights_m(welded(furnished, 5e-4)).size(), 1u);
+  EXPECT_EQ(floor_heights_m(convex_faces(welded(furnished, 5e-4))).size(), 1u);
+}
+
+// However finely the walls are cut.
+TEST(Storeys, AreFoundInFineMeshes) {
+  Mesh mesh;
+  for (const double z : {0.0, 3.0}) {
+    add_rectangle(mesh, {0, 0, z}, {12, 0, 0}, {0, 8, 0}, 24, 16);
+    add_rectangle(mesh, {0, 0, z}, {12, 0, 0}, {0, 0, 2.7}, 24, 6);
+    add_rectangle(mesh, {12, 8, z}, {-12, 0, 0}, {0, 0, 2.7}, 24, 6);
+    add_rectangle(mesh, {0, 8, z}, {0, -8, 0}, {0, 0, 2.7}, 16, 6);
+    add_rectangle(mesh, {12, 0, z}, {0, 8, 0}, {0, 0, 2.7}, 16, 6);
+  }
+  const ImportedWorld imported = import_world(mesh, {}, "m.obj");
+  EXPECT_EQ(imported.report.axes.up_axis, 2);
+  EXPECT_EQ(imported.report.storeys_m.size(), 2u);
+  EXPECT_EQ(imported.world.loose.segments_m.size(), 12u);
+}
+
+TEST(ImportedWorld, RefusesWhatItsReaderRounded) {
+  Mesh mesh = test::house();
+  mesh.step = 0.25;
+  EXPECT_NE(error_message([&] { import_world(mesh, {}, "m.obj"); }).find("rounds to 0.25 m"),
+            std::string::npos);
 }
 
 TEST(AxesAndUnit, AreRecognised) {
@@ -170,6 +194,35 @@ TEST(ProposedRoute, LeadsThroughAllRooms) {
     right = right || pose.x_m > 6;
   }
   EXPECT_TRUE(left && right);
+}
+
+// A stairwell in a floor, and a roof too low to stand below, are no ways.
+TEST(ProposedRoute, KeepsOutOfHolesAndFromBelowRoofs) {
+  Mesh mesh;
+  const auto wall = [&](double x0, double y0, double x1, double y1) {
+    add_box(mesh, {x0, y0, 0}, {x1, y1, 2.6});
+  };
+  wall(-0.1, -0.1, 12.1, 0);
+  wall(-0.1, 8, 12.1, 8.1);
+  wall(-0.1, 0, 0, 8);
+  wall(12, 0, 12.1, 8);
+  add_rectangle(mesh, {0, 0, 0}, {12, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 5, 0}, {12, 0, 0}, {0, 3, 0});
+  add_rectangle(mesh, {0, 3, 0}, {4, 0, 0}, {0, 2, 0});
+  add_rectangle(mesh, {7, 3, 0}, {5, 0, 0}, {0, 2, 0});
+  add_rectangle(mesh, {9, 0, 0.8}, {3, 0, 0.4}, {0, 8, 0});  // a slope under which no robot fits
+  ImportOptions options;
+  options.up_axis = 2;
+  options.unit_m = 1;
+  const World world = build_world(import_world(mesh, options, "m.obj").world);
+  const RouteProposal proposal = propose_route(FloorPlan(world, 1.2));
+  ASSERT_GT(route_length_m(proposal.route), 8);
+  for (double s = 0; s < route_length_m(proposal.route); s += 0.1) {
+    const auto pose = route_point(proposal.route, s).pose;
+    EXPECT_FALSE(pose.x_m > 4.4 && pose.x_m < 6.6 && pose.y_m > 3.4 && pose.y_m < 4.6);
+    EXPECT_LT(pose.x_m, 9.1);
+  }
+  EXPECT_TRUE(propose_route(FloorPlan(world, 1.2)).route.size() > 0);
 }
 
 TEST(ProposedRoute, IsEmptyWithoutFloor) {

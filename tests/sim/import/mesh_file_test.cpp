@@ -103,6 +103,14 @@ TEST(PlyFile, SaysWhatIsWrong) {
             "a.ply: has 99999999999 of element vertex; export fewer details");
   EXPECT_EQ(with("float x", "flaot x"),
             "a.ply: has a property that is not understood; correct its header");
+  EXPECT_EQ(with("property float x", "property"),
+            "a.ply: has a property that is not understood; correct its header");
+  EXPECT_EQ(with("property float z", "property float w"),
+            "a.ply: has vertices without x, y and z; export it again");
+  EXPECT_EQ(with("vertex 4", "vertex 4000"), "a.ply: ends too early; copy or export it again");
+  std::string nothing = text;
+  for (int i = 0; i < 3000; ++i) nothing.insert(nothing.find("end_header"), "element e 12000000\n");
+  EXPECT_EQ(said_of("a.ply", nothing), "");
   EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 7"),
             "a.ply: names a vertex that it does not have; export it again");
   EXPECT_EQ(with("4 0 1 2 3", "4 0 1 2 -1"),

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "localise/place.h"
+#include "sim/noise_free_view.h"
 #include "sim/sources.h"
 
 namespace vernier::sim {
@@ -22,5 +23,8 @@ TrueMount draw_mount(const localise::CameraMount& told,
                      const SourceSettings& settings,
                      std::uint64_t seed,
                      std::uint32_t trial);
+
+/// How a rig on that mount looks, with the other options as they are by default.
+NoiseFreeViewOptions look_from(const TrueMount& stands);
 
 }  // namespace vernier::sim

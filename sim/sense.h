@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ struct SensingDraw {
   std::uint32_t frame = 0;  ///< of the trial
 };
 
+/// Told after each source what it has left of the view.
+using AfterSource = std::function<void(const UncertaintySource& source, const SensedView& view)>;
+
 /// The true rig observing the world through all enabled error sources.
 class Sensor {
  public:
@@ -42,7 +46,9 @@ class Sensor {
   Sensor(const Rig& true_rig, const SourceSettings& settings, double min_length_px = 10);
 
   /// The same look and draw give the same observation to the bit.
-  StereoObservation sense(const NoiseFreeView& look, const SensingDraw& draw = {}) const;
+  StereoObservation sense(const NoiseFreeView& look,
+                          const SensingDraw& draw = {},
+                          const AfterSource& after = {}) const;
 
   const Rig& rig() const { return rig_; }
 

@@ -109,10 +109,8 @@ Json report_view(const Study& study) {
   const Visibility visibility(world);
   const Pose2D pose =
       draw_query(visibility, settings.protocol, settings.mount.height_m, settings.seed, 0);
-  const TrueMount stands = draw_mount(settings.mount, settings.sources, settings.seed, 0);
-  NoiseFreeViewOptions options;
-  options.mount = stands.mount;
-  options.roll_rad = stands.roll_rad;
+  NoiseFreeViewOptions options =
+      look_from(draw_mount(settings.mount, settings.sources, settings.seed, 0));
   options.with_corners = true;
   const NoiseFreeView seen = look(visibility, study.rig.rig, pose, options);
   const Sensor sensor(study.rig.rig, settings.sources);

@@ -8,8 +8,6 @@
 #include <numbers>
 
 #include "calib/rig.h"
-#include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/program/session.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
@@ -47,12 +45,6 @@ void add_identities(const NoiseFreeView& seen, const StereoObservation& sighting
 }
 
 }  // namespace
-
-Json cameras_json(const Rig& rig) {
-  RigEstimate estimate;
-  estimate.rig = rig;
-  return Json::parse(format_rig(estimate))["cameras"];
-}
 
 Json space_json(const std::vector<SpaceSegment>& lines) {
   Json json{{"a_m", Json::array()},

@@ -16,9 +16,6 @@ namespace vernier::cli {
 /// of their edge in the world (docs/file-formats.md).
 Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting);
 
-/// Cameras and poses of a rig, as in `cameras` of a rig.json.
-Json cameras_json(const Rig& rig);
-
 /// 3D segments, in the left camera frame of the rig used for reconstruction.
 Json space_json(const std::vector<SpaceSegment>& lines);
 

@@ -14,6 +14,7 @@
 #include "calib/base/atomic_file.h"
 #include "calib/base/error_place.h"
 #include "calib/error.h"
+#include "calib/formats/rig_json.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
@@ -82,11 +83,8 @@ void run(const SimulateArguments& options, Session& session) {
     return LocalisationExperiment(visibility, rig.estimate, nullptr, settings)
         .estimator_rig(options.trial);
   });
-  NoiseFreeViewOptions looking;
-  const TrueMount stands = draw_mount({options.height_m, options.pitch_deg * degree}, sources,
-                                      options.seed, options.trial);
-  looking.mount = stands.mount;
-  looking.roll_rad = stands.roll_rad;
+  NoiseFreeViewOptions looking = look_from(draw_mount(
+      {options.height_m, options.pitch_deg * degree}, sources, options.seed, options.trial));
   looking.with_corners = true;
   const NoiseFreeView seen = with_errors_of(
       options.rig, [&] { return look(visibility, rig.estimate.rig, pose, looking); });
@@ -98,6 +96,7 @@ void run(const SimulateArguments& options, Session& session) {
   }
   Json json = sighting_json(rig.estimate.rig, seen, sighting);
   json["calibration"] = sources.calibration;
+  using vernier::internal::rig_json::cameras_json;
   json["rig"] = {{"true", cameras_json(rig.estimate.rig)}, {"told", cameras_json(estimator_rig)}};
   const std::vector<SpaceSegment> space = reconstruct(estimator_rig, sighting, settings);
   json["space"] = space_json(space);

@@ -30,7 +30,7 @@
 #include "cli/simulation/source_options.h"
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
-#include "sim/sources.h"
+#include "sim/sense.h"
 #include "sim/sources/source_losses.h"
 #include "sim/visibility.h"
 #include "sim/visibility/convex_pieces.h"
@@ -93,16 +93,17 @@ Json kinds_json(const std::vector<std::pair<std::string, std::string>>& kinds) {
 class PoseViews {
  public:
   PoseViews(const Visibility& visibility, const Rig& rig, const ViewArguments& options)
-      : visibility_(visibility), rig_(rig), options_(options) {
-    sources_ = sources_of(options.sources, {});
+      : visibility_(visibility),
+        rig_(rig),
+        sensor_(rig, sources_of(options.sources, {})),
+        seed_(options.seed) {
     looking_.mount = {options.height_m, options.pitch_deg * std::numbers::pi / 180};
     kinds_.emplace_back("told", "edges that stereo gets");
   }
 
   Json view(const Pose2D& pose, std::uint32_t trial) {
     const NoiseFreeView seen = look(visibility_, rig_, pose, looking_);
-    const SensedEdges sensed =
-        source_losses(rig_, sources_, seen, {.seed = options_.seed, .trial = trial});
+    const SensedEdges sensed = source_losses(sensor_, seen, {.seed = seed_, .trial = trial});
     const Pose T_world_left = T_left_world(pose, looking_.mount).inverse();
     Json edges = Json::object();
     const auto add = [&](const std::string& name, const std::vector<SpaceEdge>& list) {
@@ -138,8 +139,8 @@ class PoseViews {
 
   const Visibility& visibility_;
   const Rig& rig_;
-  const ViewArguments& options_;
-  SourceSettings sources_;
+  Sensor sensor_;  // one, since it may run a program
+  std::uint64_t seed_;
   NoiseFreeViewOptions looking_;
   std::vector<std::pair<std::string, std::string>> kinds_;
 };

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localise/methods/program_localiser.h"
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "calib/base/answering_program.h"
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
-#include "calib/base/program_conversation.h"
 #include "calib/base/program_run.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
@@ -20,13 +22,12 @@
 
 namespace vernier::localise::internal {
 
+using vernier::internal::AnsweringProgram;
 using vernier::internal::in_quotes;
 using vernier::internal::JsonNode;
-using vernier::internal::ProgramConversation;
 
 namespace {
 
-constexpr int most_failures = 3;
 constexpr int protocol_version = 1;
 /// To read a map, in addition to the time limit of a query; for each node.
 constexpr double start_s = 10, node_s = 0.05;
@@ -54,17 +55,17 @@ LocalisationStatus parse_status(const JsonNode& node) {
               "use answered, unsure, too_few_lines, too_few_corners, tie or no_match");
 }
 
-/// What went wrong, with what the program itself says of it.
-std::string fault(ProgramConversation::Outcome outcome,
-                  double limit_s,
-                  const ProgramConversation& program) {
-  using Outcome = ProgramConversation::Outcome;
-  std::string what;
-  if (outcome == Outcome::ended) what = "has ended without an answer";
-  if (outcome == Outcome::timed_out) what = fmt::format("gives no answer within {:g} s", limit_s);
-  if (outcome == Outcome::too_long) what = "answers with a line of more than 16 MB";
-  const std::string complaint = program.last_complaint();
-  return complaint.empty() ? what : what + " (" + complaint + ")";
+AnsweringProgram make_program(const TopologicalMap& map, const LocaliserOptions& options) {
+  std::vector<std::string> words =
+      vernier::internal::command_words(options.command, "localiser command");
+  if (words.empty()) {
+    throw Error("localiser program", "has no command", "name the program that answers");
+  }
+  const double limit_s =
+      options.time_limit_s + start_s + node_s * static_cast<double>(map.nodes.size());
+  return {std::move(words),
+          {[&map] { return map_lines(map); }, "the map", limit_s},
+          options.time_limit_s};
 }
 
 double parse_number(const JsonNode& node, const char* key) {
@@ -101,36 +102,7 @@ LocalisationAnswer parse_answer(std::string_view line, const TopologicalMap& map
 }
 
 ProgramLocaliser::ProgramLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
-    : map_(map),
-      command_(options.command),
-      words_(vernier::internal::command_words(options.command, "localiser command")),
-      time_limit_s_(options.time_limit_s) {
-  if (words_.empty()) {
-    throw Error("localiser program", "has no command", "name the program that answers");
-  }
-  start();
-}
-
-ProgramLocaliser::~ProgramLocaliser() = default;
-
-/// Starts the program and tells it the map; without program_ afterwards it did not get ready, and
-/// failure_ says why.
-void ProgramLocaliser::start() const {
-  auto program = std::make_unique<Conversation>(words_);
-  std::string answer;
-  const double limit = time_limit_s_ + start_s + node_s * static_cast<double>(map_.nodes.size());
-  const auto outcome = program->ask(map_lines(map_), limit, answer);
-  failure_ = fault(outcome, limit, *program);
-  if (outcome != Conversation::Outcome::line) return;
-  failure_ = "answers the map with " + in_quotes(answer) + " instead of {\"ready\": true}";
-  try {
-    const Json json = vernier::internal::parse_json(answer, "answer");
-    if (json.is_object() && json.contains("ready") && json["ready"] == true) {
-      program_ = std::move(program);
-    }
-  } catch (const Error&) {  // no JSON
-  }
-}
+    : map_(map), program_(make_program(map, options)) {}
 
 LocalisationAnswer ProgramLocaliser::localise(const PlaceView& query) const {
   const Look look{query, 0};
@@ -139,31 +111,20 @@ LocalisationAnswer ProgramLocaliser::localise(const PlaceView& query) const {
 
 LocalisationAnswer ProgramLocaliser::localise_looks(std::span<const Look> looks) const {
   if (looks.empty()) throw Error("looks", "there are none", "give at least one");
+  LocalisationAnswer answer;
+  double before_s = 0;
+  const auto question = [&] {
+    before_s = program_.cpu_s();
+    return Json{{"looks", looks_json(looks)}}.dump() + "\n";
+  };
+  const auto take = [&](std::string_view line) { answer = parse_answer(line, map_); };
+  if (program_.ask(question, take)) {
+    answer.program_cpu_ms = 1e3 * (program_.cpu_s() - before_s);
+    return answer;
+  }
   LocalisationAnswer failed;
   failed.status = LocalisationStatus::failed;
-  failed.failure = failure_;
-  if (failures_ >= most_failures) return failed;
-  ++failures_;
-  if (!program_) start();
-  failed.failure = failure_;
-  if (!program_) return failed;
-  const double before = program_->cpu_s();
-  std::string line;
-  const auto outcome =
-      program_->ask(Json{{"looks", looks_json(looks)}}.dump() + "\n", time_limit_s_, line);
-  failure_ = fault(outcome, time_limit_s_, *program_);
-  if (outcome == Conversation::Outcome::line) {
-    try {
-      LocalisationAnswer answer = parse_answer(line, map_);
-      answer.program_cpu_ms = 1e3 * (program_->cpu_s() - before);
-      failures_ = 0;
-      return answer;
-    } catch (const Error& error) {
-      failure_ = "answers nonsense: " + error.place() + " " + error.fault();
-    }
-  }
-  program_.reset();  // what it prints later would be taken for the next answer
-  failed.failure = failure_;
+  failed.failure = program_.failure();
   return failed;
 }
 

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "calib/base/program_conversation.h"
+#include "calib/base/answering_program.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -22,24 +19,14 @@ namespace vernier::localise::internal {
 class ProgramLocaliser : public Localiser {
  public:
   ProgramLocaliser(const TopologicalMap& map, const LocaliserOptions& options);
-  ~ProgramLocaliser() override;
 
   LocalisationAnswer localise(const PlaceView& query) const override;
   LocalisationAnswer localise_looks(std::span<const Look> looks) const override;
 
  private:
-  using Conversation = vernier::internal::ProgramConversation;
-
-  void start() const;
-
   const TopologicalMap& map_;
-  std::string command_;
-  std::vector<std::string> words_;
-  double time_limit_s_;
   // The program is all the state there is; what it answers should depend on the query alone.
-  mutable std::unique_ptr<Conversation> program_;
-  mutable int failures_ = 0;     // one after the other
-  mutable std::string failure_;  // the last
+  mutable vernier::internal::AnsweringProgram program_;
 };
 
 /// Parses an answer. Throws Error for what is not one.

@@ -75,7 +75,7 @@ class Clutter : public UncertaintySource {
       const double way = draws.uniform(0, std::numbers::pi);
       const double half = draws.uniform(shortest_px_, longest_px_) / 2;
       const Eigen::Vector2d along = half * Eigen::Vector2d(std::cos(way), std::sin(way));
-      if (!is_inside(left, middle - along) || !is_inside(left, middle + along)) continue;
+      if (!in_image(left, middle - along) || !in_image(left, middle + along)) continue;
       const auto a = try_unproject(left, middle - along), b = try_unproject(left, middle + along);
       if (!a || !b) continue;
       mark.a_m = depth_m / a->z() * *a;
@@ -85,13 +85,9 @@ class Clutter : public UncertaintySource {
     return false;
   }
 
-  static bool is_inside(const Camera& camera, const Eigen::Vector2d& pixel) {
-    return pixel.x() >= -0.5 && pixel.x() <= camera.size_px[0] - 0.5 && pixel.y() >= -0.5 &&
-           pixel.y() <= camera.size_px[1] - 0.5;
-  }
   static bool is_seen(const Rig& rig, int eye, const Eigen::Vector3d& at_m) {
     const Eigen::Vector3d x = rig.T_camera_first[eye] * at_m;
-    return x.z() > 0 && is_inside(rig.cameras[eye], project(rig.cameras[eye], x));
+    return x.z() > 0 && in_image(rig.cameras[eye], project(rig.cameras[eye], x));
   }
 
   double share_, shortest_px_, longest_px_;

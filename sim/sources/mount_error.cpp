@@ -8,6 +8,7 @@
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
 #include "localise/place.h"
+#include "sim/noise_free_view.h"
 #include "sim/sources.h"
 
 namespace vernier::sim {
@@ -32,6 +33,13 @@ TrueMount draw_mount(const localise::CameraMount& told,
   }
   stands.roll_rad = settings.mount_roll_deg * degree * roll;
   return stands;
+}
+
+NoiseFreeViewOptions look_from(const TrueMount& stands) {
+  NoiseFreeViewOptions options;
+  options.mount = stands.mount;
+  options.roll_rad = stands.roll_rad;
+  return options;
 }
 
 }  // namespace vernier::sim

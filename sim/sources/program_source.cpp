@@ -12,21 +12,21 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "calib/base/answering_program.h"
 #include "calib/base/json_node.h"
 #include "calib/base/json_reader.h"
-#include "calib/base/program_conversation.h"
 #include "calib/base/program_run.h"
-#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/formats/rig_json.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
-#include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "sim/noise_free_view.h"
 #include "sim/sources.h"
 #include "sim/sources/false_features.h"
@@ -43,17 +43,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int most_failures = 3;
 constexpr int protocol_version = 1;
 constexpr double start_s = 10;   ///< to get ready, in addition to the time limit of a view
 constexpr double most_px = 1e6;  ///< of a coordinate
 constexpr std::size_t most_added = 100'000;
 
 std::string hello_line(const Rig& rig) {
-  RigEstimate estimate;
-  estimate.rig = rig;
-  return Json{{"vernier_source", protocol_version},
-              {"cameras", Json::parse(format_rig(estimate))["cameras"]}}
+  return Json{{"vernier_source", protocol_version}, {"cameras", rig_json::cameras_json(rig)}}
              .dump() +
          "\n";
 }
@@ -78,19 +74,6 @@ std::string view_line(const SensingContext& context, const SensedView& view) {
               {"edges", std::move(edges)}}
              .dump() +
          "\n";
-}
-
-/// What went wrong, with what the program itself says of it.
-std::string fault(ProgramConversation::Outcome outcome,
-                  double limit_s,
-                  const ProgramConversation& program) {
-  using Outcome = ProgramConversation::Outcome;
-  std::string what;
-  if (outcome == Outcome::ended) what = "has ended without an answer";
-  if (outcome == Outcome::timed_out) what = fmt::format("gives no answer within {:g} s", limit_s);
-  if (outcome == Outcome::too_long) what = "answers with a line of more than 16 MB";
-  const std::string complaint = program.last_complaint();
-  return complaint.empty() ? what : what + " (" + complaint + ")";
 }
 
 ImageSegment parse_segment(const JsonNode& node) {
@@ -186,57 +169,16 @@ void apply_answer(std::string_view line, const Rig& rig, SensedView& view) {
 }
 
 ProgramSource::ProgramSource(const SourceSettings& settings, const Rig& rig)
-    : words_(command_words(settings.command, "sources.command")),
-      time_limit_s_(settings.time_limit_s),
-      hello_(hello_line(rig)) {
-  start();
-}
-
-ProgramSource::~ProgramSource() = default;
-
-/// Starts the program and tells it the rig; without program_ afterwards it did not get ready, and
-/// failure_ says why.
-void ProgramSource::start() const {
-  auto program = std::make_unique<Conversation>(words_);
-  std::string answer;
-  const double limit = time_limit_s_ + start_s;
-  const auto outcome = program->ask(hello_, limit, answer);
-  failure_ = "the source's program " + fault(outcome, limit, *program);
-  if (outcome != Conversation::Outcome::line) return;
-  failure_ = "the source's program answers the rig with " + in_quotes(answer) +
-             " instead of {\"ready\": true}";
-  try {
-    const Json json = parse_json(answer, "answer");
-    if (json.is_object() && json.contains("ready") && json["ready"] == true) {
-      program_ = std::move(program);
-    }
-  } catch (const Error&) {  // no JSON
-  }
-}
+    : program_(
+          command_words(settings.command, "sources.command"),
+          {[hello = hello_line(rig)] { return hello; }, "the rig", settings.time_limit_s + start_s},
+          settings.time_limit_s) {}
 
 void ProgramSource::apply(const SensingContext& context, SensedView& view) const {
   const std::lock_guard lock(mutex_);
-  if (failures_ < most_failures) {
-    ++failures_;
-    if (!program_) start();
-    if (program_) {
-      std::string line;
-      const auto outcome = program_->ask(view_line(context, view), time_limit_s_, line);
-      failure_ = "the source's program " + fault(outcome, time_limit_s_, *program_);
-      if (outcome == Conversation::Outcome::line) {
-        try {
-          apply_answer(line, context.rig, view);
-          failures_ = 0;
-          return;
-        } catch (const Error& error) {
-          failure_ =
-              "the source's program answers nonsense: " + error.place() + " " + error.fault();
-        }
-      }
-      program_.reset();  // what it prints later would be taken for the next answer
-    }
-  }
-  view.failure = failure_;
+  const auto question = [&] { return view_line(context, view); };
+  const auto take = [&](std::string_view line) { apply_answer(line, context.rig, view); };
+  if (!program_.ask(question, take)) view.failure = "the source's program " + program_.failure();
 }
 
 SourcePointer make_program_source(const SourceSettings& settings, const Rig& rig) {

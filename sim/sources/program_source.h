@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <mutex>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "calib/base/program_conversation.h"
+#include "calib/base/answering_program.h"
 #include "calib/rig.h"
 #include "sim/sources.h"
 #include "sim/uncertainty_source.h"
@@ -23,24 +20,14 @@ class ProgramSource : public UncertaintySource {
  public:
   /// Throws Error if the program cannot be started.
   ProgramSource(const SourceSettings& settings, const Rig& rig);
-  ~ProgramSource() override;
 
   std::string_view name() const override { return "command"; }
   void apply(const SensingContext& context, SensedView& view) const override;
 
  private:
-  using Conversation = vernier::internal::ProgramConversation;
-
-  void start() const;
-
-  std::vector<std::string> words_;
-  double time_limit_s_;
-  std::string hello_;
-  // The program is all the state there is; what it answers should depend on the view alone.
   mutable std::mutex mutex_;
-  mutable std::unique_ptr<Conversation> program_;
-  mutable int failures_ = 0;     // one after the other
-  mutable std::string failure_;  // the last
+  // The program is all the state there is; what it answers should depend on the view alone.
+  mutable vernier::internal::AnsweringProgram program_;
 };
 
 /// Makes of a view what a line of the program says. Throws Error for what is no answer to it.

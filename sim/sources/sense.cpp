@@ -20,7 +20,9 @@ Sensor::Sensor(const Rig& true_rig, const SourceSettings& settings, double min_l
       rectification_(rectification(true_rig)),
       sources_((check(settings, "sources"), standard_sources(settings, min_length_px, true_rig))) {}
 
-StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& draw) const {
+StereoObservation Sensor::sense(const NoiseFreeView& look,
+                                const SensingDraw& draw,
+                                const AfterSource& after) const {
   SensedView view;
   view.edges.reserve(look.edges.size());
   for (const VisibleEdge& edge : look.edges) view.edges.emplace_back().truth = edge;
@@ -33,6 +35,7 @@ StereoObservation Sensor::sense(const NoiseFreeView& look, const SensingDraw& dr
   const SensingContext context{rig_, rectification_, draw.seed, draw.trial, draw.frame};
   for (const auto& source : sources_) {
     source->apply(context, view);
+    if (after) after(*source, view);
     if (!view.failure.empty()) break;
   }
 

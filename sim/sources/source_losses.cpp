@@ -11,12 +11,9 @@
 #include <vector>
 
 #include "calib/error.h"
-#include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sources.h"
 #include "sim/uncertainty_source.h"
-#include "stereo/rectification.h"
 
 namespace vernier::sim::internal {
 
@@ -46,7 +43,7 @@ std::map<std::uint32_t, std::vector<Part>> parts_of(
 }
 
 /// What one list of parts has and the other, sorted, has not.
-std::vector<Part> difference(const std::vector<Part>& before, const std::vector<Part>& after) {
+std::vector<Part> gone_parts(const std::vector<Part>& before, const std::vector<Part>& after) {
   std::vector<Part> gone;
   for (const Part& part : before) {
     double from = part.first;
@@ -77,52 +74,50 @@ bool is_displaced(const SensedEdge& before, const SensedEdge& after) {
 
 }  // namespace
 
-SensedEdges source_losses(const Rig& true_rig,
-                          const SourceSettings& settings,
+SensedEdges source_losses(const Sensor& sensor,
                           const NoiseFreeView& view,
                           const SensingDraw& draw) {
-  constexpr double min_length_px = 10;  // as Sensor has it
-  const stereo::Rectification rectification = stereo::rectification(true_rig);
-  const SensingContext context{true_rig, rectification, draw.seed, draw.trial, draw.frame};
+  using Identity = std::pair<std::uint32_t, std::uint32_t>;  // feature and piece
   std::map<std::uint32_t, VisibleEdge> whole;
-  SensedView sensed;
+  std::map<std::uint32_t, std::vector<Part>> parts_before;
+  std::map<Identity, SensedEdge> edges_before;
   for (const VisibleEdge& edge : view.edges) {
-    sensed.edges.emplace_back().truth = edge;
     whole.emplace(edge.feature, edge);
+    parts_before[edge.feature] = {{0, 1}};
+    edges_before[{edge.feature, 0}].truth = edge;
   }
   SensedEdges result;
-  auto before = parts_of(sensed, whole);
-  for (const auto& source : standard_sources(settings, min_length_px, true_rig)) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, SensedEdge> edges_before;
-    for (const SensedEdge& edge : sensed.edges) {
-      edges_before.emplace(std::pair(edge.truth.feature, edge.piece), edge);
-    }
-    source->apply(context, sensed);
-    if (!sensed.failure.empty()) {
-      throw Error("source " + std::string(source->name()), sensed.failure, "mend it");
-    }
-    auto after = parts_of(sensed, whole);
-    SourceLosses losses{std::string(source->name()), {}, {}, {}};
-    for (const auto& [feature, parts] : before) {
-      for (const Part& gone : difference(parts, after[feature])) {
+  const auto compare = [&](const UncertaintySource& source, const SensedView& sensed) {
+    SourceLosses& losses = result.sources.emplace_back();
+    losses.source = source.name();
+    auto parts = parts_of(sensed, whole);
+    for (const auto& [feature, before] : parts_before) {
+      for (const Part& gone : gone_parts(before, parts[feature])) {
         const SpaceEdge edge = part_of(whole.at(feature), gone);
         if ((edge.second - edge.first).norm() > shortest_m) losses.lost.push_back(edge);
       }
     }
+    std::map<Identity, SensedEdge> edges;
     for (const SensedEdge& edge : sensed.edges) {
-      const auto was = edges_before.find(std::pair(edge.truth.feature, edge.piece));
+      const Identity identity(edge.truth.feature, edge.piece);
+      const auto was = edges_before.find(identity);
       if (was == edges_before.end() && whole.count(edge.truth.feature) == 0) {
         losses.added.emplace_back(edge.truth.a_m, edge.truth.b_m);
       }
       if (was != edges_before.end() && edge.in_stereo && is_displaced(was->second, edge)) {
         losses.displaced.emplace_back(edge.truth.a_m, edge.truth.b_m);
       }
+      edges.emplace(identity, edge);
     }
-    result.sources.push_back(std::move(losses));
-    before = std::move(after);
+    parts_before = std::move(parts);
+    edges_before = std::move(edges);
+  };
+  const StereoObservation observation = sensor.sense(view, draw, compare);
+  if (!observation.failure.empty()) {
+    throw Error("source " + result.sources.back().source, observation.failure, "mend it");
   }
-  for (const SensedEdge& edge : sensed.edges) {
-    if (edge.in_stereo) result.told.emplace_back(edge.truth.a_m, edge.truth.b_m);
+  for (const VisibleEdge& edge : observation.true_edges) {
+    result.told.emplace_back(edge.a_m, edge.b_m);
   }
   return result;
 }

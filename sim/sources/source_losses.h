@@ -7,10 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "calib/rig.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
-#include "sim/sources.h"
 
 namespace vernier::sim::internal {
 
@@ -29,11 +27,8 @@ struct SensedEdges {
   std::vector<SourceLosses> sources;
 };
 
-/// Sends a view through the sources one by one and keeps what each took away. The draws are those
-/// of Sensor::sense(). Throws Error where a source fails.
-SensedEdges source_losses(const Rig& true_rig,
-                          const SourceSettings& settings,
-                          const NoiseFreeView& view,
-                          const SensingDraw& draw);
+/// What a sensor gets of a view, and what each of its sources took away on the way there. Throws
+/// Error where a source fails.
+SensedEdges source_losses(const Sensor& sensor, const NoiseFreeView& view, const SensingDraw& draw);
 
 }  // namespace vernier::sim::internal

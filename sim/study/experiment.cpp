@@ -45,13 +45,6 @@ double clock_ms(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-NoiseFreeViewOptions look_options(const TrueMount& stands) {
-  NoiseFreeViewOptions options;
-  options.mount = stands.mount;
-  options.roll_rad = stands.roll_rad;
-  return options;
-}
-
 bool has_mount_error(const SourceSettings& sources) {
   return sources.mount_height_m > 0 || sources.mount_pitch_deg > 0 || sources.mount_roll_deg > 0;
 }
@@ -108,7 +101,7 @@ MapViews map_views(const Visibility& visibility,
                    const ExperimentSettings& settings,
                    const TrueMount& stands) {
   MapViews looks;
-  NoiseFreeViewOptions looking = look_options(stands);
+  NoiseFreeViewOptions looking = look_from(stands);
   looking.with_corners = needs_corners(settings.method, settings.localiser);
   for (const Pose2D& place :
        map_poses(visibility.world().route, settings.map_spacing_m, settings.map_headings)) {
@@ -223,7 +216,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   result.trial = trial;
   result.truth = place_of(trial);
   NoiseFreeViewOptions looking =
-      look_options(draw_mount(settings_.mount, settings_.sources, settings_.seed, trial));
+      look_from(draw_mount(settings_.mount, settings_.sources, settings_.seed, trial));
   looking.with_corners = true;
   std::vector<Look> looks;
   LocalisationAnswer answer;

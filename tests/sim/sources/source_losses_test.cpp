@@ -42,7 +42,7 @@ class SourceLossesTest : public ::testing::Test {
 // Property: what is told and what the sources took are together what was seen.
 TEST_F(SourceLossesTest, AddUpToWhatIsSeen) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const SensedEdges sensed = source_losses(rig, {}, view, {.seed = 3, .trial = trial});
+    const SensedEdges sensed = source_losses(Sensor(rig, {}), view, {.seed = 3, .trial = trial});
     double lost = 0;
     for (const SourceLosses& source : sensed.sources) lost += length(source.lost);
     EXPECT_GT(lost, 0);
@@ -55,7 +55,7 @@ TEST_F(SourceLossesTest, AreThoseOfTheSensor) {
   const Sensor sensor(rig, {});
   const SensingDraw draw{.seed = 5, .trial = 8};
   const StereoObservation seen = sensor.sense(view, draw);
-  const SensedEdges sensed = source_losses(rig, {}, view, draw);
+  const SensedEdges sensed = source_losses(sensor, view, draw);
   ASSERT_EQ(sensed.told.size(), seen.true_edges.size());
   for (std::size_t i = 0; i < seen.true_edges.size(); ++i) {
     EXPECT_EQ(sensed.told[i].first, seen.true_edges[i].a_m);
@@ -64,7 +64,7 @@ TEST_F(SourceLossesTest, AreThoseOfTheSensor) {
 }
 
 TEST_F(SourceLossesTest, AreNoneWithoutSources) {
-  const SensedEdges sensed = source_losses(rig, no_sources(), view, {});
+  const SensedEdges sensed = source_losses(Sensor(rig, no_sources()), view, {});
   EXPECT_TRUE(sensed.sources.empty());
   EXPECT_EQ(sensed.told.size(), view.edges.size());
 }
@@ -73,7 +73,7 @@ TEST_F(SourceLossesTest, AreNoneWithoutSources) {
 TEST_F(SourceLossesTest, NameWhatIsDisplaced) {
   SourceSettings settings = no_sources();
   settings.stereo_mismatch = 1;
-  const SensedEdges sensed = source_losses(rig, settings, view, {});
+  const SensedEdges sensed = source_losses(Sensor(rig, settings), view, {});
   ASSERT_EQ(sensed.sources.size(), 1u);
   EXPECT_EQ(sensed.sources[0].source, "stereo_mismatch");
   EXPECT_GT(sensed.sources[0].displaced.size(), 0.7 * static_cast<double>(view.edges.size()));

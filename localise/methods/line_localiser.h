@@ -61,7 +61,6 @@ class LineLocaliser : public Localiser {
   void compare_best(int most, Query& query) const;
   bool is_plain(const Query& query) const;
   LocalisationAnswer answer(Query& query, double off_map) const;
-  double share_within_success(const Pose2D& pose, Query& query) const;
   double telling_turn(std::span<const PoseMode> modes, Query& query) const;
 
   const TopologicalMap& map_;

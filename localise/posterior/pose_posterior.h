@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -14,7 +15,8 @@ namespace vernier::localise::internal {
 struct Hypothesis {
   Pose2D pose;
   int node = -1;
-  double score = 0;  ///< log-likelihood, nats
+  double score = 0;                                       ///< log-likelihood, nats
+  Eigen::Matrix3f information = Eigen::Matrix3f::Zero();  ///< of (x, y, turn) there, robot frame
 };
 
 /// How scores become probabilities. The likelihood model counts evidence that is not independent,

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "localise/methods/line_localiser.h"
+#include "localise/place.h"
+#include "localise/place/space_lines.h"
+#include "localise/posterior/pose_posterior.h"
+#include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/image_lines.h"
+
+namespace vernier::localise::internal {
+
+/// Poses that were tried. One that is close to another is taken for it.
+class TriedPoses {
+ public:
+  TriedPoses(double distance_m, double heading_rad)
+      : distance_m_(distance_m), heading_rad_(heading_rad) {}
+
+  /// False if one of them is close.
+  bool add(const Pose2D& pose) {
+    const auto is_close = [&](const Pose2D& other) {
+      return distance_m(other, pose) < distance_m_ &&
+             std::abs(heading_difference_rad(other, pose)) < heading_rad_;
+    };
+    if (std::any_of(tried_.begin(), tried_.end(), is_close)) return false;
+    tried_.push_back(pose);
+    return true;
+  }
+
+ private:
+  double distance_m_, heading_rad_;
+  std::vector<Pose2D> tried_;
+};
+
+/// Memory and intermediate results of one query.
+struct LineLocaliser::Query {
+  std::vector<Seen> looks;
+  std::vector<Hypothesis> found, compared;              // of the first look's pose
+  std::map<int, SpaceLines> merged;                     // of nodes, as they are needed
+  std::map<int, std::vector<PlanUpright>> uprights;     // of these
+  TriedPoses started{0.12, 0.05}, finals{0.15, 0.1};    // from which poses were refined, compared
+  float leader = std::numeric_limits<float>::lowest();  // of the scores there
+  PredictedLines room;
+};
+
+}  // namespace vernier::localise::internal

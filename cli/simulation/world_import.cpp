@@ -100,9 +100,10 @@ void run(ImportArguments arguments, Session& session) {
                     "round things are; see --shortest-m",
                     arguments.file, report.shorter, report.edges, options.shortest_m));
   }
+  const World without_route = build_world(description);
   constexpr double highest_storey_m = 5;
   if (report.storeys_m.empty() && !is_open) {
-    const WorldExtent all = extent(build_world(description));
+    const WorldExtent all = extent(without_route);
     if (all.high_m.z() > highest_storey_m) {
       session.warn(
           fmt::format("{}: no storeys were found, and the world is {:.1f} m high; see "
@@ -113,7 +114,7 @@ void run(ImportArguments arguments, Session& session) {
   RouteProposal proposal;
   if (!arguments.no_route) {
     try {
-      proposal = propose_route(FloorPlan(build_world(description), arguments.eye_height_m));
+      proposal = propose_route(FloorPlan(without_route, arguments.eye_height_m));
     } catch (const Error& error) {  // a floor that is too large
       session.warn(error.what());
     }

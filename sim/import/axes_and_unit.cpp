@@ -29,15 +29,6 @@ struct Unit {
 constexpr std::array units{Unit{1, "m"}, Unit{0.01, "cm"}, Unit{0.001, "mm"}, Unit{0.0254, "in"},
                            Unit{0.3048, "ft"}};
 
-std::pair<Eigen::Vector3d, Eigen::Vector3d> extent(const Mesh& mesh) {
-  Eigen::Vector3d low = mesh.vertices[0], high = low;
-  for (const Eigen::Vector3d& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  return {low, high};
-}
-
 /// What stands along an axis: its lower and upper end, and how much of it there is.
 struct Upright {
   double low, high, amount;
@@ -124,7 +115,7 @@ std::optional<int> clear_winner(const std::array<double, 3>& values, double time
 /// triangles: a wall of small triangles reaches from floor to ceiling like one of two.
 Mesh with_joined_faces(Mesh mesh) {
   constexpr double size_m = 10, weld_m = 1e-4;
-  const auto [low, high] = extent(mesh);
+  const auto [low, high] = extent_of(mesh);
   const double scale = size_m / std::max((high - low).norm(), 1e-300);
   for (Eigen::Vector3d& v : mesh.vertices) v = scale * (v - low);
   Mesh joined;
@@ -145,7 +136,7 @@ Mesh with_joined_faces(Mesh mesh) {
 int up_axis_by_look(const Mesh& file, const std::string& place) {
   const Mesh mesh = with_joined_faces(file);
   if (mesh.vertices.empty()) throw Error(place, "has no surface", "give --up");
-  const auto [low, high] = extent(mesh);
+  const auto [low, high] = extent_of(mesh);
   std::array<double, 3> by_walls{}, by_floors{}, by_size{};
   for (int axis = 0; axis < 3; ++axis) {
     const double size = std::max(high[axis] - low[axis], 1e-300);
@@ -167,7 +158,7 @@ int up_axis_by_look(const Mesh& file, const std::string& place) {
 
 /// Sizes in metres with a unit: height, and the longer side of the plan.
 std::pair<double, double> height_and_length_m(const Mesh& mesh, int up, double unit_m) {
-  const auto [low, high] = extent(mesh);
+  const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d size = unit_m * (high - low);
   return {size[up], std::max(size[(up + 1) % 3], size[(up + 2) % 3])};
 }

@@ -63,7 +63,7 @@ std::pair<double, double> heights_of(const ImportOptions& options,
     floor = *options.floor_m - lift;
   } else if (report.storeys_m.empty()) {
     if (options.storey != 1) throw Error(place, "no storeys were found", "give the floor's height");
-    for (const Eigen::Vector3d& v : mesh.vertices) floor = std::min(floor, v.z());
+    floor = extent_of(mesh).low.z();
   } else {
     const auto count = static_cast<int>(report.storeys_m.size());
     if (options.storey < 1 || options.storey > count) {
@@ -84,11 +84,7 @@ std::pair<double, double> heights_of(const ImportOptions& options,
 /// height.
 Eigen::Vector3d far_origin_m(const Mesh& mesh) {
   constexpr double far_m = 1000;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity), high = -low;
-  for (const Eigen::Vector3d& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
+  const auto [low, high] = extent_of(mesh);
   const Eigen::Vector3d most = low.cwiseAbs().cwiseMax(high.cwiseAbs());
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   if (most.head<2>().maxCoeff() > far_m) origin.head<2>() = low.head<2>().array().round();

@@ -19,6 +19,16 @@ double height(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::V
 
 }  // namespace
 
+MeshExtent extent_of(const Mesh& mesh) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  MeshExtent extent{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    extent.low = extent.low.cwiseMin(v);
+    extent.high = extent.high.cwiseMax(v);
+  }
+  return extent;
+}
+
 Mesh welded(const Mesh& mesh, double within) {
   Mesh result;
   result.up_axis = mesh.up_axis;

@@ -29,6 +29,12 @@ struct Mesh {
 /// Largest mesh that is imported.
 inline constexpr std::size_t most_triangles = 3'000'000;
 
+/// The corners of a mesh's bounding box; an infinite one the wrong way round without vertices.
+struct MeshExtent {
+  Eigen::Vector3d low, high;
+};
+MeshExtent extent_of(const Mesh& mesh);
+
 /// The same mesh with vertices closer than `within` made one, each the first of them. Triangles and
 /// lines that lose an end, and triangles lower than `within`, are left out.
 Mesh welded(const Mesh& mesh, double within);

@@ -42,13 +42,6 @@ void read_axes(const aiScene& scene, const std::string& ending, Mesh& mesh) {
   }
 }
 
-std::string in_small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  });
-  return text;
-}
-
 /// Adds the meshes of a scene's nodes. A mesh stands as often as nodes name it.
 class SceneReader {
  public:

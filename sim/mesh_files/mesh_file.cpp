@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 
@@ -16,10 +15,15 @@ namespace vernier::sim::internal {
 
 using namespace vernier::internal;
 
+std::string in_small_letters(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  });
+  return text;
+}
+
 Mesh read_mesh(const std::filesystem::path& file, const std::vector<std::string>& leave_out) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = in_small_letters(file.extension().string());
   std::error_code fault;
   if (!std::filesystem::is_regular_file(file, fault)) {
     const bool there = std::filesystem::exists(file, fault);

@@ -18,6 +18,9 @@ namespace vernier::sim::internal {
 /// a file whose parts have no names.
 Mesh read_mesh(const std::filesystem::path& file, const std::vector<std::string>& leave_out = {});
 
+/// Letters of ASCII in small ones.
+std::string in_small_letters(std::string text);
+
 /// A list of lines, and a PLY file.
 Mesh read_line_list(const std::filesystem::path& file);
 Mesh read_ply(const std::filesystem::path& file);

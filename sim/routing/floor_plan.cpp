@@ -123,28 +123,34 @@ double FloorPlan::inside_m2() const {
   return cell_m * cell_m * static_cast<double>(std::count(inside_.begin(), inside_.end(), true));
 }
 
+void FloorPlan::flood(std::vector<std::size_t>& reached, std::vector<bool>& left) const {
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const int x = static_cast<int>(reached[next] % static_cast<std::size_t>(width_));
+    const int y = static_cast<int>(reached[next] / static_cast<std::size_t>(width_));
+    for (const auto& [dx, dy] : four_sides) {
+      if (!has(x + dx, y + dy) || !left[index(x + dx, y + dy)]) continue;
+      left[index(x + dx, y + dy)] = false;
+      reached.push_back(index(x + dx, y + dy));
+    }
+  }
+}
+
 std::vector<bool> FloorPlan::outdoors() const {
   const std::vector<float> room = distances_to_others(free_, true);
-  std::vector<bool> reached(free_.size());
-  std::vector<std::pair<int, int>> open;
-  const auto reach = [&](int x, int y) {
-    if (!has(x, y) || reached[index(x, y)] || room[index(x, y)] < wide_m / 2) return;
-    reached[index(x, y)] = true;
-    open.emplace_back(x, y);
-  };
-  for (int x = 0; x < width_; ++x) {
-    reach(x, 0);
-    reach(x, height_ - 1);
-  }
+  std::vector<bool> left(free_.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = room[i] >= wide_m / 2;
+  std::vector<std::size_t> outside;
   for (int y = 0; y < height_; ++y) {
-    reach(0, y);
-    reach(width_ - 1, y);
+    for (int x = 0; x < width_; ++x) {
+      const bool is_border = x == 0 || y == 0 || x == width_ - 1 || y == height_ - 1;
+      if (!is_border || !left[index(x, y)]) continue;
+      left[index(x, y)] = false;
+      outside.push_back(index(x, y));
+    }
   }
-  while (!open.empty()) {
-    const auto [x, y] = open.back();
-    open.pop_back();
-    for (const auto& [dx, dy] : four_sides) reach(x + dx, y + dy);
-  }
+  flood(outside, left);
+  std::vector<bool> reached(free_.size());
+  for (const std::size_t i : outside) reached[i] = true;
   // and what is so close to it that it cannot be a room
   std::vector<bool> others(reached.size());
   for (std::size_t i = 0; i < reached.size(); ++i) others[i] = !reached[i];
@@ -189,27 +195,14 @@ void FloorPlan::visit_cells(const WorldSurface& surface,
 }
 
 std::vector<bool> FloorPlan::largest_part(const std::vector<bool>& cells) const {
-  std::vector<bool> seen(cells.size());
+  std::vector<bool> left = cells;
   std::vector<std::size_t> best;
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      if (!cells[index(x, y)] || seen[index(x, y)]) continue;
-      std::vector<std::size_t> part;
-      std::vector<std::pair<int, int>> open{{x, y}};
-      seen[index(x, y)] = true;
-      while (!open.empty()) {
-        const auto [u, v] = open.back();
-        open.pop_back();
-        part.push_back(index(u, v));
-        for (const auto& [dx, dy] : four_sides) {
-          const int s = u + dx, t = v + dy;
-          if (!has(s, t) || !cells[index(s, t)] || seen[index(s, t)]) continue;
-          seen[index(s, t)] = true;
-          open.emplace_back(s, t);
-        }
-      }
-      if (part.size() > best.size()) best = std::move(part);
-    }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!left[i]) continue;
+    left[i] = false;
+    std::vector<std::size_t> part{i};
+    flood(part, left);
+    if (part.size() > best.size()) best = std::move(part);
   }
   std::vector<bool> largest(cells.size());
   for (const std::size_t i : best) largest[i] = true;

@@ -43,6 +43,9 @@ class FloorPlan {
   void block_below(const World& world, double top_m);
   void leave_out_holes(const World& world, std::vector<bool>& indoors) const;
   void visit_cells(const WorldSurface& surface, const std::function<void(int, int)>& visit) const;
+  /// Adds to the cells that are reached those that border on them, and takes them out of what is
+  /// left, until nothing that is left borders on them.
+  void flood(std::vector<std::size_t>& reached, std::vector<bool>& left) const;
   std::vector<bool> outdoors() const;
   std::vector<bool> over_floor(const World& world) const;
   std::vector<bool> largest_part(const std::vector<bool>& cells) const;

@@ -8,9 +8,7 @@ import json
 import math
 import pathlib
 import random
-import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -52,16 +50,8 @@ def image(grey, at_x_m):
              for u in range(SIZE[0])] for v in range(SIZE[1])]
 
 
-class Odometry(unittest.TestCase):
-    def setUp(self):
-        keeper = tempfile.TemporaryDirectory()
-        self.addCleanup(keeper.cleanup)
-        self.folder = pathlib.Path(keeper.name)
-        verb_calls.write_inputs(self.folder)
-
-    def run_program(self, *words):
-        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True,
-                              cwd=self.folder, timeout=120)
+class Odometry(verb_calls.ProgramCase):
+    program = PROGRAM
 
     def done(self, *words):
         run = self.run_program(*words)

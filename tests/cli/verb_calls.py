@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The Vernier authors
 # SPDX-License-Identifier: Apache-2.0
-"""One quick call of every verb, for tests that disturb the program: streams_test.py, faults_test.py
-and scripts/fault_trials.py."""
+"""One quick call of every verb, for tests that disturb the program (streams_test.py, faults_test.py
+and scripts/fault_trials.py), and a test case that calls it in a folder with their inputs."""
 import dataclasses
 import json
 import pathlib
 import random
 import struct
+import subprocess
 import sys
+import tempfile
+import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
@@ -173,3 +176,19 @@ def calls():
              ['out.txt']),
         Call('report', ['report', 'nominal', '-o', 'out.html'], ['out.html']),
     ]
+
+
+class ProgramCase(unittest.TestCase):
+    """Tests that call the program in a folder of their own with the inputs of calls()."""
+    program = None
+    first_words = ()
+
+    def setUp(self):
+        keeper = tempfile.TemporaryDirectory()
+        self.addCleanup(keeper.cleanup)
+        self.folder = pathlib.Path(keeper.name)
+        write_inputs(self.folder)
+
+    def run_program(self, *words):
+        return subprocess.run([self.program, *self.first_words, *map(str, words)],
+                              capture_output=True, text=True, cwd=self.folder, timeout=120)

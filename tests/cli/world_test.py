@@ -9,7 +9,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -19,16 +18,9 @@ import verb_calls
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 
 
-class World(unittest.TestCase):
-    def setUp(self):
-        keeper = tempfile.TemporaryDirectory()
-        self.addCleanup(keeper.cleanup)
-        self.folder = pathlib.Path(keeper.name)
-        verb_calls.write_inputs(self.folder)
-
-    def run_program(self, *words):
-        return subprocess.run([PROGRAM, 'world', *map(str, words)], capture_output=True, text=True,
-                              cwd=self.folder, timeout=120)
+class World(verb_calls.ProgramCase):
+    program = PROGRAM
+    first_words = ('world',)
 
     def done(self, *words):
         run = self.run_program(*words, '--json')

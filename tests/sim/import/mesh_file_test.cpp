@@ -16,11 +16,11 @@
 
 #include "calib/error.h"
 #include "datasets/shipped.h"
+#include "sim/buildings/office.h"
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 #include "sim/world/world_export.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"

@@ -13,9 +13,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/camera.h"
@@ -26,6 +28,7 @@
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/visibility.h"
+#include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
 #include "tests/support/point_visibility.h"
@@ -216,6 +219,23 @@ Tally compare_view(const World& world,
   return tally;
 }
 
+// Every surface as triangles: imported polygons are planar to 1 mm only, and where such a polygon
+// lies is a matter of definition.
+World with_triangles(World world) {
+  std::vector<WorldSurface> triangles;
+  for (const WorldSurface& surface : world.surfaces) {
+    for (const std::vector<int>& loop : sim::internal::convex_pieces(surface.polygon_m)) {
+      for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+        triangles.push_back({{surface.polygon_m[loop[0]], surface.polygon_m[loop[i]],
+                              surface.polygon_m[loop[i + 1]]},
+                             surface.object});
+      }
+    }
+  }
+  world.surfaces = std::move(triangles);
+  return world;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -229,7 +249,7 @@ int main(int argc, char** argv) {
     std::printf(
         "world | edges x views | visible px | differs px | share | gaps apart | their px\n");
     for (int k = 2; k < argc; ++k) {
-      const World world = build_world(read_world(argv[k]));
+      const World world = with_triangles(build_world(read_world(argv[k])));
       const Visibility visibility(world);
       const QueryPlaces places(visibility, QueryProtocol::anywhere, 1.2);
       Tally tally;

@@ -144,7 +144,9 @@ polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 [[corner]]
 at_m = [1, 0, 0]
 [[view_dependency]]
-anything = "goes"
+at_m = [0, 0]
+heading_deg = 90
+segments = [0, 2]
 )",
                                              "text");
   EXPECT_EQ(world.templates[0].features.segments_m.size(), 3u);

@@ -3,9 +3,11 @@
 #include "sim/world_file.h"
 
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +19,7 @@
 #include "calib/error.h"
 #include "sim/world.h"
 #include "sim/world/world_check.h"
+#include "sim/world/written_rows.h"
 
 namespace vernier::sim {
 
@@ -242,7 +245,21 @@ WorldDescription WorldReader::read(const toml::table& root) {
 }  // namespace
 
 WorldDescription parse_world(const std::string& text, const std::string& place) {
-  return WorldReader(place).read(parse_toml(text, place));
+  std::optional<WrittenRows> written = take_written_rows(text);
+  if (!written) return WorldReader(place).read(parse_toml(text, place));
+  WorldDescription world = WorldReader(place).read(parse_toml(written->rest, place));
+  // A list that was taken is empty in the rest; what else the file adds comes after it.
+  const auto join = [](auto& first, auto& then) {
+    first.insert(first.end(), std::make_move_iterator(then.begin()),
+                 std::make_move_iterator(then.end()));
+    then = std::move(first);
+  };
+  FeatureSet& taken = written->features;
+  join(taken.segments_m, world.loose.segments_m);
+  join(taken.surfaces_m, world.loose.surfaces_m);
+  join(taken.corners_m, world.loose.corners_m);
+  if (const auto fault = size_error(world)) throw Error(place, fault->fault, fault->remedy);
+  return world;
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {

@@ -63,6 +63,9 @@ class Robot {
   const RobotOptions& options() const;
   /// Where it truly is; for scoring only.
   const localise::Pose2D& true_pose() const { return pose_; }
+  /// Whether nothing is within its body at a place, nor within `room_m` around it; whether it can
+  /// get there is another question.
+  bool fits(const localise::Pose2D& at, double room_m = 0) const;
   /// What it would see from a pose, in this trial and the frame of this number, without being
   /// there; for views that were recorded before, as of a goal.
   StereoObservation view_from(const localise::Pose2D& pose, std::uint32_t frame) const;

@@ -88,10 +88,9 @@ const RobotOptions& Robot::options() const { return setup_->options; }
 RobotObservation Robot::reset(std::uint64_t seed, std::uint32_t trial, const Pose2D& start) {
   const RobotOptions& o = setup_->options;
   std::string fault = standing_fault(setup_->visibility, start, o.mount.height_m);
-  const Eigen::Vector2d at(start.x_m, start.y_m);
-  const double radius = o.drive.body_radius_m;
-  if (fault.empty() && setup_->obstacles.distance_m(at, 2 * radius) < radius) {
-    fault = fmt::format("has a surface nearer than its body's radius of {:g} m", radius);
+  if (fault.empty() && !fits(start)) {
+    fault = fmt::format("has a surface nearer than its body's radius of {:g} m",
+                        o.drive.body_radius_m);
   }
   if (!fault.empty() || !std::isfinite(start.heading_rad)) {
     throw Error(fmt::format("start at ({:g}, {:g}) m", start.x_m, start.y_m),
@@ -138,6 +137,11 @@ RobotObservation Robot::step(const DriveCommand& command) {
     right_m_ += way + 0.5 * drive.wheel_base_m * turn;
   }
   return observe();
+}
+
+bool Robot::fits(const Pose2D& at, double room_m) const {
+  const double radius = setup_->options.drive.body_radius_m + room_m;
+  return setup_->obstacles.distance_m({at.x_m, at.y_m}, 2 * radius) >= radius;
 }
 
 StereoObservation Robot::view_from(const Pose2D& pose, std::uint32_t frame) const {

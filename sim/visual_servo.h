@@ -26,16 +26,16 @@ ServoGoal servo_goal(std::string_view name);
 
 /// The law, and when it ends.
 struct ServoLaw {
-  double frame_s = 0.2;         ///< between views
+  double frame_s = 0.3;         ///< between views
   double approach_per_s = 0.6;  ///< gamma: speed over the distance to the goal
   double bearing_per_s = 1.2;   ///< k: turning over the bearing of the goal
   double curve = 2;             ///< h: how much the way bends to arrive along the goal's axis
   double settle_per_s = 1;      ///< of what is left at the goal, along the axis and in heading
-  double fastest_mps = 0.4, fastest_radps = 0.8;
+  double fastest_mps = 0.4, fastest_radps = 0.5;
   double fix_share = 0.4;  ///< of a new view in the goal's place, the rest by the motion since
-  double across_tolerance_m = 0.01;  ///< at the goal; beyond it the robot retreats and comes again
+  double across_tolerance_m = 0.02;  ///< at the goal; beyond it the robot retreats and comes again
   double retreat_m = 0.5;
-  double time_limit_s = 90;
+  double time_limit_s = 60;
 };
 
 struct ServoOptions {

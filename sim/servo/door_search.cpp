@@ -206,7 +206,7 @@ std::vector<StereoLine> images_of(std::span<const SpaceLine> lines, const Pose& 
 std::optional<Pose2D> find_goal(const DesiredView& desired,
                                 std::span<const SeenLine> seen,
                                 const SearchRange& range) {
-  constexpr std::size_t refined_ones = 30;
+  constexpr std::size_t refined_ones = 20;
   constexpr double least_score = 2;
   std::vector<Hypothesis> all = lattice_scores(desired, seen, range);
   const auto better = [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; };

@@ -86,9 +86,8 @@ std::optional<GoalFix> LineTracker::track(std::span<const SeenLine> seen,
       nearest_lines(desired_, images_of(expected, desired_.T_right_left), seen, gate_px);
   auto fix = goal_by_image_error(desired_, matches);
   last_.assign(last_.size(), std::nullopt);
-  for (std::size_t i = 0; fix && i < matches.size(); ++i) {
-    if (fix->weights[i] > 0)
-      last_[static_cast<std::size_t>(matches[i].line)] = matches[i].seen.space;
+  for (const LineMatch& match : matches) {
+    last_[static_cast<std::size_t>(match.line)] = match.seen.space;
   }
   return fix;
 }
@@ -107,7 +106,7 @@ void ServoControl::retreat() {
 }
 
 std::optional<DriveCommand> ServoControl::next(bool seen, bool touched) {
-  constexpr double arrived_m = 0.01, along_m = 0.003, heading_rad = 0.004;
+  constexpr double arrived_m = 0.05, along_m = 0.003, heading_rad = 0.004;
   constexpr int settled_frames = 4;
   if (stage_ == Stage::retreat) {
     if (touched || goal_.x_m > law_.retreat_m) stage_ = Stage::approach;

@@ -106,7 +106,7 @@ class ServoDrive {
   }
 
  private:
-  static constexpr int most_unseen = 15;  // views in a row
+  static constexpr int most_unseen = 12;  // views in a row
 
   /// Whether the door was seen.
   bool take(const RobotObservation& seen,

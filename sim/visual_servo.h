@@ -103,6 +103,9 @@ class ServoExperiment {
   const std::vector<localise::Pose2D>& goals() const { return goals_; }
 
  private:
+  /// Whether a robot can drive straight from a start behind the goal to it.
+  bool is_way(const localise::Pose2D& goal, double back_m, double aside_m) const;
+  bool has_starts(const localise::Pose2D& goal) const;
   localise::Pose2D draw_start(const localise::Pose2D& goal,
                               std::uint64_t seed,
                               std::uint32_t trial) const;

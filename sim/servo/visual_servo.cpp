@@ -159,7 +159,7 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
     if (world.objects[i].template_name != options.door) continue;
     known = true;
     const Pose2D goal = goal_before(world.objects[i], options.distance_m);
-    if (!robot_.fits(goal, room_m) ||
+    if (!has_starts(goal) ||
         !standing_fault(visibility, goal, robot.mount.height_m).empty()) {
       continue;
     }
@@ -168,10 +168,36 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
   }
   if (doors_.empty()) {
     throw Error(options.door,
-                known ? fmt::format("has no free place {:g} m in front of it", options.distance_m)
+                known ? fmt::format("has no free place {:g} m in front of it and behind that",
+                                    options.distance_m)
                       : "is no template of an object in this world",
                 known ? "give another distance" : "name one, such as door_frame");
   }
+}
+
+bool ServoExperiment::is_way(const Pose2D& goal, double back_m, double aside_m) const {
+  const double height = robot_.options().mount.height_m;
+  const Pose2D start = compose(goal, {-back_m, aside_m, 0});
+  bool free = visibility_.sees({goal.x_m, goal.y_m, height}, {start.x_m, start.y_m, height});
+  constexpr int places = 30;
+  for (int i = 0; i <= places && free; ++i) {
+    const double share = static_cast<double>(i) / places;
+    free = robot_.fits(compose(goal, {-share * back_m, share * aside_m, 0}), room_m);
+  }
+  return free;
+}
+
+bool ServoExperiment::has_starts(const Pose2D& goal) const {
+  constexpr int steps = 10, fewest = 5;  // of 121
+  const double depth = options_.farthest_back_m - options_.nearest_back_m;
+  int free = 0;
+  for (int i = 0; i <= steps; ++i) {
+    for (int k = 0; k <= steps; ++k) {
+      free += is_way(goal, options_.nearest_back_m + depth * i / steps,
+                     options_.aside_m * (2.0 * k / steps - 1));
+    }
+  }
+  return free >= fewest;
 }
 
 Pose2D ServoExperiment::draw_start(const Pose2D& goal,
@@ -181,19 +207,11 @@ Pose2D ServoExperiment::draw_start(const Pose2D& goal,
                       .trial = trial,
                       .feature = 1,
                       .source = static_cast<std::uint32_t>(DrawSource::servo_start)});
-  const double height = robot_.options().mount.height_m;
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const double back = draws.uniform(options_.nearest_back_m, options_.farthest_back_m);
     const double aside = draws.uniform(-options_.aside_m, options_.aside_m);
     const double turned = draws.uniform(-options_.turned_rad, options_.turned_rad);
-    const Pose2D start = compose(goal, {-back, aside, turned});
-    bool free = visibility_.sees({goal.x_m, goal.y_m, height}, {start.x_m, start.y_m, height});
-    constexpr int places = 30;  // on the straight way between
-    for (int i = 0; i <= places && free; ++i) {
-      const double share = static_cast<double>(i) / places;
-      free = robot_.fits(compose(goal, {-share * back, share * aside, 0}), room_m);
-    }
-    if (free) return start;
+    if (is_way(goal, back, aside)) return compose(goal, {-back, aside, turned});
   }
   throw Error(
       "servoing",

@@ -26,9 +26,11 @@ def cells():
     """(goal, psi_c, psi_l), the most telling ones first."""
     grid = [(c, l) for l in SHIFT for c in CALIBRATION]
     cross = [(c, l) for c, l in grid if l == 3 or c == 1]
-    first = [('model', c, l) for c, l in cross] + [('taught', c, l) for c, l in cross]
-    first += [('recorded', c, l) for c, l in cross if c == 1]
-    return first + [('model', c, l) for c, l in grid if (c, l) not in cross]
+    ends = [(c, l) for c, l in cross if c in (0, 10) or l in (0, 6) or (c, l) == (1, 3)]
+    ordered = [('model', c, l) for c, l in cross] + [('taught', c, l) for c, l in ends]
+    ordered += [('recorded', c, l) for c, l in grid if c == 1]
+    every = [(goal, c, l) for goal in ('model', 'taught') for c, l in grid]
+    return ordered + [cell for cell in every if cell not in ordered]
 
 
 def file_of(folder, cell, seed):

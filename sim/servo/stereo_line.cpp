@@ -60,14 +60,18 @@ Eigen::Matrix<double, 6, 3> camera_by_floor(const Pose& T_robot_camera) {
 }  // namespace
 
 std::optional<SeenLine> see(const Rig& told, const StereoSegment& segment) {
-  constexpr double farthest_m = 30, least_sine = 1e-4;
+  constexpr double farthest_m = 30, least_sine = 0.07;
   const auto left = plane_through(told.cameras[0], segment.left);
   const auto right = plane_through(told.cameras[1], segment.right);
   if (!left || !right) return std::nullopt;
   const Pose& T = told.T_camera_first[1];
+  const Eigen::Vector3d baseline = T.R.transpose() * T.t;
+  const double sine =
+      std::abs(left->normal.dot(baseline)) / (left->normal.norm() * baseline.norm());
+  if (!(sine > least_sine)) return std::nullopt;
   const double depth = -right->normal.dot(T.t) / right->normal.dot(T.R * left->middle);
   const Eigen::Vector3d along = left->normal.cross(T.R.transpose() * right->normal);
-  if (!(depth > 0 && depth < farthest_m) || !(along.norm() > least_sine)) return std::nullopt;
+  if (!(depth > 0 && depth < farthest_m)) return std::nullopt;
   return SeenLine{{left->normal, right->normal},
                   {depth * left->middle, along.normalized()},
                   segment.left.length_px()};

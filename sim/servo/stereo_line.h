@@ -38,8 +38,8 @@ struct SeenLine {
 };
 
 /// Undistorts the ends of a matched pair of image lines and intersects the planes through them; the
-/// point is on the ray of the left line's middle. Nothing if a pixel has no ray, if the planes are
-/// nearly the same, and beyond 30 m or behind the rig.
+/// point is on the ray of the left line's middle. Nothing if a pixel has no ray, within 4
+/// degrees of the epipolar plane, and beyond 30 m or behind the rig.
 std::optional<SeenLine> see(const Rig& told, const stereo::StereoSegment& segment);
 
 /// The images of a line in space. Pose of the right camera: T_right_left.

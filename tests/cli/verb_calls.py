@@ -168,6 +168,8 @@ def calls():
                           '--picture', 'out.svg'], ['out.svg']),
         Call('drive', ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o', 'out.jsonl',
                        '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
+        Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],
+             ['out.csv', 'out.svg']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),

@@ -89,8 +89,8 @@ RobotObservation Robot::reset(std::uint64_t seed, std::uint32_t trial, const Pos
   const RobotOptions& o = setup_->options;
   std::string fault = standing_fault(setup_->visibility, start, o.mount.height_m);
   if (fault.empty() && !fits(start)) {
-    fault = fmt::format("has a surface nearer than its body's radius of {:g} m",
-                        o.drive.body_radius_m);
+    fault =
+        fmt::format("has a surface nearer than its body's radius of {:g} m", o.drive.body_radius_m);
   }
   if (!fault.empty() || !std::isfinite(start.heading_rad)) {
     throw Error(fmt::format("start at ({:g}, {:g}) m", start.x_m, start.y_m),

@@ -159,8 +159,7 @@ ServoExperiment::ServoExperiment(const Visibility& visibility,
     if (world.objects[i].template_name != options.door) continue;
     known = true;
     const Pose2D goal = goal_before(world.objects[i], options.distance_m);
-    if (!has_starts(goal) ||
-        !standing_fault(visibility, goal, robot.mount.height_m).empty()) {
+    if (!has_starts(goal) || !standing_fault(visibility, goal, robot.mount.height_m).empty()) {
       continue;
     }
     doors_.push_back(static_cast<int>(i));

@@ -4,17 +4,23 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "sim/visibility/box_tree.h"
 #include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/near_occluders.h"
 #include "sim/visibility/shadow.h"
 #include "sim/visibility/shadow_grid.h"
 #include "sim/visibility/view_frustum.h"
+#include "sim/visibility/view_sets.h"
 #include "sim/world.h"
 
 namespace vernier::sim {
@@ -53,6 +59,7 @@ void intersect(const std::vector<Stretch>& one,
 
 /// Buffers reused for all segments of a view.
 struct Scratch {
+  NearOccluders near;
   ShadowGrid grid;
   std::vector<OccludedInterval> hidden;
   std::vector<Stretch> unhidden, inside, seen;
@@ -126,31 +133,80 @@ BoxTree tree_of(const std::vector<WorldCorner>& corners) {
 }  // namespace
 
 struct Visibility::Index {
-  explicit Index(const World& whole)
+  Index(const World& whole, VisibilityMethod how)
       : world(whole),
+        method(how),
         surfaces(convex_surfaces(whole)),
+        large(surfaces),
         pieces(tree_of(surfaces)),
         segments(tree_of(whole.segments)),
         corners(tree_of(whole.corners)) {}
 
-  /// Prepares the shadows of a view, and the features of a tree that can be in it.
+  /// Prepares the shadows of a view, and the features of a tree that can be in it, if one is given.
   void prepare(const ViewFrustum& frustum,
                const Pose& T,
-               const BoxTree& features,
+               const BoxTree* features,
                double gap) const {
     const ViewVolume volume = frustum.volume(T);
-    const auto meets = [&](const AlignedBox3d& box) { return volume.may_meet(box); };
+    scratch.near.choose(surfaces, large, T.inverse().t, volume, gap);
+    const auto meets = [&](const AlignedBox3d& box) {
+      return volume.may_meet(box) && !scratch.near.hide(box);
+    };
     pieces.find(meets, scratch.near_pieces);
-    features.find(meets, scratch.near_features);
+    if (features) features->find(meets, scratch.near_features);
     scratch.grid.build(surfaces, scratch.near_pieces, T, frustum, gap);
   }
 
+  /// The segments of the view set that is nearest to a camera.
+  std::span<const int> set_at(const Pose& T) const {
+    const Eigen::Vector3d eye = T.inverse().t, axis = T.R.row(2).transpose();
+    const ViewSet* set =
+        nearest_set(world.view_sets, {eye.x(), eye.y(), std::atan2(axis.y(), axis.x())});
+    return set ? std::span<const int>(set->segments) : std::span<const int>();
+  }
+
+  /// Visible runs of some segments, of the view that was prepared.
+  std::vector<VisibleInterval> runs_of(std::span<const int> candidates,
+                                       const ViewFrustum& frustum,
+                                       const Camera& camera,
+                                       const Pose& T,
+                                       double min_length_px) const {
+    Scratch& s = scratch;
+    std::vector<VisibleInterval> runs;
+    for (const int i : candidates) {
+      const Eigen::Vector3d a = T * world.segments[i].a_m;
+      const Eigen::Vector3d b = T * world.segments[i].b_m;
+      Stretch open;
+      if (!frustum.clip(a, b, open)) continue;
+      s.hidden.clear();
+      if (method == VisibilityMethod::exact && !s.grid.hide(a, b, open, s.hidden)) continue;
+      frustum.in_image(a, b, open, s.inside);
+      subtract_intervals(open, s.hidden, s.unhidden);
+      intersect(s.unhidden, s.inside, s.seen);
+      const auto pixel = [&](double t) { return project(camera, a + t * (b - a)); };
+      for (int run = 0; run < static_cast<int>(s.seen.size()); ++run) {
+        const auto [t0, t1] = s.seen[run];
+        if (min_length_px > 0 && (pixel(t1) - pixel(t0)).norm() < min_length_px) continue;
+        runs.push_back({i, run, t0, t1});
+      }
+    }
+    return runs;
+  }
+
   const World& world;
+  VisibilityMethod method;
   ConvexSurfaces surfaces;
+  LargeSurfaces large;
   BoxTree pieces, segments, corners;
 };
 
-Visibility::Visibility(const World& world) : index_(new Index(world)) {}
+Visibility::Visibility(const World& world, VisibilityMethod method)
+    : index_(new Index(world, method)) {
+  if (method == VisibilityMethod::view_sets && world.view_sets.empty()) {
+    throw Error("the world", "has no view sets",
+                "add [[view_dependency]], or make them with vernier world sets");
+  }
+}
 Visibility::~Visibility() = default;
 Visibility::Visibility(Visibility&&) noexcept = default;
 
@@ -161,26 +217,31 @@ std::vector<VisibleInterval> Visibility::visible_intervals(const Camera& camera,
                                                            const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  Scratch& s = scratch;
-  index_->prepare(frustum, T_camera_world, index_->segments, gap_m(options));
-  std::vector<VisibleInterval> runs;
-  const std::vector<WorldSegment>& segments = index_->world.segments;
-  for (const int i : s.near_features) {
-    const Eigen::Vector3d a = T_camera_world * segments[i].a_m;
-    const Eigen::Vector3d b = T_camera_world * segments[i].b_m;
-    Stretch open;
-    if (!frustum.clip(a, b, open) || !s.grid.hide(a, b, open, s.hidden)) continue;
-    frustum.in_image(a, b, open, s.inside);
-    subtract_intervals(open, s.hidden, s.unhidden);
-    intersect(s.unhidden, s.inside, s.seen);
-    const auto pixel = [&](double t) { return project(camera, a + t * (b - a)); };
-    for (int run = 0; run < static_cast<int>(s.seen.size()); ++run) {
-      const auto [t0, t1] = s.seen[run];
-      if ((pixel(t1) - pixel(t0)).norm() < options.min_length_px) continue;
-      runs.push_back({i, run, t0, t1});
-    }
+  if (index_->method == VisibilityMethod::view_sets) {
+    return index_->runs_of(index_->set_at(T_camera_world), frustum, camera, T_camera_world,
+                           options.min_length_px);
   }
-  return runs;
+  index_->prepare(frustum, T_camera_world, &index_->segments, gap_m(options));
+  return index_->runs_of(scratch.near_features, frustum, camera, T_camera_world,
+                         options.min_length_px);
+}
+
+std::vector<VisibleInterval> Visibility::visible_intervals_of(
+    std::span<const int> segments,
+    const Camera& camera,
+    const Pose& T_camera_world,
+    const VisibilityOptions& options) const {
+  check(T_camera_world, options);
+  const ViewFrustum frustum(camera, options.near_m, options.far_m);
+  if (index_->method == VisibilityMethod::view_sets) {
+    std::vector<int> both;
+    const std::span<const int> set = index_->set_at(T_camera_world);
+    std::set_intersection(segments.begin(), segments.end(), set.begin(), set.end(),
+                          std::back_inserter(both));
+    return index_->runs_of(both, frustum, camera, T_camera_world, options.min_length_px);
+  }
+  index_->prepare(frustum, T_camera_world, nullptr, gap_m(options));
+  return index_->runs_of(segments, frustum, camera, T_camera_world, options.min_length_px);
 }
 
 std::vector<int> Visibility::visible_corners(const Camera& camera,
@@ -188,7 +249,7 @@ std::vector<int> Visibility::visible_corners(const Camera& camera,
                                              const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  index_->prepare(frustum, T_camera_world, index_->corners, gap_m(options));
+  index_->prepare(frustum, T_camera_world, &index_->corners, gap_m(options));
   std::vector<int> visible;
   const std::vector<WorldCorner>& corners = index_->world.corners;
   for (const int i : scratch.near_features) {

@@ -110,6 +110,8 @@ int main(int argc, char** argv) {
   cli::add_characterise(app, session);
   cli::add_world(app, session);
   cli::add_simulate(app, session);
+  cli::add_drive(app, session);
+  cli::add_servo(app, session);
   cli::add_study(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);

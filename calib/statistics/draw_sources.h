@@ -35,6 +35,8 @@ enum class DrawSource : std::uint32_t {
   clutter = 31,            // false edges
   mount = 32,              // height, pitch and roll of the camera
   moved_furniture = 33,    // which objects moved since the map was recorded, and whereto
+  odometry = 34,           // wheels of a simulated robot, and the noise of its steps
+  servo_start = 35,        // door and start of a trial of visual servoing
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

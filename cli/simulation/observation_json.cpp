@@ -17,10 +17,6 @@
 namespace vernier::cli {
 namespace {
 
-Json segment_json(const ImageSegment& s) {
-  return {s.a_px.x(), s.a_px.y(), s.b_px.x(), s.b_px.y()};
-}
-
 Json point_json(const Eigen::Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
 /// The visible edges, and for each sensed segment the edge it belongs to.
@@ -45,6 +41,10 @@ void add_identities(const NoiseFreeView& seen, const StereoObservation& sighting
 }
 
 }  // namespace
+
+Json segment_json(const ImageSegment& s) {
+  return {s.a_px.x(), s.a_px.y(), s.b_px.x(), s.b_px.y()};
+}
 
 Json space_json(const std::vector<SpaceSegment>& lines) {
   Json json{{"a_m", Json::array()},

@@ -12,6 +12,9 @@
 
 namespace vernier::cli {
 
+/// Its ends: u, v, u, v.
+Json segment_json(const ImageSegment& segment);
+
 /// A view with ground truth: segments as [u1, v1, u2, v2] in pixels of each camera, with the index
 /// of their edge in the world (docs/file-formats.md).
 Json sighting_json(const Rig& rig, const NoiseFreeView& seen, const StereoObservation& sighting);

@@ -121,6 +121,7 @@ def write_inputs(folder):
     for name, rows in zip(('big_left', 'big_right', 'big_truth'), characterise_test.pair()):
         evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
     (folder / 'rig.json').write_text(json.dumps(stereo_test.pinholes()))
+    (folder / 'commands.csv').write_text('speed_mps,turn_radps,duration_s\n0.3,0.1,0.5\n')
     (folder / 'corners.csv').write_text('\n'.join(board_lines()))
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
@@ -165,6 +166,10 @@ def calls():
         Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0',
                           '--picture', 'out.svg'], ['out.svg']),
+        Call('drive', ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o', 'out.jsonl',
+                       '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
+        Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],
+             ['out.csv', 'out.svg']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),

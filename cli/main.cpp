@@ -110,6 +110,7 @@ int main(int argc, char** argv) {
   cli::add_characterise(app, session);
   cli::add_world(app, session);
   cli::add_simulate(app, session);
+  cli::add_render(app, session);
   cli::add_study(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);

@@ -25,6 +25,7 @@ void add_evaluate(CLI::App& app, Session& session);
 void add_characterise(CLI::App& app, Session& session);
 void add_world(CLI::App& app, Session& session);
 void add_simulate(CLI::App& app, Session& session);
+void add_render(CLI::App& app, Session& session);
 void add_study(CLI::App& app, Session& session);
 void add_map(CLI::App& app, Session& session);
 void add_localise(CLI::App& app, Session& session);

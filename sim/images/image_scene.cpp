@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -11,10 +12,10 @@
 #include "calib/error.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
-#include "sim/images/appearance.h"
 #include "sim/images/lighting.h"
 #include "sim/images/materials.h"
 #include "sim/images/ray_scene.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/images/texture.h"
 #include "sim/images/wire_paint.h"
 #include "sim/visibility/convex_pieces.h"
@@ -66,11 +67,19 @@ std::array<Polygon, 4> sides_of(const WireBar& bar, double width) {
 }
 
 /// The plain material of a bar; its texture is not seen.
-Material material_of(const WireBar& bar, const AppearanceOptions& options) {
+Material material_of(const WireBar& bar, const SurfaceAppearanceOptions& options) {
   RandomStream draws({options.seed, 0, static_cast<std::uint32_t>(bar.segment),
                       static_cast<std::uint32_t>(DrawSource::surface_appearance), 1, 1});
   return {bar.reflectance, 0, Texture(options.texture_scale_m, draws), Vector3d::UnitX(),
           Vector3d::UnitY()};
+}
+
+double area_of(const Polygon& polygon, const Vector3d& normal) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    sum += (polygon[k] - polygon[0]).cross(polygon[k + 1] - polygon[0]);
+  }
+  return std::abs(sum.dot(normal)) / 2;
 }
 
 std::vector<int> lamps_near(const Polygon& polygon,
@@ -144,7 +153,8 @@ ImageScene image_scene(const World& world, const ImageSceneOptions& options) {
   for (const PaintedFigure& figure : wires.figures) {
     const PolygonPlane plane = polygon_plane(figure.polygon_m);
     paint.add(figure.polygon_m, static_cast<int>(figures.size()), middle);
-    figures.push_back({plane.normal, plane.distance_m, figure.factor});
+    figures.push_back(
+        {plane.normal, plane.distance_m, figure.factor, area_of(figure.polygon_m, plane.normal)});
   }
   return {middle,
           RayScene(solids.mesh.triangles),

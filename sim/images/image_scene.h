@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "sim/images/appearance.h"
 #include "sim/images/lighting.h"
 #include "sim/images/materials.h"
 #include "sim/images/ray_scene.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/images/wire_paint.h"
 #include "sim/world.h"
 
@@ -27,6 +27,7 @@ struct PaintPlane {
   Eigen::Vector3d normal;
   double distance_m = 0;
   double factor = 1;
+  double area_m2 = 0;
 };
 
 /// A world prepared for rendering: its surfaces and bars in one tree, what is painted in another.
@@ -44,7 +45,7 @@ struct ImageScene {
 };
 
 struct ImageSceneOptions {
-  AppearanceOptions appearance;
+  SurfaceAppearanceOptions appearance;
   LightingOptions lighting;
 };
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/images/image_truth.h"
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "sim/images/image_scene.h"
 #include "sim/images/render.h"
 #include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
 #include "stereo/rectification.h"
 #include "stereo/rectification/raw_pixels.h"
 
@@ -65,6 +67,16 @@ PairTruth pair_truth(const ImageScene& scene,
   truth.left = disparities(view.geometry, truth.left_depth_m);
   truth.right = disparities(view.geometry, known_depths(scene, rig, view, 1, threads));
   return truth;
+}
+
+stereo::DisparityRange search_range(const PairTruth& truth) {
+  constexpr float margin_px = 2;
+  float largest = 0;
+  for (const float d : truth.left.values) {
+    if (d > largest) largest = d;  // false for an unknown one
+  }
+  const int most = std::max(16, truth.left.width_px / 2);
+  return {0, std::min(most, static_cast<int>(std::ceil(largest + margin_px)))};
 }
 
 }  // namespace vernier::sim::internal

@@ -8,6 +8,7 @@
 #include "calib/rig.h"
 #include "sim/images/image_scene.h"
 #include "stereo/disparity_file.h"
+#include "stereo/grey_levels.h"
 #include "stereo/rectification.h"
 
 namespace vernier::sim::internal {
@@ -38,5 +39,8 @@ PairTruth pair_truth(const ImageScene& scene,
                      const Rig& rig,
                      const RectifiedView& view,
                      int threads);
+
+/// Disparities to search: from 0 to 2 px above the largest true one, at most half the width.
+stereo::DisparityRange search_range(const PairTruth& truth);
 
 }  // namespace vernier::sim::internal

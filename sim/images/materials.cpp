@@ -15,7 +15,7 @@
 #include "calib/error.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
-#include "sim/images/appearance.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/images/texture.h"
 #include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
@@ -48,7 +48,7 @@ PlaneKey key_of(std::int32_t object, const PolygonPlane& plane) {
 }
 
 /// Reflectance of a plane of a template: the template's own, varied by up to a fifth.
-double reflectance_of(std::uint32_t key, std::uint32_t plane, const AppearanceOptions& o) {
+double reflectance_of(std::uint32_t key, std::uint32_t plane, const SurfaceAppearanceOptions& o) {
   const auto draw = [&](std::uint32_t trial) {
     return RandomStream({o.seed, trial, key, appearance_draws, 0, 0}).uniform();
   };
@@ -58,14 +58,14 @@ double reflectance_of(std::uint32_t key, std::uint32_t plane, const AppearanceOp
   return std::clamp(base * (0.8 + 0.4 * draw(plane)), o.least_reflectance, o.largest_reflectance);
 }
 
-double loose_reflectance(std::uint32_t plane, const AppearanceOptions& o) {
+double loose_reflectance(std::uint32_t plane, const SurfaceAppearanceOptions& o) {
   RandomStream draws({o.seed, plane, 0, appearance_draws, 2, 0});
   return draws.uniform(o.least_reflectance, o.largest_reflectance + 1e-12);
 }
 
 }  // namespace
 
-void check_appearance(const AppearanceOptions& o) {
+void check_appearance(const SurfaceAppearanceOptions& o) {
   const auto require = [](bool fine, const char* fault, const char* remedy) {
     if (!fine) throw Error("appearance", fault, remedy);
   };
@@ -96,7 +96,7 @@ void plane_axes(const Vector3d& normal, Vector3d& across, Vector3d& up) {
   up = normal.cross(across);
 }
 
-Materials materials(const World& world, const AppearanceOptions& options) {
+Materials materials(const World& world, const SurfaceAppearanceOptions& options) {
   check_appearance(options);
   Materials all;
   std::map<PlaneKey, int> known;

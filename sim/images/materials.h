@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/images/appearance.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/images/texture.h"
 #include "sim/world.h"
 
@@ -31,7 +31,7 @@ struct Materials {
   std::vector<Material> list;
   std::vector<int> of_surface;  ///< index into the list, one per surface of the world
 };
-Materials materials(const World& world, const AppearanceOptions& options);
+Materials materials(const World& world, const SurfaceAppearanceOptions& options);
 
 /// Key of what is drawn for all instances of a template: 32 bits of its name's hash.
 std::uint32_t template_key(const std::string& template_name);

@@ -144,17 +144,32 @@ class Tracer {
   BundleCrossings crossings_;
 };
 
+/// Depth of what a ray sees: of the smallest figure there, which is the innermost of nested ones,
+/// else of the face.
+double depth_of(const Eye& eye, const Seen& seen, const Vector3d& direction) {
+  const ImageScene& scene = eye.scene();
+  const PaintPlane* smallest = nullptr;
+  for (int i = 0; i < seen.figure_count; ++i) {
+    const auto figure = static_cast<std::size_t>(seen.figures[static_cast<std::size_t>(i)]);
+    const PaintPlane& plane = scene.figures[figure];
+    if (smallest == nullptr || plane.area_m2 < smallest->area_m2) smallest = &plane;
+  }
+  if (smallest != nullptr) return eye.depth(*smallest, direction);
+  return eye.depth(scene.faces[static_cast<std::size_t>(seen.face)], direction);
+}
+
 /// Shades what a pixel sees.
 class Shader {
  public:
   Shader(const Eye& eye, const Camera& camera, bool shadows)
       : eye_(eye), pixel_(1 / (std::sqrt(12.0) * camera.f_px())), shadows_(shadows) {}
 
-  /// Radiance of a face with figures, where the ray of this direction meets it.
+  /// Radiance of a face with figures, where the ray of this direction meets it. A figure has
+  /// the texture of its face, at its own depth.
   double operator()(const Seen& seen, const Vector3d& direction) const {
     const ImageScene& scene = eye_.scene();
     const SolidFace& face = scene.faces[static_cast<std::size_t>(seen.face)];
-    const double depth = eye_.depth(face, direction);
+    const double depth = depth_of(eye_, seen, direction);
     const Vector3d x = eye_.at() + depth * direction;
     const Vector3d normal = towards_eye(face, direction);
     double reflectance = reflectance_at(face, x, depth * pixel_, direction);
@@ -308,17 +323,6 @@ class RowRenderer {
   std::vector<char> done_;
   std::vector<std::size_t> same_;  ///< samples of one face
 };
-
-/// Depth of what a ray sees: of the nearest of its face and figures.
-double depth_of(const Eye& eye, const Seen& seen, const Vector3d& direction) {
-  const ImageScene& scene = eye.scene();
-  double depth = eye.depth(scene.faces[static_cast<std::size_t>(seen.face)], direction);
-  for (int i = 0; i < seen.figure_count; ++i) {
-    const auto figure = static_cast<std::size_t>(seen.figures[static_cast<std::size_t>(i)]);
-    depth = std::min(depth, eye.depth(scene.figures[figure], direction));
-  }
-  return depth;
-}
 
 void depths_of_row(const Eye& eye, const Camera& camera, int row, double* depths) {
   Tracer tracer(eye);

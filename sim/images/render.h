@@ -32,8 +32,9 @@ stereo::GreyLevels render(const ImageScene& scene,
                           const Pose& T_camera_world,
                           const RenderOptions& options = {});
 
-/// Depth along the optical axis, metres, at the pixel centres, from the plane of the face or figure
-/// that is hit, in double precision; NaN where nothing is. Row-major.
+/// Depth along the optical axis, metres, at the pixel centres, in double precision: of the plane of
+/// the face that is hit, or of the smallest figure painted there; NaN where nothing is hit.
+/// Row-major.
 std::vector<double> depths_m(const ImageScene& scene,
                              const Camera& camera,
                              const Pose& T_camera_world,

@@ -15,9 +15,9 @@
 
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
-#include "sim/images/appearance.h"
 #include "sim/images/backing.h"
 #include "sim/images/materials.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/visibility/convex_pieces.h"
 #include "sim/world.h"
 
@@ -127,7 +127,7 @@ std::vector<std::uint32_t> numbers_within_objects(const World& world) {
 /// Draws what each segment is painted with.
 class Paints {
  public:
-  Paints(const World& world, const AppearanceOptions& options)
+  Paints(const World& world, const SurfaceAppearanceOptions& options)
       : world_(world), options_(options), numbers_(numbers_within_objects(world)) {}
 
   /// Darker or brighter by a relative step between the options' limits.
@@ -154,7 +154,7 @@ class Paints {
   }
 
   const World& world_;
-  const AppearanceOptions& options_;
+  const SurfaceAppearanceOptions& options_;
   std::vector<std::uint32_t> numbers_;
 };
 
@@ -186,7 +186,7 @@ std::string_view name(EdgeAppearance appearance) {
   return names[static_cast<std::size_t>(appearance)];
 }
 
-WirePaint wire_paint(const World& world, const AppearanceOptions& options) {
+WirePaint wire_paint(const World& world, const SurfaceAppearanceOptions& options) {
   check_appearance(options);
   const Backing backing(world);
   const Ends ends = ends_of(world);

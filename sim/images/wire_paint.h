@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/images/appearance.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -51,6 +51,6 @@ struct WirePaint {
 /// Figures and stripes stay where the segment is, in front of the surface, and hide nothing. All
 /// others become bars. Reflectances: counter (segment within the object, template's name), source
 /// `surface_appearance`, eye 3; the same for all instances. Throws Error for options out of range.
-WirePaint wire_paint(const World& world, const AppearanceOptions& options);
+WirePaint wire_paint(const World& world, const SurfaceAppearanceOptions& options);
 
 }  // namespace vernier::sim::internal

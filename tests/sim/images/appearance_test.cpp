@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "calib/statistics/random.h"
-#include "sim/images/appearance.h"
 #include "sim/images/materials.h"
+#include "sim/images/surface_appearance.h"
 #include "sim/images/texture.h"
 #include "sim/images/wire_paint.h"
 #include "tests/support/painted_room.h"
@@ -103,7 +103,7 @@ TEST(Materials, AreThoseOfTheTemplateWithATextureOfTheObject) {
 }
 
 TEST(Materials, SwitchingTextureOffLeavesReflectances) {
-  AppearanceOptions plain;
+  SurfaceAppearanceOptions plain;
   plain.texture_contrast = 0;
   const Materials a = materials(small_office(), {}), b = materials(small_office(), plain);
   ASSERT_EQ(a.list.size(), b.list.size());

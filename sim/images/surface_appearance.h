@@ -7,7 +7,7 @@
 namespace vernier::sim::internal {
 
 /// What a world looks like, which no world file says.
-struct AppearanceOptions {
+struct SurfaceAppearanceOptions {
   std::uint64_t seed = 1;             ///< of reflectances, textures and painted lines
   double least_reflectance = 0.25;    ///< mean of a surface: uniform from this …
   double largest_reflectance = 0.85;  ///< … to this
@@ -20,6 +20,6 @@ struct AppearanceOptions {
 };
 
 /// Throws Error for options out of range.
-void check_appearance(const AppearanceOptions& options);
+void check_appearance(const SurfaceAppearanceOptions& options);
 
 }  // namespace vernier::sim::internal

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "calib/base/error_place.h"
+#include "calib/base/output_files.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/rig_file.h"
+#include "cli/program/output_check.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/simulation/render_files.h"
+#include "cli/simulation/render_options.h"
+#include "localise/place.h"
+#include "sim/images/image_scene.h"
+#include "sim/images/image_truth.h"
+#include "sim/images/render.h"
+#include "sim/images/rendered_pair.h"
+#include "sim/images/sensor_response.h"
+#include "sim/images/true_edges.h"
+#include "sim/noise_free_view.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "sim/world_file.h"
+#include "stereo/rectification.h"
+
+namespace vernier::cli {
+namespace {
+
+/// What all poses of a call share.
+struct RenderedWorld {
+  const Visibility& visibility;
+  ImageScene scene;
+  Rig rig;
+  RectifiedGeometry geometry;
+};
+
+RenderedView view_of(const RenderedWorld& world,
+                     const RenderArguments& options,
+                     const RectifiedView& view,
+                     const Pose& T_left,
+                     std::uint32_t number) {
+  RenderedView rendered;
+  rendered.pair =
+      rendered_pair(world.scene, world.rig, view, T_left, options.pair, {options.seed, number, 0});
+  rendered.truth = pair_truth(world.scene, world.rig, view, options.pair.render.threads);
+  rendered.edges = true_edges(world.visibility, world.scene.segments, view);
+  return rendered;
+}
+
+Json pose_json(const std::string& folder, const Pose2D& pose, const RenderedView& rendered) {
+  return {{"folder", folder},
+          {"x_m", pose.x_m},
+          {"y_m", pose.y_m},
+          {"heading_deg", pose.heading_rad * 180 / std::numbers::pi},
+          {"exposure", rendered.pair.exposure},
+          {"edges", rendered.edges.both.size()}};
+}
+
+Rig rig_for_rendering(const RenderArguments& options, Session& session) {
+  const RigFile file = read_rig(find_rig(options.rig));
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  if (file.estimate.rig.cameras.size() != 2) {
+    throw Error(options.rig, fmt::format("has {} cameras", file.estimate.rig.cameras.size()),
+                "use a rig of two cameras");
+  }
+  return file.estimate.rig;
+}
+
+void run(RenderArguments options, Session& session) {
+  options.scene.appearance.seed = options.seed;
+  options.scene.lighting.lamps = !options.no_lamps;
+  options.pair.sensor.noise = !options.no_noise;
+  check_sensor(options.pair.sensor);
+  const std::filesystem::path world_file = find_world(options.world), folder = options.output;
+  const World world = build_world(read_world(world_file));
+  const Visibility visibility(world);
+  const Rig rig = rig_for_rendering(options, session);
+  for (const Camera& camera : rig.cameras)
+    with_errors_of(options.rig, [&] { check_image_size(camera); });
+  const RenderedWorld shared{
+      visibility, with_errors_of(options.world, [&] { return image_scene(world, options.scene); }),
+      rig, with_errors_of(options.rig, [&] { return rectified_geometry(rig); })};
+  const std::vector<Pose2D> poses = poses_of(options, visibility);
+
+  OutputFiles outputs;
+  outputs.add_folder(folder);
+  Json made = {{"format", "vernier/render"}, {"version", 1}, {"settings", settings_json(options)}};
+  made["poses"] = Json::array();
+  std::string pairs = "# made by vernier render; for vernier evaluate and vernier characterise\n\n";
+  std::size_t edges = 0;
+  {
+    Progress progress(session, "rendering");
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const std::string name = poses.size() == 1 ? "view" : fmt::format("{:03}", i);
+      const std::string inside = poses.size() == 1 ? "" : name + "/";
+      const Pose T_left =
+          T_left_world(poses[i], {options.height_m, options.pitch_deg * std::numbers::pi / 180});
+      const RectifiedView view = rectified_view(rig, shared.geometry, T_left);
+      const RenderedView rendered =
+          view_of(shared, options, view, T_left, static_cast<std::uint32_t>(i));
+      add_view_files(outputs, poses.size() == 1 ? folder : folder / name, view, rendered);
+      made["poses"].push_back(pose_json(inside, poses[i], rendered));
+      pairs += pair_toml(name, inside, rendered.truth);
+      edges += rendered.edges.both.size();
+      progress.update(static_cast<int>(i) + 1, static_cast<int>(poses.size()));
+    }
+  }
+  outputs.add(folder / "pairs.toml", pairs);
+  outputs.add(folder / "render.json", made.dump(1) + "\n");
+  outputs.commit();
+  session.result(
+      made, fmt::format("{} pair{} of {}x{} px with {} edges visible in both eyes written to {}\n",
+                        poses.size(), poses.size() == 1 ? "" : "s", rig.cameras[0].size_px[0],
+                        rig.cameras[0].size_px[1], edges, options.output));
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Session& session) {
+  auto o = std::make_shared<RenderArguments>();
+  CLI::App* verb = add_verb(
+      app, session, "render", "render what a rig sees of a world as grey images, with their truth",
+      "vernier render --world workshop --rig nominal --pose 10,7.5,0 -o images\n"
+      "  a set for evaluate and characterise:  vernier render --poses 12 -o set");
+  add_render_options(*verb, *o);
+  verb->add_option("-o,--output", o->output, "output folder")->required();
+  verb->callback([o, &session] {
+    if (o->poses.empty() && o->pose_count == 0) {
+      throw CLI::RequiredError("--pose or --poses");
+    }
+    session.action = [=, &session] { run(*o, session); };
+  });
+}
+
+}  // namespace vernier::cli

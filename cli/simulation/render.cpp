@@ -21,9 +21,13 @@
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/simulation/comparison_report.h"
 #include "cli/simulation/render_files.h"
 #include "cli/simulation/render_options.h"
 #include "localise/place.h"
+#include "sim/image_comparison/compared_sources.h"
+#include "sim/image_comparison/edge_sample.h"
+#include "sim/image_comparison/pair_comparison.h"
 #include "sim/images/image_scene.h"
 #include "sim/images/image_truth.h"
 #include "sim/images/render.h"
@@ -34,6 +38,9 @@
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
+#include "stereo/edge_matcher.h"
+#include "stereo/matcher.h"
+#include "stereo/matching/stretch_correlation.h"
 #include "stereo/rectification.h"
 
 namespace vernier::cli {
@@ -69,6 +76,34 @@ Json pose_json(const std::string& folder, const Pose2D& pose, const RenderedView
           {"edges", rendered.edges.both.size()}};
 }
 
+/// What was rendered, in a line.
+std::string how_rendered(const RenderArguments& options, std::size_t poses) {
+  return fmt::format(
+      "{} pose{} in {}, rig {}, seed {}: point spread {:g} px, full well {:g} e, read noise {:g} "
+      "e, "
+      "texture {:g}{}{}",
+      poses, poses == 1 ? "" : "s", std::filesystem::path(options.world).filename().string(),
+      std::filesystem::path(options.rig).filename().string(), options.seed,
+      options.pair.sensor.point_spread_px, options.pair.sensor.full_well_e,
+      options.pair.sensor.read_noise_e, options.scene.appearance.texture_contrast,
+      options.pair.render.shadows ? ", with shadows" : "",
+      options.no_noise ? ", without noise" : "");
+}
+
+/// Adds the files of the comparison. Returns its report.
+ComparisonReport add_comparison(OutputFiles& outputs,
+                                const RenderArguments& options,
+                                const ComparedEdges& compared,
+                                std::size_t poses) {
+  const std::string how = how_rendered(options, poses);
+  ComparisonReport report = comparison_report(compared, how, options.seed);
+  const std::filesystem::path folder = options.output;
+  outputs.add(folder / "comparison.json", comparison_json(report).dump(1) + "\n");
+  outputs.add(folder / "comparison.html", comparison_page(report));
+  outputs.add(folder / "sources.toml", compared_sources_toml(report.sources, how));
+  return report;
+}
+
 Rig rig_for_rendering(const RenderArguments& options, Session& session) {
   const RigFile file = read_rig(find_rig(options.rig));
   for (const std::string& warning : file.warnings) session.warn(warning);
@@ -101,6 +136,8 @@ void run(RenderArguments options, Session& session) {
   made["poses"] = Json::array();
   std::string pairs = "# made by vernier render; for vernier evaluate and vernier characterise\n\n";
   std::size_t edges = 0;
+  ComparedEdges compared;
+  const std::vector<Matcher> matchers{edge_matcher(), stretch_matcher()};
   {
     Progress progress(session, "rendering");
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -115,16 +152,25 @@ void run(RenderArguments options, Session& session) {
       made["poses"].push_back(pose_json(inside, poses[i], rendered));
       pairs += pair_toml(name, inside, rendered.truth);
       edges += rendered.edges.both.size();
+      if (options.compare) {
+        add_pair(rendered.pair, rendered.edges, search_range(rendered.truth), matchers, compared);
+      }
       progress.update(static_cast<int>(i) + 1, static_cast<int>(poses.size()));
     }
   }
   outputs.add(folder / "pairs.toml", pairs);
   outputs.add(folder / "render.json", made.dump(1) + "\n");
+  std::string text =
+      fmt::format("{} pair{} of {}x{} px with {} edges visible in both eyes written to {}\n",
+                  poses.size(), poses.size() == 1 ? "" : "s", rig.cameras[0].size_px[0],
+                  rig.cameras[0].size_px[1], edges, options.output);
+  if (options.compare) {
+    const ComparisonReport report = add_comparison(outputs, options, compared, poses.size());
+    made["comparison"] = comparison_json(report);
+    text += "\n" + comparison_text(report);
+  }
   outputs.commit();
-  session.result(
-      made, fmt::format("{} pair{} of {}x{} px with {} edges visible in both eyes written to {}\n",
-                        poses.size(), poses.size() == 1 ? "" : "s", rig.cameras[0].size_px[0],
-                        rig.cameras[0].size_px[1], edges, options.output));
+  session.result(made, text);
 }
 
 }  // namespace
@@ -136,6 +182,9 @@ void add_render(CLI::App& app, Session& session) {
       "vernier render --world workshop --rig nominal --pose 10,7.5,0 -o images\n"
       "  a set for evaluate and characterise:  vernier render --poses 12 -o set");
   add_render_options(*verb, *o);
+  verb->add_flag("--compare", o->compare,
+                 "compare what detectors and matchers make of the images with what the simulator's "
+                 "sources assume: a table, comparison.html, comparison.json and sources.toml");
   verb->add_option("-o,--output", o->output, "output folder")->required();
   verb->callback([o, &session] {
     if (o->poses.empty() && o->pose_count == 0) {

@@ -87,7 +87,8 @@ TrueEdges true_edges(const Visibility& visibility,
   edges.of_eye[0] = images_of(left, world, view.rig.cameras[0], view.T_left_world);
   edges.of_eye[1] = images_of(right, world, view.rig.cameras[1], view.T_right_world);
   const auto before = [](const VisibleInterval& run, int segment) { return run.segment < segment; };
-  for (const VisibleInterval& run : left) {
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const VisibleInterval& run = left[i];
     auto other = std::lower_bound(right.begin(), right.end(), run.segment, before);
     for (; other != right.end() && other->segment == run.segment; ++other) {
       const double t0 = std::max(run.t0, other->t0), t1 = std::min(run.t1, other->t1);
@@ -100,6 +101,7 @@ TrueEdges true_edges(const Visibility& visibility,
       edge.disparity_px = {view.geometry.disparity_px(a.z()), view.geometry.disparity_px(b.z())};
       edge.ends = {end_at(t0, a, view, options), end_at(t1, b, view, options)};
       edge.along = {t0, t1};
+      edge.of_eye = {static_cast<int>(i), static_cast<int>(other - right.begin())};
       edge.segment = run.segment;
       edge.appearance = appearances[static_cast<std::size_t>(run.segment)];
       edge.depth_m = (a.z() + b.z()) / 2;

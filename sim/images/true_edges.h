@@ -28,6 +28,7 @@ struct TrueEdge {
   std::array<double, 2> disparity_px{};  ///< at both ends
   std::array<EdgeEnd, 2> ends{};
   std::array<double, 2> along{};  ///< t of the ends on the segment
+  std::array<int, 2> of_eye{};    ///< the line of each eye that it is a part of
   int segment = 0;                ///< index in the world
   EdgeAppearance appearance = EdgeAppearance::border;
   double depth_m = 0;  ///< of its middle

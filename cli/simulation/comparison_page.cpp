@@ -26,10 +26,11 @@ constexpr const char* page_head = R"(<!doctype html>
 body { font: 15px/1.45 system-ui, sans-serif; margin: 0 auto; max-width: 1240px; padding: 12px; color: #1d2733; }
 h1 { font-size: 1.35rem; } h2 { font-size: 1.1rem; margin: 1.6em 0 .4em; }
 p { max-width: 46rem; }
-.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 340px), 1fr)); gap: 14px; }
+.cards { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 460px), 1fr)); gap: 14px; }
 figure { margin: 0; border: 1px solid #d5dbe3; border-radius: 6px; padding: 8px; }
 figcaption { font-size: .85rem; margin-bottom: 4px; }
 svg { width: 100%; height: auto; display: block; }
+svg text { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .82rem; }
 th, td { padding: 3px 8px; text-align: right; border-bottom: 1px solid #e3e8ee; white-space: nowrap; }
@@ -73,7 +74,7 @@ std::vector<Quantity> quantities(const ComparisonReport& report) {
 
 /// Bars of the groups of a table; a dashed line where the simulator's default is.
 std::string bars(const ComparisonTable& table, const Quantity& quantity) {
-  constexpr int row = 26, left = 150, right = 392, width = 460;
+  constexpr int row = 26, left = 165, right = 392, width = 460;
   double largest = std::isnan(quantity.assumed) ? 0 : quantity.assumed;
   for (const ComparisonGroup& group : table.groups) {
     const double value = quantity.of(group.figures);
@@ -85,6 +86,14 @@ std::string bars(const ComparisonTable& table, const Quantity& quantity) {
   std::string svg =
       fmt::format("<svg viewBox=\"0 0 {} {}\" font-size=\"12\" role=\"img\" aria-label=\"{}\">",
                   width, height, quantity.title);
+  if (!std::isnan(quantity.assumed) && quantity.assumed > 0) {
+    svg += fmt::format(
+        "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1}\" stroke=\"#c2542d\" "
+        "stroke-dasharray=\"4 3\" stroke-width=\"1.5\"/><text x=\"{0:.1f}\" y=\"{2}\" "
+        "fill=\"#c2542d\" "
+        "text-anchor=\"middle\">assumed {3:g}</text>",
+        x(quantity.assumed), height - 18, height - 5, quantity.assumed);
+  }
   int y = 0;
   for (const ComparisonGroup& group : table.groups) {
     const double value = quantity.of(group.figures);
@@ -95,20 +104,13 @@ std::string bars(const ComparisonTable& table, const Quantity& quantity) {
           fmt::format("<text x=\"{}\" y=\"{}\" fill=\"#77808c\">too few</text>", left + 4, y + 17);
     } else {
       svg += fmt::format(
-          "<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"16\" fill=\"#3f76b5\"/>"
+          "<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"16\" fill=\"#3f76b5\" "
+          "fill-opacity=\".75\"/>"
           "<text x=\"{:.1f}\" y=\"{}\">{:.3g} <tspan fill=\"#77808c\">({})</tspan></text>",
           left, y + 5, std::max(1.0, x(value) - left), x(value) + 4, y + 17, value,
           group.figures.edges);
     }
     y += row;
-  }
-  if (!std::isnan(quantity.assumed) && quantity.assumed > 0) {
-    svg += fmt::format(
-        "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1}\" stroke=\"#c2542d\" "
-        "stroke-dasharray=\"4 3\" stroke-width=\"1.5\"/><text x=\"{0:.1f}\" y=\"{2}\" "
-        "fill=\"#c2542d\" "
-        "text-anchor=\"middle\">assumed {3:g}</text>",
-        x(quantity.assumed), y, y + 13, quantity.assumed);
   }
   return svg + "</svg>";
 }

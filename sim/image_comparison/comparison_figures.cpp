@@ -146,7 +146,7 @@ ComparisonTable by_interval(const ComparedEdges& compared,
                                  : fmt::format("{:g} to {:g} {}", low, high, unit),
                             edge_figures(compared, [&](const EdgeSample& edge) {
                               const double x = quantity(edge);
-                              return x >= low && x < high;
+                              return x >= low && (open || x < high);
                             })});
   }
   return table;
@@ -206,6 +206,8 @@ std::vector<ComparisonTable> comparison_tables(const ComparedEdges& compared) {
                       [](const EdgeSample& e) { return e.angle_rad / degree; }),
           by_interval(compared, "depth", "m", {0, 2, 4, 8},
                       [](const EdgeSample& e) { return e.depth_m; }),
+          by_interval(compared, "distance of the nearest edge along it", "px", {0, 1, 3, 6},
+                      [](const EdgeSample& e) { return e.neighbour_px; }),
           by_interval(compared, "length", "px", {10, 20, 40, 80},
                       [](const EdgeSample& e) { return e.length_px; })};
 }

@@ -37,6 +37,9 @@ struct EdgeSample {
   double contrast = 0;   ///< grey levels across it in the noise-free left image
   double angle_rad = 0;  ///< to the rows
   double depth_m = 0;
+  /// Distance in the left image, at its middle, to the nearest other edge that runs along it
+  /// (within 10°); infinite if there is none.
+  double neighbour_px = std::numeric_limits<double>::infinity();
   double length_px = 0;  ///< in the left image, where both images have a source
 
   double left_found_px = 0, right_found_px = 0;  ///< length on a segment of that image

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "calib/error.h"
@@ -115,6 +116,22 @@ double along_of(const ImageSegment& line, const Vector2d& at) {
   return (line.b_px - line.a_px).normalized().dot(at - line.a_px);
 }
 
+/// Distance from the middle of an edge to the nearest other line that runs along it there.
+double neighbour_px(const TrueEdge& edge, const std::vector<ImageSegment>& lines) {
+  constexpr double least_cosine = 0.985;  // 10°
+  const Vector2d middle = (edge.left_px.a_px + edge.left_px.b_px) / 2;
+  const Vector2d normal = normal_of(edge.left_px);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (static_cast<int>(i) == edge.of_eye[0] || lines[i].length_px() == 0) continue;
+    if (std::abs(normal.dot(normal_of(lines[i]))) < least_cosine) continue;
+    const double along = along_of(lines[i], middle);
+    if (along < 0 || along > lines[i].length_px()) continue;
+    nearest = std::min(nearest, std::abs(normal_of(lines[i]).dot(middle - lines[i].a_px)));
+  }
+  return nearest;
+}
+
 /// Compares one true edge with what was found.
 class EdgeComparison {
  public:
@@ -129,6 +146,7 @@ class EdgeComparison {
     sample.appearance = edge.appearance;
     sample.angle_rad = edge.angle_rad();
     sample.depth_m = edge.depth_m;
+    sample.neighbour_px = neighbour_px(edge, truth_.of_eye[0]);
     measure_contrast(pair_.without_noise.left, edge.left_px, options_.contrast_reach_px, sample);
     if (!measure_loss(edge, sample)) return false;
     for (std::size_t eye = 0; eye < 2; ++eye) sample.shift_px[eye] = shift(edge, eye);

@@ -34,7 +34,6 @@
 #include "sim/images/rendered_pair.h"
 #include "sim/images/sensor_response.h"
 #include "sim/images/true_edges.h"
-#include "sim/noise_free_view.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
@@ -67,8 +66,12 @@ RenderedView view_of(const RenderedWorld& world,
   return rendered;
 }
 
-Json pose_json(const std::string& folder, const Pose2D& pose, const RenderedView& rendered) {
+Json pose_json(const std::string& folder,
+               const Pose2D& pose,
+               int trial,
+               const RenderedView& rendered) {
   return {{"folder", folder},
+          {"trial", trial < 0 ? Json() : Json(trial)},
           {"x_m", pose.x_m},
           {"y_m", pose.y_m},
           {"heading_deg", pose.heading_rad * 180 / std::numbers::pi},
@@ -128,7 +131,13 @@ void run(RenderArguments options, Session& session) {
   const RenderedWorld shared{
       visibility, with_errors_of(options.world, [&] { return image_scene(world, options.scene); }),
       rig, with_errors_of(options.rig, [&] { return rectified_geometry(rig); })};
-  const std::vector<Pose2D> poses = poses_of(options, visibility);
+  const RenderPoses at = poses_of(options, visibility, rig);
+  const std::vector<Pose2D>& poses = at.poses;
+  if (at.left_out > 0) {
+    session.info(
+        fmt::format("{} of the first {} queries left out: a surface stands between the cameras",
+                    at.left_out, at.trials.back() + 1));
+  }
 
   OutputFiles outputs;
   outputs.add_folder(folder);
@@ -143,13 +152,12 @@ void run(RenderArguments options, Session& session) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::string name = poses.size() == 1 ? "view" : fmt::format("{:03}", i);
       const std::string inside = poses.size() == 1 ? "" : name + "/";
-      const Pose T_left =
-          T_left_world(poses[i], {options.height_m, options.pitch_deg * std::numbers::pi / 180});
+      const Pose T_left = left_camera(options, poses[i]);
       const RectifiedView view = rectified_view(rig, shared.geometry, T_left);
       const RenderedView rendered =
           view_of(shared, options, view, T_left, static_cast<std::uint32_t>(i));
       add_view_files(outputs, poses.size() == 1 ? folder : folder / name, view, rendered);
-      made["poses"].push_back(pose_json(inside, poses[i], rendered));
+      made["poses"].push_back(pose_json(inside, poses[i], at.trials[i], rendered));
       pairs += pair_toml(name, inside, rendered.truth);
       edges += rendered.edges.both.size();
       if (options.compare) {

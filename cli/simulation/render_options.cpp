@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/session.h"
 #include "localise/place.h"
@@ -15,6 +17,7 @@
 #include "sim/images/render.h"
 #include "sim/images/sensor_response.h"
 #include "sim/images/surface_appearance.h"
+#include "sim/noise_free_view.h"
 #include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 
@@ -100,23 +103,46 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
       ->capture_default_str();
 }
 
-std::vector<Pose2D> poses_of(const RenderArguments& a, const Visibility& visibility) {
-  std::vector<Pose2D> poses;
+Pose left_camera(const RenderArguments& a, const Pose2D& pose) {
+  return T_left_world(pose, {a.height_m, a.pitch_deg * std::numbers::pi / 180});
+}
+
+RenderPoses poses_of(const RenderArguments& a, const Visibility& visibility, const Rig& rig) {
+  const auto eyes_are_apart = [&](const Pose2D& pose) {
+    const Pose T_left = left_camera(a, pose);
+    const Pose T_right = rig.T_camera_first[1] * T_left;
+    return !visibility.sees(T_left.inverse().t, T_right.inverse().t);
+  };
+  RenderPoses at;
   for (const std::string& text : a.poses) {
-    poses.push_back(pose_of(text));
-    const std::string fault = standing_fault(visibility, poses.back(), a.height_m);
+    const Pose2D pose = pose_of(text);
+    std::string fault = standing_fault(visibility, pose, a.height_m);
+    if (fault.empty() && eyes_are_apart(pose)) fault = "has a surface between the two cameras";
     if (!fault.empty()) {
       throw Error(
           "--pose " + text, fault,
           "give a free position, or another --height-m (vernier world info prints the size)");
     }
+    at.poses.push_back(pose);
+    at.trials.push_back(-1);
   }
-  if (a.pose_count == 0) return poses;
+  if (a.pose_count == 0) return at;
   const QueryPlaces places(visibility, query_protocol(a.protocol), a.height_m);
-  for (int i = 0; i < a.pose_count; ++i) {
-    poses.push_back(places.draw(a.seed, static_cast<std::uint32_t>(i)));
+  const int most = 10 * a.pose_count + 100;
+  for (int trial = 0; static_cast<int>(at.poses.size()) < a.pose_count; ++trial) {
+    if (trial == most) {
+      throw Error(a.world, "has a surface between the two cameras at almost every pose",
+                  "use a rig with a shorter baseline, or give poses with --pose");
+    }
+    const Pose2D pose = places.draw(a.seed, static_cast<std::uint32_t>(trial));
+    if (eyes_are_apart(pose)) {
+      ++at.left_out;
+      continue;
+    }
+    at.poses.push_back(pose);
+    at.trials.push_back(trial);
   }
-  return poses;
+  return at;
 }
 
 Json settings_json(const RenderArguments& a) {

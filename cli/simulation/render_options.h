@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/pose.h"
+#include "calib/rig.h"
 #include "cli/program/cli11_fwd.h"
 #include "cli/program/namespaces.h"
 #include "cli/program/session.h"
@@ -31,9 +33,22 @@ struct RenderArguments {
 
 void add_render_options(CLI::App& verb, RenderArguments& arguments);
 
-/// The poses given, or those of the first queries of a study of this seed. Throws Error for a pose
-/// at which no robot can stand.
-std::vector<Pose2D> poses_of(const RenderArguments& arguments, const Visibility& visibility);
+/// Poses to render from, and which trial of a study each is a query of (-1: none).
+struct RenderPoses {
+  std::vector<Pose2D> poses;
+  std::vector<int> trials;
+  int left_out = 0;  ///< queries where a surface stands between the eyes
+};
+
+/// Pose of the left camera of the robot at a pose.
+Pose left_camera(const RenderArguments& arguments, const Pose2D& pose);
+
+/// The poses given, or those of the first queries of a study of this seed, without those where a
+/// surface stands between the eyes: places of queries are free for the left camera only. Throws
+/// Error for a pose given at which no robot can stand, or where its eyes are so separated.
+RenderPoses poses_of(const RenderArguments& arguments,
+                     const Visibility& visibility,
+                     const Rig& rig);
 
 /// All options that change an image.
 Json settings_json(const RenderArguments& arguments);

@@ -190,6 +190,14 @@ EdgeFigures edge_figures(const ComparedEdges& compared, const EdgeFilter& of) {
   return f;
 }
 
+bool is_clear(const EdgeSample& edge) {
+  constexpr double least_contrast = 20, least_length_px = 40, least_distance_px = 6;
+  const bool step =
+      edge.appearance == EdgeAppearance::border || edge.appearance == EdgeAppearance::outline;
+  return step && edge.contrast >= least_contrast && edge.length_px >= least_length_px &&
+         edge.neighbour_px >= least_distance_px;
+}
+
 std::vector<ComparisonTable> comparison_tables(const ComparedEdges& compared) {
   constexpr double degree = std::numbers::pi / 180;
   ComparisonTable shown{"shown as", {}};
@@ -199,7 +207,12 @@ std::vector<ComparisonTable> comparison_tables(const ComparedEdges& compared) {
         {std::string(name(kind)),
          edge_figures(compared, [&](const EdgeSample& edge) { return edge.appearance == kind; })});
   }
+  const ComparisonTable clear{
+      "clear steps",
+      {{"clear", edge_figures(compared, is_clear)},
+       {"others", edge_figures(compared, [](const EdgeSample& e) { return !is_clear(e); })}}};
   return {shown,
+          clear,
           by_interval(compared, "contrast", "grey levels", {0, 5, 10, 20, 40},
                       [](const EdgeSample& e) { return e.contrast; }),
           by_interval(compared, "angle to the rows", "deg", {0, 5, 30, 60},

@@ -54,7 +54,12 @@ struct ComparisonTable {
   std::vector<ComparisonGroup> groups;
 };
 
-/// Edges by how they are shown, by contrast, by angle to the rows and by depth.
+/// Whether an edge is one that a detector should find: a step (a border or an outline) of at least
+/// 20 grey levels, at least 40 px long, with no other edge along it within 6 px.
+bool is_clear(const EdgeSample& edge);
+
+/// Edges by how they are shown, whether they are clear, by contrast, angle to the rows, depth,
+/// distance of the nearest edge, and length.
 std::vector<ComparisonTable> comparison_tables(const ComparedEdges& compared);
 
 /// Robust standard deviation: 1.4826 times the median distance from the median. 0 of none.

@@ -93,6 +93,26 @@ std::string how_rendered(const RenderArguments& options, std::size_t poses) {
       options.no_noise ? ", without noise" : "");
 }
 
+/// The folder of a pose inside the output folder, and its name in lists.
+std::string folder_of(std::size_t pose, std::size_t poses) {
+  return poses == 1 ? "" : fmt::format("{:03}/", pose);
+}
+
+/// Throws Error if a file to be written is the world or the rig.
+void check_outputs(const RenderArguments& options, std::size_t poses) {
+  const std::vector<std::filesystem::path> inputs{find_world(options.world), find_rig(options.rig)};
+  const std::filesystem::path folder = options.output;
+  for (const char* name :
+       {"pairs.toml", "render.json", "comparison.json", "comparison.html", "sources.toml"}) {
+    check_output_is_not_input(inputs, folder / name);
+  }
+  for (std::size_t i = 0; i < poses; ++i) {
+    for (const std::filesystem::path& name : view_file_names()) {
+      check_output_is_not_input(inputs, folder / folder_of(i, poses) / name);
+    }
+  }
+}
+
 /// Adds the files of the comparison. Returns its report.
 ComparisonReport add_comparison(OutputFiles& outputs,
                                 const RenderArguments& options,
@@ -139,6 +159,7 @@ void run(RenderArguments options, Session& session) {
                     at.left_out, at.trials.back() + 1));
   }
 
+  check_outputs(options, poses.size());
   OutputFiles outputs;
   outputs.add_folder(folder);
   Json made = {{"format", "vernier/render"}, {"version", 1}, {"settings", settings_json(options)}};
@@ -150,15 +171,14 @@ void run(RenderArguments options, Session& session) {
   {
     Progress progress(session, "rendering");
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const std::string name = poses.size() == 1 ? "view" : fmt::format("{:03}", i);
-      const std::string inside = poses.size() == 1 ? "" : name + "/";
+      const std::string inside = folder_of(i, poses.size());
       const Pose T_left = left_camera(options, poses[i]);
       const RectifiedView view = rectified_view(rig, shared.geometry, T_left);
       const RenderedView rendered =
           view_of(shared, options, view, T_left, static_cast<std::uint32_t>(i));
-      add_view_files(outputs, poses.size() == 1 ? folder : folder / name, view, rendered);
+      add_view_files(outputs, folder / inside, view, rendered);
       made["poses"].push_back(pose_json(inside, poses[i], at.trials[i], rendered));
-      pairs += pair_toml(name, inside, rendered.truth);
+      pairs += pair_toml(fmt::format("{:03}", i), inside, rendered.truth);
       edges += rendered.edges.both.size();
       if (options.compare) {
         add_pair(rendered.pair, rendered.edges, search_range(rendered.truth), matchers, compared);

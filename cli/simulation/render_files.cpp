@@ -80,6 +80,20 @@ std::string edges_json(const TrueEdges& edges) {
 
 }  // namespace
 
+const std::vector<std::filesystem::path>& view_file_names() {
+  static const std::vector<std::filesystem::path> names{"left.png",
+                                                        "right.png",
+                                                        "edges.json",
+                                                        "rectified/left.png",
+                                                        "rectified/right.png",
+                                                        "rectified/rig.json",
+                                                        "rectified/disparity.pfm",
+                                                        "rectified/right_disparity.pfm",
+                                                        "rectified/depth.pfm",
+                                                        "rectified/occluded.png"};
+  return names;
+}
+
 void add_view_files(OutputFiles& outputs,
                     const std::filesystem::path& folder,
                     const RectifiedView& view,

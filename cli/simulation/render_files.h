@@ -22,6 +22,9 @@ struct RenderedView {
   TrueEdges edges;
 };
 
+/// Names of the files of one pose, in its folder.
+const std::vector<std::filesystem::path>& view_file_names();
+
 /// Adds the files of one pose (docs/images.md) in a folder.
 void add_view_files(OutputFiles& outputs,
                     const std::filesystem::path& folder,

@@ -165,6 +165,8 @@ def calls():
         Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0',
                           '--picture', 'out.svg'], ['out.svg']),
+        Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
+                        '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),

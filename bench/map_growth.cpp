@@ -26,10 +26,10 @@
 #include "localise/localiser.h"
 #include "localise/map_file.h"
 #include "localise/topological_map.h"
+#include "sim/buildings/office.h"
 #include "sim/experiment.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include "localise/place.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "sim/sources.h"
 #include "sim/study/ceiling.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -59,6 +60,26 @@ void all_sources(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(sensor.sense(seen, {.trial = trial++}));
 }
 
+// Both eyes with exact visibility, and all sources that are on.
+void frame(benchmark::State& state, const SourceSettings& sources) {
+  const Sensor sensor(rig().rig, sources);
+  std::uint32_t trial = 0;
+  for (auto _ : state) {
+    const NoiseFreeView seen = look(visibility(), rig().rig, places()[trial % places().size()]);
+    benchmark::DoNotOptimize(sensor.sense(seen, {.trial = trial}));
+    ++trial;
+  }
+}
+
+void frame_with_the_default_sources(benchmark::State& state) { frame(state, {}); }
+
+void frame_with_every_source(benchmark::State& state) {
+  SourceSettings sources;
+  sources.clutter = 0.2;
+  sources.merge_px = 3;
+  frame(state, sources);
+}
+
 void aliases_of_a_pose(benchmark::State& state) {
   const AliasFinder finder(visibility(), rig().rig, {});
   std::size_t i = 0;
@@ -70,6 +91,8 @@ void aliases_of_a_pose(benchmark::State& state) {
 BENCHMARK(hidden_lines_of_one_eye)->Unit(benchmark::kMillisecond);
 BENCHMARK(look_of_both_eyes)->Unit(benchmark::kMillisecond);
 BENCHMARK(all_sources)->Unit(benchmark::kMillisecond);
+BENCHMARK(frame_with_the_default_sources)->Unit(benchmark::kMillisecond);
+BENCHMARK(frame_with_every_source)->Unit(benchmark::kMillisecond);
 BENCHMARK(aliases_of_a_pose)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -30,11 +30,11 @@
 #include "datasets/shipped.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
+#include "sim/buildings/office.h"
 #include "sim/experiment.h"
 #include "sim/moved_furniture.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 
 namespace {
 

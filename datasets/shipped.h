@@ -8,8 +8,8 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
+#include "sim/buildings/office.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 
 /// Generators of the shipped world and rig.
 namespace vernier::datasets {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "calib/camera.h"
@@ -45,6 +46,12 @@ class Visibility {
   std::vector<VisibleInterval> visible_intervals(const Camera& camera,
                                                  const Pose& T_camera_world,
                                                  const VisibilityOptions& options = {}) const;
+
+  /// The same for some segments only: indices into the world's, ascending.
+  std::vector<VisibleInterval> visible_intervals_of(std::span<const int> segments,
+                                                    const Camera& camera,
+                                                    const Pose& T_camera_world,
+                                                    const VisibilityOptions& options = {}) const;
 
   /// Indices of the visible corners, ascending.
   std::vector<int> visible_corners(const Camera& camera,

@@ -24,13 +24,13 @@
 #include "cli/simulation/plan_picture.h"
 #include "cli/simulation/world_import.h"
 #include "cli/simulation/world_view.h"
+#include "sim/buildings/building.h"
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/routing/floor_plan.h"
 #include "sim/routing/route_proposal.h"
 #include "sim/study/ceiling.h"
 #include "sim/visibility.h"
-#include "sim/world/office.h"
 #include "sim/world/world_export.h"
 #include "sim/world_file.h"
 
@@ -39,7 +39,7 @@ namespace {
 
 struct MakeOptions {
   std::uint64_t seed = 1;
-  std::string size = "20,15,2.5", name, output;
+  std::string kinds = "office", size, name, output;
 };
 
 struct InfoOptions {
@@ -118,11 +118,31 @@ Aliasing aliasing_of(const World& world, const InfoOptions& options) {
   return {sum.unique_share / poses, sum.undetermined_share / poses, sum.ceiling / poses};
 }
 
+std::vector<BuildingKind> kinds_of(const std::string& text) {
+  std::vector<BuildingKind> kinds;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const std::string name = text.substr(from, comma - from);
+    const std::optional<BuildingKind> kind = building_kind(name);
+    if (!kind) {
+      throw Error("--kind", in_quotes(name) + " is no kind of building",
+                  "use office, home, hall or corridors, or several with commas between");
+    }
+    kinds.push_back(*kind);
+    from = comma + 1;
+  }
+  return kinds;
+}
+
+std::optional<Eigen::Vector3d> size_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::vector<double> size = parse_numbers(text, 3, "--size-m");
+  return Eigen::Vector3d(size[0], size[1], size[2]);
+}
+
 void make(const MakeOptions& options, Session& session) {
-  const std::vector<double> size = parse_numbers(options.size, 3, "--size-m");
-  OfficeOptions office;
-  office.size_m = {size[0], size[1], size[2]};
-  WorldDescription description = make_office(options.seed, office);
+  WorldDescription description =
+      make_building(options.seed, {kinds_of(options.kinds), size_of(options.size)});
   if (!options.name.empty()) {
     constexpr std::size_t most_bytes = 200;
     const auto acts = [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7f; };
@@ -214,10 +234,15 @@ void add_world(CLI::App& app, Session& session) {
   verb->footer("Example:\n  vernier world make --seed 7 -o my.world.toml");
 
   auto o = std::make_shared<MakeOptions>();
-  CLI::App* maker = add_verb(*verb, session, "make", "generate a random office floor",
-                             "vernier world make --seed 7 --size-m 20,15,2.5 -o my.world.toml");
+  CLI::App* maker = add_verb(*verb, session, "make", "generate a random floor of a building",
+                             "vernier world make --kind office,hall --seed 7 -o my.world.toml");
   maker->add_option("--seed", o->seed, "random seed")->capture_default_str();
-  maker->add_option("--size-m", o->size, "length,width,height in metres")->capture_default_str();
+  maker
+      ->add_option("--kind", o->kinds,
+                   "office, home, hall or corridors; several, with commas, stand side by side")
+      ->capture_default_str();
+  maker->add_option("--size-m", o->size,
+                    "length,width,height in metres of the whole (default: what suits the kind)");
   maker->add_option("--name", o->name, "name of the world");
   maker->add_option("-o,--output", o->output, "world file")->required();
   maker->callback([o, &session] { session.action = [=, &session] { make(*o, session); }; });

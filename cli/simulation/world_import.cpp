@@ -23,6 +23,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/plan_picture.h"
 #include "sim/import/axes_and_unit.h"
+#include "sim/import/camera_path.h"
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/mesh_file.h"
@@ -35,11 +36,11 @@ namespace vernier::cli {
 namespace {
 
 struct ImportArguments {
-  std::string file, output, name, unit, up, plan;
+  std::string file, output, name, unit, up, plan, colmap;
   ImportOptions options;
   double eye_height_m = 1.2;
   bool no_route = false;
-  std::vector<std::string> leave_out;
+  MeshSelection selection;
 };
 
 double unit_of(const std::string& word) {
@@ -71,6 +72,21 @@ std::string storeys_text(const ImportReport& report, const ImportOptions& option
                      fmt::join(report.storeys_m, ", "), options.storey, report.floor_m, ends);
 }
 
+/// With --colmap: turns the mesh so that z is up, and finds its unit and its floor. The cameras are
+/// turned likewise.
+std::vector<PathCamera> level_by_cameras(ImportArguments& arguments, Mesh& mesh) {
+  if (arguments.colmap.empty()) return {};
+  ImportOptions& options = arguments.options;
+  if (options.up_axis) throw Error("--up", "is given beside --colmap", "leave one out");
+  std::vector<PathCamera> cameras = read_camera_path(arguments.colmap);
+  level(up_of(cameras, mesh, arguments.colmap), mesh, cameras);
+  options.unit_m = axes_and_unit(mesh, options.up_axis, options.unit_m, arguments.file).unit_m;
+  if (!options.floor_m) {
+    options.floor_m = *options.unit_m * median_height(cameras) - arguments.eye_height_m;
+  }
+  return cameras;
+}
+
 void run(ImportArguments arguments, Session& session) {
   ImportOptions& options = arguments.options;
   if (!arguments.unit.empty()) options.unit_m = unit_of(arguments.unit);
@@ -78,7 +94,8 @@ void run(ImportArguments arguments, Session& session) {
   if (options.floor_m && options.storey != 1) {
     throw Error("--storey", "is given beside --floor-m", "leave one out");
   }
-  const Mesh mesh = read_mesh(arguments.file, arguments.leave_out);
+  Mesh mesh = read_mesh(arguments.file, arguments.selection);
+  const std::vector<PathCamera> cameras = level_by_cameras(arguments, mesh);
   if (mesh.doors > 0) {
     session.info(
         fmt::format("{}: its {} doors stand as the file has them, mostly closed; "
@@ -86,7 +103,8 @@ void run(ImportArguments arguments, Session& session) {
                     arguments.file, mesh.doors));
   }
   ImportedWorld imported = import_world(mesh, options, arguments.file);
-  const ImportReport& report = imported.report;
+  ImportReport& report = imported.report;
+  if (!cameras.empty()) report.axes.up_because = "by its cameras";
   WorldDescription& description = imported.world;
   description.name = arguments.name.empty() ? std::filesystem::path(arguments.file).stem().string()
                                             : arguments.name;
@@ -112,7 +130,13 @@ void run(ImportArguments arguments, Session& session) {
     }
   }
   RouteProposal proposal;
-  if (!arguments.no_route) {
+  if (!cameras.empty()) {
+    description.route = route_of(cameras, report.axes.unit_m, report.moved_m);
+    if (description.route.empty()) {
+      session.warn(arguments.colmap +
+                   ": its cameras make no way of 0.1 m; give [[route]] points_m");
+    }
+  } else if (!arguments.no_route) {
     try {
       proposal = propose_route(FloorPlan(without_route, arguments.eye_height_m));
     } catch (const Error& error) {  // a floor that is too large
@@ -142,8 +166,10 @@ void run(ImportArguments arguments, Session& session) {
                         -report.moved_m.x(), -report.moved_m.y());
   const double length_m = route_length_m(world.route);
   const std::string route =
-      world.route.empty()
-          ? "no route\n"
+      world.route.empty() ? "no route\n"
+      : !cameras.empty()
+          ? fmt::format("the way of its {} cameras, {:.1f} m in {} legs, is the route\n",
+                        cameras.size(), length_m, world.route.size())
           : fmt::format(
                 "a route of {:.1f} m in {} legs, within 2 m of {:.0f} of {:.0f} m2 of floor\n",
                 length_m, world.route.size(), proposal.near_m2, proposal.floor_m2);
@@ -189,7 +215,8 @@ void add_world_import(CLI::App& world, Session& session) {
   auto o = std::make_shared<ImportArguments>();
   CLI::App* verb = add_verb(
       world, session, "import",
-      "make a world of one storey of a building: OBJ, PLY, DAE, IFC, glTF, or lists of lines",
+      "make a world of one storey of a building: OBJ, PLY, DAE, IFC, glTF, lists of lines, or line "
+      "tracks",
       "vernier world import office.ifc --storey 2 -o office.world.toml --plan office.svg");
   verb->add_option("file", o->file, "mesh or lines (docs/worlds.md)")->required();
   verb->add_option("-o,--output", o->output, "world file")->required();
@@ -213,7 +240,15 @@ void add_world_import(CLI::App& world, Session& session) {
   verb->add_option("--shortest-m", o->options.shortest_m, "shorter edges are left out")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
-  verb->add_option("--leave-out", o->leave_out,
+  verb->add_option("--colmap", o->colmap,
+                   "folder of the model (images.txt) that the line tracks were made with: says "
+                   "which way is up, where the floor is (--height-m below its cameras), and the "
+                   "route");
+  verb->add_option("--min-images", o->selection.least_images,
+                   "of line tracks, leave out those that fewer images support")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  verb->add_option("--leave-out", o->selection.leave_out,
                    "parts with this word in their name, as IfcDoor (repeatable)");
   verb->add_flag("--no-route", o->no_route, "propose none");
   verb->add_option("--height-m", o->eye_height_m, "height of the robot's camera, metres")

@@ -35,6 +35,11 @@ void run_line_list(std::string_view bytes) {
   if (const auto mesh = accepted([&] { return read_line_list(file); })) import(*mesh);
 }
 
+void run_line_tracks(std::string_view bytes) {
+  const auto file = input_file(bytes, "input.tracks.txt");
+  if (const auto mesh = accepted([&] { return read_line_tracks(file, 1); })) import(*mesh);
+}
+
 /// A room with a step in its floor.
 World room() {
   World world;
@@ -67,8 +72,15 @@ std::vector<std::string> line_list_seeds() {
       "6,0,0,6,0,2.5\r\n"};
 }
 
+std::vector<std::string> line_tracks_seeds() {
+  return {
+      "3\n0 4 3\n0 0 0\n6 0 0\n1 1 2 3 \n0 0 1 2 \n1 2 2\n6 0 0\n6 4 0\n1 2 \n4 5 \n2 2 2\n0 0 0\n"
+      "0 0 2.5\n1 2 \n3 1 \n"};
+}
+
 const Registered ply({"ply", 4000, "ply", run_ply, ply_seeds});
 const Registered line_list({"line_list", 2000, "columns", run_line_list, line_list_seeds});
+const Registered line_tracks({"line_tracks", 2000, "columns", run_line_tracks, line_tracks_seeds});
 
 }  // namespace
 }  // namespace vernier::fuzz

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "fuzz/fuzz_target.h"
+#include "sim/buildings/office.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 #include "sim/world_file.h"
 
 namespace vernier::fuzz {

@@ -62,16 +62,21 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
       walls[std::lround(low / level_m)].add(area / (high - low), low);
     }
   }
-  const auto most = [](const std::map<long, Level>& levels) {
-    double amount = 0;
-    for (const auto& [index, level] : levels) amount = std::max(amount, level.amount);
-    return amount;
-  };
-  const double most_walls = most(walls), plan = plan_area(faces);
-  std::vector<double> heights;
-  for (const auto& [index, wall] : walls) {
-    if (wall.amount < least_walls * most_walls) continue;
-    if (!heights.empty() && wall.z() < heights.back() + lowest_storey_m) continue;
+  // Those with most walls first, so that a plinth or the ground around a house, where a few of its
+  // walls begin, does not stand for the storey above it.
+  std::vector<Level> by_amount;
+  for (const auto& [index, wall] : walls) by_amount.push_back(wall);
+  std::stable_sort(by_amount.begin(), by_amount.end(),
+                   [](const Level& a, const Level& b) { return a.amount > b.amount; });
+  const double plan = plan_area(faces);
+  std::vector<double> starts, heights;
+  for (const Level& wall : by_amount) {
+    if (wall.amount < least_walls * by_amount[0].amount) break;
+    if (std::any_of(starts.begin(), starts.end(),
+                    [&](double start) { return std::abs(wall.z() - start) < lowest_storey_m; })) {
+      continue;
+    }
+    starts.push_back(wall.z());
     double height = wall.z(), largest = least_floor * plan;
     for (const auto& [level, floor] : floors) {
       const double above = floor.z() - wall.z();
@@ -81,6 +86,7 @@ std::vector<double> floor_heights_m(const std::vector<Polygon>& faces) {
     }
     heights.push_back(height);
   }
+  std::sort(heights.begin(), heights.end());
   return heights;
 }
 

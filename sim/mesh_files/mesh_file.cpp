@@ -22,20 +22,27 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
-Mesh read_mesh(const std::filesystem::path& file, const std::vector<std::string>& leave_out) {
+Mesh read_mesh(const std::filesystem::path& file, const MeshSelection& selection) {
   const std::string ending = in_small_letters(file.extension().string());
   std::error_code fault;
-  if (!std::filesystem::is_regular_file(file, fault)) {
+  const bool is_folder = std::filesystem::is_directory(file, fault);
+  if (!is_folder && !std::filesystem::is_regular_file(file, fault)) {
     const bool there = std::filesystem::exists(file, fault);
     throw Error(file.string(), there ? "is no regular file" : "no such file", "check the name");
   }
-  const bool has_names = ending != ".txt" && ending != ".ply";
-  if (!leave_out.empty() && !has_names) {
+  const bool has_tracks = is_folder || (ending == ".txt" && holds_line_tracks(file));
+  const bool has_names = !has_tracks && ending != ".txt" && ending != ".ply";
+  if (!selection.leave_out.empty() && !has_names) {
     throw Error(file.string(), "has no names of parts that could be left out", "edit the file");
   }
+  if (selection.least_images > 0 && !has_tracks) {
+    throw Error(file.string(), "holds no line tracks, which know their images",
+                "leave out the least number of images");
+  }
+  if (has_tracks) return read_line_tracks(file, selection.least_images);
   if (ending == ".txt") return read_line_list(file);
   if (ending == ".ply") return read_ply(file);
-  return read_with_assimp(file, leave_out);
+  return read_with_assimp(file, selection.leave_out);
 }
 
 Mesh read_line_list(const std::filesystem::path& file) {

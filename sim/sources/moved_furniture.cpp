@@ -79,8 +79,14 @@ std::vector<Displacement> displacements(const World& world, double share, std::u
 
 bool is_fixture(std::string_view template_name) {
   constexpr std::string_view fixtures[] = {
-      "door_frame",    "door_leaf_left", "door_leaf_right", "door_sign",  "window", "radiator",
-      "ceiling_light", "ceiling_vent",   "notice_board",    "whiteboard", "socket", "light_switch"};
+      "door_frame", "door_leaf_left", "door_leaf_right", "door_sign", "window", "radiator",
+      "ceiling_light", "ceiling_vent", "notice_board", "whiteboard", "socket", "light_switch",
+      // homes
+      "kitchen_unit", "kitchen_drawers", "kitchen_sink", "kitchen_stove", "wall_cabinet", "bathtub",
+      "washbasin", "toilet", "towel_rail", "pendant_lamp",
+      // halls and corridors
+      "column", "roof_beam", "rack_bay", "gate", "high_window", "electrical_cabinet", "strip_light",
+      "closed_door", "double_door", "extinguisher", "handrail", "exit_sign"};
   return std::find(std::begin(fixtures), std::end(fixtures), template_name) != std::end(fixtures);
 }
 

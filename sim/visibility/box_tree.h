@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <queue>
 #include <unsupported/Eigen/BVH>
 #include <utility>
 #include <vector>
@@ -41,7 +43,43 @@ class BoxTree {
     std::sort(found.begin(), found.end());
   }
 
+  /// The same, in the order of the boxes' distances from a point.
+  template <class Meets, class Visit>
+  void visit_nearest(const Eigen::Vector3d& from, Meets meets, Visit visit) const {
+    if (boxes_.empty()) return;
+    // Least distance first; objects have negative numbers.
+    using Entry = std::pair<double, int>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    open.emplace(0, tree_.getRootIndex());
+    if (boxes_.size() == 1) {
+      if (meets(boxes_[0])) visit(0);
+      return;
+    }
+    while (!open.empty()) {
+      const int entry = open.top().second;
+      open.pop();
+      if (entry < 0) {
+        const int i = -1 - entry;
+        // What was met since may hide it.
+        if (meets(boxes_[i]) && visit(i)) return;
+        continue;
+      }
+      if (!meets(tree_.getVolume(entry))) continue;
+      typename Tree::VolumeIterator volume = nullptr, last_volume = nullptr;
+      typename Tree::ObjectIterator object = nullptr, last_object = nullptr;
+      tree_.getChildren(entry, volume, last_volume, object, last_object);
+      for (; volume != last_volume; ++volume) {
+        open.emplace(tree_.getVolume(*volume).squaredExteriorDistance(from), *volume);
+      }
+      for (; object != last_object; ++object) {
+        open.emplace(boxes_[*object].squaredExteriorDistance(from), -1 - *object);
+      }
+    }
+  }
+
  private:
+  using Tree = Eigen::KdBVH<double, 3, int>;
+
   template <class Meets, class Visit>
   struct Query {
     const std::vector<Eigen::AlignedBox3d>& boxes;
@@ -53,7 +91,7 @@ class BoxTree {
   };
 
   std::vector<Eigen::AlignedBox3d> boxes_;
-  Eigen::KdBVH<double, 3, int> tree_;
+  Tree tree_;
 };
 
 /// Whether a segment meets a box.

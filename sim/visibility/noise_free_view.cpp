@@ -47,6 +47,15 @@ void for_common_stretches(const std::vector<VisibleInterval>& left,
   }
 }
 
+/// The segments of runs, each once.
+std::vector<int> segments_of(const std::vector<VisibleInterval>& runs) {
+  std::vector<int> segments;
+  for (const VisibleInterval& run : runs) {
+    if (segments.empty() || segments.back() != run.segment) segments.push_back(run.segment);
+  }
+  return segments;
+}
+
 }  // namespace
 
 Pose T_left_world(const Pose2D& pose, const CameraMount& mount, double roll_rad) {
@@ -71,7 +80,8 @@ NoiseFreeView look(const Visibility& visibility,
   VisibilityOptions any_length = options.visibility;
   any_length.min_length_px = 0;
   const auto left = visibility.visible_intervals(rig.cameras[0], T_left, any_length);
-  const auto right = visibility.visible_intervals(rig.cameras[1], T_right, any_length);
+  const auto right =
+      visibility.visible_intervals_of(segments_of(left), rig.cameras[1], T_right, any_length);
 
   NoiseFreeView seen{pose, {}, {}};
   for_common_stretches(left, right, [&](const VisibleInterval& run) {

@@ -43,7 +43,7 @@ class ShadowGrid {
   bool hides(const Eigen::Vector3d& point) const;
 
  private:
-  static constexpr int columns = 32, rows = 24;
+  static constexpr int columns = 16, rows = 12;
   struct Traverse;
 
   struct Candidate {

@@ -5,13 +5,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "sim/visibility/box_tree.h"
 #include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/near_occluders.h"
 #include "sim/visibility/shadow.h"
 #include "sim/visibility/shadow_grid.h"
 #include "sim/visibility/view_frustum.h"
@@ -53,6 +56,7 @@ void intersect(const std::vector<Stretch>& one,
 
 /// Buffers reused for all segments of a view.
 struct Scratch {
+  NearOccluders near;
   ShadowGrid grid;
   std::vector<OccludedInterval> hidden;
   std::vector<Stretch> unhidden, inside, seen;
@@ -129,24 +133,55 @@ struct Visibility::Index {
   explicit Index(const World& whole)
       : world(whole),
         surfaces(convex_surfaces(whole)),
+        large(surfaces),
         pieces(tree_of(surfaces)),
         segments(tree_of(whole.segments)),
         corners(tree_of(whole.corners)) {}
 
-  /// Prepares the shadows of a view, and the features of a tree that can be in it.
+  /// Prepares the shadows of a view, and the features of a tree that can be in it, if one is given.
   void prepare(const ViewFrustum& frustum,
                const Pose& T,
-               const BoxTree& features,
+               const BoxTree* features,
                double gap) const {
     const ViewVolume volume = frustum.volume(T);
-    const auto meets = [&](const AlignedBox3d& box) { return volume.may_meet(box); };
+    scratch.near.choose(surfaces, large, T.inverse().t, volume, gap);
+    const auto meets = [&](const AlignedBox3d& box) {
+      return volume.may_meet(box) && !scratch.near.hide(box);
+    };
     pieces.find(meets, scratch.near_pieces);
-    features.find(meets, scratch.near_features);
+    if (features) features->find(meets, scratch.near_features);
     scratch.grid.build(surfaces, scratch.near_pieces, T, frustum, gap);
+  }
+
+  /// Visible runs of some segments, of the view that was prepared.
+  std::vector<VisibleInterval> runs_of(std::span<const int> candidates,
+                                       const ViewFrustum& frustum,
+                                       const Camera& camera,
+                                       const Pose& T,
+                                       double min_length_px) const {
+    Scratch& s = scratch;
+    std::vector<VisibleInterval> runs;
+    for (const int i : candidates) {
+      const Eigen::Vector3d a = T * world.segments[i].a_m;
+      const Eigen::Vector3d b = T * world.segments[i].b_m;
+      Stretch open;
+      if (!frustum.clip(a, b, open) || !s.grid.hide(a, b, open, s.hidden)) continue;
+      frustum.in_image(a, b, open, s.inside);
+      subtract_intervals(open, s.hidden, s.unhidden);
+      intersect(s.unhidden, s.inside, s.seen);
+      const auto pixel = [&](double t) { return project(camera, a + t * (b - a)); };
+      for (int run = 0; run < static_cast<int>(s.seen.size()); ++run) {
+        const auto [t0, t1] = s.seen[run];
+        if (min_length_px > 0 && (pixel(t1) - pixel(t0)).norm() < min_length_px) continue;
+        runs.push_back({i, run, t0, t1});
+      }
+    }
+    return runs;
   }
 
   const World& world;
   ConvexSurfaces surfaces;
+  LargeSurfaces large;
   BoxTree pieces, segments, corners;
 };
 
@@ -161,26 +196,20 @@ std::vector<VisibleInterval> Visibility::visible_intervals(const Camera& camera,
                                                            const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  Scratch& s = scratch;
-  index_->prepare(frustum, T_camera_world, index_->segments, gap_m(options));
-  std::vector<VisibleInterval> runs;
-  const std::vector<WorldSegment>& segments = index_->world.segments;
-  for (const int i : s.near_features) {
-    const Eigen::Vector3d a = T_camera_world * segments[i].a_m;
-    const Eigen::Vector3d b = T_camera_world * segments[i].b_m;
-    Stretch open;
-    if (!frustum.clip(a, b, open) || !s.grid.hide(a, b, open, s.hidden)) continue;
-    frustum.in_image(a, b, open, s.inside);
-    subtract_intervals(open, s.hidden, s.unhidden);
-    intersect(s.unhidden, s.inside, s.seen);
-    const auto pixel = [&](double t) { return project(camera, a + t * (b - a)); };
-    for (int run = 0; run < static_cast<int>(s.seen.size()); ++run) {
-      const auto [t0, t1] = s.seen[run];
-      if ((pixel(t1) - pixel(t0)).norm() < options.min_length_px) continue;
-      runs.push_back({i, run, t0, t1});
-    }
-  }
-  return runs;
+  index_->prepare(frustum, T_camera_world, &index_->segments, gap_m(options));
+  return index_->runs_of(scratch.near_features, frustum, camera, T_camera_world,
+                         options.min_length_px);
+}
+
+std::vector<VisibleInterval> Visibility::visible_intervals_of(
+    std::span<const int> segments,
+    const Camera& camera,
+    const Pose& T_camera_world,
+    const VisibilityOptions& options) const {
+  check(T_camera_world, options);
+  const ViewFrustum frustum(camera, options.near_m, options.far_m);
+  index_->prepare(frustum, T_camera_world, nullptr, gap_m(options));
+  return index_->runs_of(segments, frustum, camera, T_camera_world, options.min_length_px);
 }
 
 std::vector<int> Visibility::visible_corners(const Camera& camera,
@@ -188,7 +217,7 @@ std::vector<int> Visibility::visible_corners(const Camera& camera,
                                              const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
-  index_->prepare(frustum, T_camera_world, index_->corners, gap_m(options));
+  index_->prepare(frustum, T_camera_world, &index_->corners, gap_m(options));
   std::vector<int> visible;
   const std::vector<WorldCorner>& corners = index_->world.corners;
   for (const int i : scratch.near_features) {

@@ -53,6 +53,21 @@ class World(verb_calls.ProgramCase):
                                capture_output=True, text=True, cwd=self.folder, timeout=120)
         self.assertIn(study.returncode, (0, 3), study.stderr)
 
+    def test_buildings_of_every_kind_and_of_several(self):
+        for kinds in ('office', 'home', 'hall', 'corridors', 'home,hall'):
+            made = self.done('make', '--kind', kinds, '--seed', 5, '-o', 'made.world.toml')
+            again = (self.folder / 'made.world.toml').read_bytes()
+            self.done('make', '--kind', kinds, '--seed', 5, '-o', 'made.world.toml')
+            self.assertEqual((self.folder / 'made.world.toml').read_bytes(), again)
+            self.assertGreater(made['route_m'], 10)
+            info = self.done('info', 'made.world.toml', '--poses', 20)
+            self.assertGreater(info['aliasing']['ceiling'], 0.5)
+        self.assertIn("office, home, hall or corridors",
+                      self.refused('make', '--kind', 'castle', '-o', 'no.world.toml'))
+        self.assertIn('4.5 m', self.refused('make', '--kind', 'hall', '--size-m', '30,20,3',
+                                            '-o', 'no.world.toml'))
+        self.assertFalse((self.folder / 'no.world.toml').exists())
+
     def test_units_and_axes_are_given_or_asked_for(self):
         text = (self.folder / 'room.ply').read_text()
         head, body = text.split('end_header\n')

@@ -4,10 +4,10 @@
 
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
+#include "sim/buildings/office.h"
 #include "sim/noise_free_view.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 
 namespace vernier::test {
 

@@ -40,7 +40,7 @@ TEST_P(Buildings, AreImportedWithARoute) {
   ImportOptions options;
   options.top_m = building.top_m;
   const ImportedWorld imported =
-      import_world(read_mesh(file, building.leave_out), options, building.file);
+      import_world(read_mesh(file, {building.leave_out, 0}), options, building.file);
   const std::size_t segments = imported.world.loose.segments_m.size();
   EXPECT_EQ(static_cast<double>(imported.report.storeys_m.size()), building.floors);
   EXPECT_GT(segments, building.segments);

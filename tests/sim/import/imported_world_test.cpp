@@ -61,6 +61,18 @@ TEST(Storeys, AreWhereWallsBegin) {
   EXPECT_EQ(floor_heights_m(convex_faces(welded(furnished, 5e-4))).size(), 1u);
 }
 
+// The outer faces of a house go down to its footing; its rooms do not.
+TEST(Storeys, BeginWhereMostWallsDoAndNotAtThePlinth) {
+  Mesh mesh;
+  add_box(mesh, {0, 0, -1}, {10, 8, 2.7});
+  for (const double x : {0.3, 3.5, 6.7}) {
+    for (const double y : {0.3, 4.2}) add_box(mesh, {x, y, 0}, {x + 3, y + 3.5, 2.6});
+  }
+  const std::vector<double> floors = floor_heights_m(convex_faces(welded(mesh, 5e-4)));
+  ASSERT_EQ(floors.size(), 1u);
+  EXPECT_NEAR(floors[0], 0, 0.05);
+}
+
 // However finely the walls are cut.
 TEST(Storeys, AreFoundInFineMeshes) {
   Mesh mesh;

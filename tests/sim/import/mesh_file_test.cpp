@@ -16,11 +16,11 @@
 
 #include "calib/error.h"
 #include "datasets/shipped.h"
+#include "sim/buildings/office.h"
 #include "sim/import/imported_world.h"
 #include "sim/import/mesh.h"
 #include "sim/mesh_files/child_process.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 #include "sim/world/world_export.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
@@ -145,12 +145,12 @@ TEST(MeshFile, RefusesWhatItCannotRead) {
   const Folder folder;
   EXPECT_NE(error_message([&] { read_mesh(folder.path() / "no.obj"); }).find("no such file"),
             std::string::npos);
-  EXPECT_NE(error_message([&] { read_mesh(folder.path()); }).find("is no regular file"),
+  EXPECT_NE(error_message([&] { read_mesh(folder.path()); }).find("holds no track_N.txt"),
             std::string::npos);
   EXPECT_NE(said_of("a.docx", "text"), "");
   EXPECT_NE(said_of("a.ifc", "ISO-10303-21;\nHEADER;\n"), "");
   EXPECT_NE(error_message([&] {
-              read_mesh(folder.write("a.ply", square), {"door"});
+              read_mesh(folder.write("a.ply", square), {{"door"}, 0});
             }).find("no names of parts"),
             std::string::npos);
 }

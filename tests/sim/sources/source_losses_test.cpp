@@ -10,12 +10,12 @@
 #include "calib/rig_estimate.h"
 #include "datasets/shipped.h"
 #include "localise/place.h"
+#include "sim/buildings/office.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
-#include "sim/world/office.h"
 
 namespace vernier::sim::internal {
 namespace {

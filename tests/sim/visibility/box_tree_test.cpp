@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 #include <vector>
@@ -50,6 +51,30 @@ TEST(BoxTree, StopsWhenTheVisitorSaysSo) {
   int visited = 0;
   tree.visit([](const AlignedBox3d&) { return true; }, [&](int) { return ++visited == 3; });
   EXPECT_EQ(visited, 3);
+}
+
+TEST(BoxTree, VisitsTheNearestFirst) {
+  std::mt19937 random(4);
+  for (const int count : {0, 1, 2, 3, 7, 500}) {
+    const std::vector<AlignedBox3d> boxes = random_boxes(count, random);
+    const BoxTree tree(boxes);
+    for (const AlignedBox3d& region : random_boxes(20, random)) {
+      const Vector3d from = region.max();
+      const auto meets = [&](const AlignedBox3d& box) { return box.max().x() > region.min().x(); };
+      std::vector<int> visited;
+      double last = 0;
+      tree.visit_nearest(from, meets, [&](int i) {
+        EXPECT_GE(boxes[i].squaredExteriorDistance(from), last);
+        last = boxes[i].squaredExteriorDistance(from);
+        visited.push_back(i);
+        return false;
+      });
+      std::sort(visited.begin(), visited.end());
+      std::vector<int> expected;
+      tree.find(meets, expected);
+      EXPECT_EQ(visited, expected);
+    }
+  }
 }
 
 TEST(BoxTree, BoxesAllInOnePlaceAreNoDepth) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 #include <thread>
@@ -13,11 +14,14 @@
 #include "calib/lens_models.h"
 #include "calib/pose.h"
 #include "calib/statistics/random.h"
+#include "sim/buildings/office.h"
 #include "sim/visibility/convex_pieces.h"
+#include "sim/visibility/near_occluders.h"
 #include "sim/visibility/shadow.h"
 #include "sim/visibility/shadow_grid.h"
 #include "sim/visibility/view_frustum.h"
 #include "sim/world.h"
+#include "tests/support/point_visibility.h"
 #include "tests/support/walls_and_boxes.h"
 
 namespace vernier {
@@ -29,52 +33,6 @@ using namespace vernier::sim::internal;
 namespace {
 
 using namespace test;
-
-/// Whether a ray from the eye through x meets the polygon's interior before x, by counting how
-/// often a half-line in the plane crosses the border. Shares nothing with the code under test.
-bool blocks(const Polygon& polygon, const Vector3d& eye, const Vector3d& x, double gap_m) {
-  Vector3d n = Vector3d::Zero();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    n += polygon[i].cross(polygon[(i + 1) % polygon.size()]);
-  }
-  if (n.norm() < 1e-9) return false;
-  n.normalize();
-  const double h_eye = n.dot(eye - polygon[0]), h_x = n.dot(x - polygon[0]);
-  if (h_eye * h_x >= 0 || std::abs(h_x) <= gap_m) return false;
-  const Vector3d hit = eye + h_eye / (h_eye - h_x) * (x - eye);
-  int drop = 0;
-  n.cwiseAbs().maxCoeff(&drop);
-  const int i = (drop + 1) % 3, j = (drop + 2) % 3;
-  bool inside = false;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector3d &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-    if ((p[j] > hit[j]) == (q[j] > hit[j])) continue;
-    if (hit[i] < p[i] + (hit[j] - p[j]) / (q[j] - p[j]) * (q[i] - p[i])) inside = !inside;
-  }
-  return inside;
-}
-
-/// The slow way to ask what a camera sees of one point.
-struct Oracle {
-  const World& world;
-  const Camera& camera;
-  Pose T_camera_world;
-  VisibilityOptions options;
-
-  bool sees(const Vector3d& point) const {
-    const Vector3d x = T_camera_world * point;
-    if (x.z() < options.near_m || x.z() > options.far_m) return false;
-    const Vector2d pixel = project(camera, x);
-    if (!in_image(camera, pixel)) return false;
-    // Beyond the fold of the distortion a point lands on a pixel that shows another.
-    if ((unproject(camera, pixel) - x / x.z()).norm() > 1e-6) return false;
-    const Vector3d eye = T_camera_world.inverse().t;
-    for (const WorldSurface& surface : world.surfaces) {
-      if (blocks(surface.polygon_m, eye, point, options.surface_gap_m)) return false;
-    }
-    return true;
-  }
-};
 
 Vector3d at(const WorldSegment& s, double t) { return s.a_m + t * (s.b_m - s.a_m); }
 
@@ -351,6 +309,57 @@ TEST(Visibility, LeavingOutWhatIsOutsideTheViewChangesNoBit) {
   }
   EXPECT_GT(left_out, 1000);
   EXPECT_GT(runs, 1000);
+}
+
+// Walls hide most of an office: what hides behind one of them is never looked at.
+TEST(Visibility, LeavingOutWhatAWallHidesChangesNoBit) {
+  const World world = build_world(make_office(3));
+  const Visibility visibility(world);
+  const Camera camera = camera_with(525, -0.05);
+  const VisibilityOptions options{.min_length_px = 0};
+  const ViewFrustum frustum(camera, options.near_m, options.far_m);
+  const ConvexSurfaces surfaces = convex_surfaces(world);
+  const LargeSurfaces large(surfaces);
+  NearOccluders occluders;
+  std::size_t in_view = 0, hidden = 0, runs = 0;
+  for (int i = 0; i < 12; ++i) {
+    const RoutePoint at = route_point(world.route, 1 + 7.0 * i);
+    const Vector3d eye(at.pose.x_m, at.pose.y_m, 1.2);
+    const Pose T = looking_at(eye, eye + Vector3d(std::cos(i), std::sin(i), 0));
+    const ViewVolume volume = frustum.volume(T);
+    occluders.choose(surfaces, large, eye, volume, options.surface_gap_m);
+    for (const WorldSegment& s : world.segments) {
+      const Eigen::AlignedBox3d box(s.a_m.cwiseMin(s.b_m), s.a_m.cwiseMax(s.b_m));
+      if (!volume.may_meet(box)) continue;
+      ++in_view;
+      hidden += occluders.hide(box);
+    }
+    const auto expected = runs_among_all(world, frustum, T, options.surface_gap_m);
+    const auto found = visibility.visible_intervals(camera, T, options);
+    ASSERT_EQ(found.size(), expected.size());
+    runs += found.size();
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ASSERT_EQ(found[k].segment, expected[k].segment);
+      ASSERT_EQ(found[k].run, expected[k].run);
+      ASSERT_EQ(found[k].t0, expected[k].t0);
+      ASSERT_EQ(found[k].t1, expected[k].t1);
+    }
+    // Asking for some segments gives their part of the answer.
+    std::vector<int> some;
+    for (int k = i; k < static_cast<int>(world.segments.size()); k += 3) some.push_back(k);
+    const auto of_some = visibility.visible_intervals_of(some, camera, T, options);
+    std::size_t next = 0;
+    for (const VisibleInterval& run : found) {
+      if (run.segment % 3 != i % 3 || run.segment < i) continue;
+      ASSERT_LT(next, of_some.size());
+      EXPECT_EQ(of_some[next].segment, run.segment);
+      EXPECT_EQ(of_some[next].t0, run.t0);
+      EXPECT_EQ(of_some[next++].t1, run.t1);
+    }
+    EXPECT_EQ(next, of_some.size());
+  }
+  EXPECT_GT(runs, 1000u);
+  EXPECT_GT(hidden, in_view / 2);
 }
 
 TEST(Visibility, ThreadsMayShareIt) {

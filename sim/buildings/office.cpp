@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office.h"
+#include "sim/buildings/office.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,13 @@
 
 #include "calib/error.h"
 #include "calib/statistics/random.h"
+#include "sim/buildings/building_site.h"
+#include "sim/buildings/office_clutter.h"
+#include "sim/buildings/office_furniture.h"
+#include "sim/buildings/office_room.h"
+#include "sim/buildings/space.h"
+#include "sim/buildings/wire_shapes.h"
 #include "sim/world.h"
-#include "sim/world/office_clutter.h"
-#include "sim/world/office_furniture.h"
-#include "sim/world/office_room.h"
-#include "sim/world/office_shapes.h"
-#include "sim/world/office_site.h"
 
 namespace vernier::sim::internal {
 
@@ -27,7 +28,6 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double skirting_m = 0.08;
 constexpr double route_end_m = 0.6;  ///< distance from the end walls of the corridor
 constexpr double window_room_m =
     1.2;  ///< distance between the end of a room's leg and its outer wall
@@ -35,7 +35,7 @@ constexpr std::uint32_t corridor_number = 0;  ///< rooms count from 1
 constexpr std::uint32_t door_place_item = 100;
 
 struct Room {
-  OfficeRoom floor;
+  RectangularRoom floor;
   int window_side = 0;  ///< 0 south of the corridor, 2 north of it
   double door_x_m = 0;  ///< middle of the opening, world
   RouteLeg leg;
@@ -46,6 +46,7 @@ struct Plan {
   Vector3d size_m;
   double south_m = 0, north_m = 0;  ///< the corridor's faces
   std::vector<Room> rooms;          ///< south side first, by x
+  OpenEnds open;
 };
 
 void check_options(const OfficeOptions& options) {
@@ -87,6 +88,7 @@ RouteLeg room_leg(const Room& room, double corridor_m) {
 
 Plan make_plan(std::uint64_t seed, const OfficeOptions& options) {
   Plan plan;
+  plan.open = options.open;
   plan.size_m = to_grid(options.size_m);
   plan.south_m = to_grid((plan.size_m.y() - options.corridor_width_m) / 2);
   plan.north_m = plan.size_m.y() - plan.south_m;
@@ -106,7 +108,7 @@ Plan make_plan(std::uint64_t seed, const OfficeOptions& options) {
       RandomStream draws({.seed = seed,
                           .trial = room.floor.number,
                           .feature = door_place_item,
-                          .source = office_draws});
+                          .source = building_draws});
       const bool left = draws.below(2);
       const double from = 0.75 + draws.uniform(0, std::min(0.6, (x1 - x0) / 2 - 0.75));
       room.door_x_m = to_grid(left ? x0 + from : x1 - from);
@@ -143,12 +145,21 @@ void broken_line(Shapes& shapes,
   shapes.line({from, y, z}, {x1, y, z});
 }
 
+// A line along y, interrupted by `half` on both sides of a doorway in the middle.
+void end_line(Shapes& shapes, double x, double y0, double y1, double half, bool is_open, double z) {
+  if (!is_open) return shapes.line({x, y0, z}, {x, y1, z});
+  const double middle = (y0 + y1) / 2;
+  shapes.line({x, y0, z}, {x, middle - half, z});
+  shapes.line({x, middle + half, z}, {x, y1, z});
+}
+
 // The edges of a rectangle of floor, with skirting boards, and of its ceiling.
 void draw_shell(Shapes& shapes,
                 const Vector3d& low,
                 const Vector3d& high,
                 const std::vector<double>& low_doors,
-                const std::vector<double>& high_doors) {
+                const std::vector<double>& high_doors,
+                const OpenEnds& open = {}) {
   const double half = door_width_m / 2, casing = half + casing_m;
   for (const auto& [y, gaps] : {std::pair(low.y(), &low_doors), std::pair(high.y(), &high_doors)}) {
     broken_line(shapes, low.x(), high.x(), *gaps, half, y, 0);
@@ -156,9 +167,10 @@ void draw_shell(Shapes& shapes,
     shapes.line({low.x(), y, high.z()}, {high.x(), y, high.z()});
   }
   for (const double x : {low.x(), high.x()}) {
-    for (const double z : {0.0, skirting_m, high.z()}) {
-      shapes.line({x, low.y(), z}, {x, high.y(), z});
-    }
+    const bool is_open = x == low.x() ? open.low_x : open.high_x;
+    end_line(shapes, x, low.y(), high.y(), half, is_open, 0);
+    end_line(shapes, x, low.y(), high.y(), casing, is_open, skirting_m);
+    shapes.line({x, low.y(), high.z()}, {x, high.y(), high.z()});
     for (const double y : {low.y(), high.y()}) shapes.line({x, y, 0}, {x, y, high.z()});
   }
 }
@@ -183,7 +195,7 @@ void raise_corridor_wall(Shapes& shapes, const Plan& plan, int window_side) {
 void raise_walls(Shapes& shapes, const Plan& plan) {
   const Vector3d& size = plan.size_m;
   // Nothing lies beyond the outer walls, so they are represented by their inner faces.
-  shapes.surfaces_of_box(Vector3d::Zero(), size, all_faces);
+  raise_outer_walls(shapes, size, plan.open);
   raise_corridor_wall(shapes, plan, 0);
   raise_corridor_wall(shapes, plan, 2);
   for (const auto& room : plan.rooms) {
@@ -199,12 +211,12 @@ void raise_walls(Shapes& shapes, const Plan& plan) {
     draw_shell(shapes, room.floor.low_m, room.floor.high_m, south ? none : own, south ? own : none);
   }
   draw_shell(shapes, {0, plan.south_m, 0}, {size.x(), plan.north_m, size.z()}, doors(plan, 0),
-             doors(plan, 2));
+             doors(plan, 2), plan.open);
 }
 
 // Posters, lockers, notice boards and cartons between the doors, and a closed exit at the far end.
-void furnish_corridor_wall(OfficeSite& site, const Plan& plan, int side) {
-  const OfficeWall wall = site.room().wall(side);
+void furnish_corridor_wall(BuildingSite& site, const Plan& plan, int side) {
+  const RoomWall wall = site.room().wall(side);
   const double half = door_width_m / 2 + casing_m;
   for (const auto& room : plan.rooms) {
     if (room.window_side != side) continue;
@@ -231,16 +243,16 @@ void furnish_corridor_wall(OfficeSite& site, const Plan& plan, int side) {
   drop_cartons(site, wall, 3, draws);
 }
 
-void furnish_corridor(OfficeSite& site, const Plan& plan) {
-  const double width = plan.north_m - plan.south_m, middle = width / 2;
-  const OfficeWall start = site.room().wall(3), end = site.room().wall(1);
-  if (width > 1.7) {
-    site.occupy(start.frame *
-                AlignedBox3d(Vector3d(middle - 0.85, 0, 0.9), Vector3d(middle + 0.85, 0.2, 2.15)));
-    site.place("window", start.frame, {middle - 0.75, 0, 0});
-  }
+void fit_window_at_end(BuildingSite& site, double middle) {
+  const RoomWall start = site.room().wall(3);
+  site.occupy(start.frame *
+              AlignedBox3d(Vector3d(middle - 0.85, 0, 0.9), Vector3d(middle + 0.85, 0.2, 2.15)));
+  site.place("window", start.frame, {middle - 0.75, 0, 0});
+}
+
+void close_exit(BuildingSite& site, double middle) {
   Shapes& loose = site.loose();
-  loose.frame = end.frame;
+  loose.frame = site.room().wall(1).frame;
   for (const double out : {0.0, casing_m}) {
     const double half = door_width_m / 2 + out, top = door_height_m + out;
     loose.line({middle - half, 0.01, 0}, {middle - half, 0.01, top});
@@ -250,6 +262,16 @@ void furnish_corridor(OfficeSite& site, const Plan& plan) {
   loose.upright_rectangle(middle - 0.35, 1.02, middle + 0.35, 1.08, 0.02);
   loose.box({middle - 0.2, 0.3, door_height_m + 0.1}, {middle + 0.2, 0.33, door_height_m + 0.22},
             all_faces);
+}
+
+void furnish_corridor(BuildingSite& site, const Plan& plan) {
+  const double width = plan.north_m - plan.south_m, middle = width / 2;
+  if (width > 1.7 && !plan.open.low_x) fit_window_at_end(site, middle);
+  if (plan.open.high_x) {
+    site.place("door_frame", site.room().wall(1).frame, {middle, 0, 0});
+  } else {
+    close_exit(site, middle);
+  }
   furnish_corridor_wall(site, plan, 0);
   furnish_corridor_wall(site, plan, 2);
   const int lights = std::max(1, static_cast<int>(std::round(plan.size_m.x() / 2.5)));
@@ -264,12 +286,14 @@ void furnish_corridor(OfficeSite& site, const Plan& plan) {
 WorldDescription make_office(std::uint64_t seed, const OfficeOptions& options) {
   check_options(options);
   const Plan plan = make_plan(seed, options);
-  OfficeSite site(seed);
+  BuildingSite site(seed);
   raise_walls(site.loose(), plan);
 
   const double middle = to_grid(plan.size_m.y() / 2), length = plan.size_m.x();
-  std::vector<RouteLeg> route{{{{route_end_m, middle}, {length - route_end_m, middle}}}};
-  const OfficeRoom corridor{
+  const double from = plan.open.low_x ? 0 : route_end_m;
+  const double to = plan.open.high_x ? length + wall_thickness_m : length - route_end_m;
+  std::vector<RouteLeg> route{{{{from, middle}, {to, middle}}}};
+  const RectangularRoom corridor{
       corridor_number, {0, plan.south_m, 0}, {length, plan.north_m, plan.size_m.z()}};
   site.enter(corridor, route[0].points_m);
   furnish_corridor(site, plan);
@@ -277,7 +301,7 @@ WorldDescription make_office(std::uint64_t seed, const OfficeOptions& options) {
   for (const auto& room : plan.rooms) {
     site.enter(room.floor, room.leg.points_m);
     const int door_side = (room.window_side + 2) % 4;
-    const OfficeWall wall = room.floor.wall(door_side);
+    const RoomWall wall = room.floor.wall(door_side);
     const double door_x = door_side == 0 ? room.door_x_m - room.floor.low_m.x()
                                          : room.floor.high_m.x() - room.door_x_m;
     site.place("door_frame", wall.frame, {door_x, 0, 0});

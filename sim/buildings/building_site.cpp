@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office_site.h"
+#include "sim/buildings/building_site.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "calib/statistics/random.h"
+#include "sim/buildings/office_furniture.h"
+#include "sim/buildings/wire_shapes.h"
 #include "sim/world.h"
-#include "sim/world/office_furniture.h"
-#include "sim/world/office_shapes.h"
 
 namespace vernier::sim::internal {
 
@@ -52,7 +52,7 @@ bool crosses(const Eigen::AlignedBox2d& box, const Vector2d& a, const Vector2d& 
 
 }  // namespace
 
-double distance_to_path(const AlignedBox3d& box, const std::vector<Vector2d>& path_m) {
+double distance_to_path(const AlignedBox3d& box, const FloorPath& path_m) {
   const Eigen::AlignedBox2d plan(box.min().head<2>(), box.max().head<2>());
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < path_m.size(); ++i) {
@@ -69,7 +69,7 @@ double distance_to_path(const AlignedBox3d& box, const std::vector<Vector2d>& pa
   return nearest;
 }
 
-OfficeWall OfficeRoom::wall(int side) const {
+RoomWall RectangularRoom::wall(int side) const {
   const double width = high_m.x() - low_m.x(), depth = high_m.y() - low_m.y();
   switch (side) {
     case 0:
@@ -83,28 +83,48 @@ OfficeWall OfficeRoom::wall(int side) const {
   }
 }
 
-OfficeSite::OfficeSite(std::uint64_t seed) : seed_(seed) {
-  world_.templates = office_templates();
-  for (const auto& entry : world_.templates) bounds_[entry.name] = bounds(entry.features);
+BuildingSite::BuildingSite(std::uint64_t seed) : seed_(seed) {
+  for (const WorldTemplate& entry : office_templates()) define(entry);
 }
 
-void OfficeSite::enter(const OfficeRoom& room, const std::vector<Vector2d>& path_m) {
-  room_ = room;
-  path_m_ = path_m;
+void BuildingSite::define(const WorldTemplate& entry) {
+  world_.templates.push_back(entry);
+  bounds_[entry.name] = bounds(entry.features);
+}
+
+void BuildingSite::enter(const RectangularRoom& room, const FloorPath& path_m) {
+  enter(room.number, {AlignedBox3d(room.low_m, room.high_m)}, {path_m});
+}
+
+void BuildingSite::enter(std::uint32_t number,
+                         const std::vector<AlignedBox3d>& parts,
+                         const std::vector<FloorPath>& paths_m) {
+  AlignedBox3d all;
+  parts_ = parts;
+  for (AlignedBox3d& part : parts_) {
+    all.extend(part);
+    part.min().array() -= 1e-9;
+    part.max().array() += 1e-9;
+  }
+  room_ = {number, all.min(), all.max()};
+  paths_m_ = paths_m;
   occupied_.clear();
 }
 
-RandomStream OfficeSite::draws(std::uint32_t item) const {
+RandomStream BuildingSite::draws(std::uint32_t item) const {
   return RandomStream(
-      {.seed = seed_, .trial = room_.number, .feature = item, .source = office_draws});
+      {.seed = seed_, .trial = room_.number, .feature = item, .source = building_draws});
 }
 
-bool OfficeSite::is_free(const AlignedBox3d& box) const {
-  AlignedBox3d room(room_.low_m, room_.high_m);
-  room.min().array() -= 1e-9;
-  room.max().array() += 1e-9;
-  if (!room.contains(box)) return false;
-  if (box.min().z() < headroom_m && distance_to_path(box, path_m_) < route_clearance_m) {
+bool BuildingSite::is_free(const AlignedBox3d& box) const {
+  if (std::none_of(parts_.begin(), parts_.end(),
+                   [&](const AlignedBox3d& part) { return part.contains(box); })) {
+    return false;
+  }
+  if (box.min().z() < headroom_m &&
+      std::any_of(paths_m_.begin(), paths_m_.end(), [&](const FloorPath& path) {
+        return distance_to_path(box, path) < route_clearance_m;
+      })) {
     return false;
   }
   // Stacked things touch; only neighbours keep a gap.
@@ -114,18 +134,18 @@ bool OfficeSite::is_free(const AlignedBox3d& box) const {
                       [&](const AlignedBox3d& other) { return grown.intersects(other); });
 }
 
-AlignedBox3d OfficeSite::taken(const std::string& name,
-                               const QuarterFrame& frame,
-                               const Vector3d& at_m) const {
+AlignedBox3d BuildingSite::taken(const std::string& name,
+                                 const QuarterFrame& frame,
+                                 const Vector3d& at_m) const {
   AlignedBox3d box = bounds_.at(name);
   // Nothing is placed between a piece of furniture and its wall.
   if (box.min().y() > 0) box.min().y() = 0;
   return frame * box.translate(at_m);
 }
 
-bool OfficeSite::try_place(const std::string& name,
-                           const QuarterFrame& frame,
-                           const Vector3d& at_m) {
+bool BuildingSite::try_place(const std::string& name,
+                             const QuarterFrame& frame,
+                             const Vector3d& at_m) {
   const AlignedBox3d box = taken(name, frame, at_m);
   if (!is_free(box)) return false;
   occupy(box);
@@ -133,15 +153,15 @@ bool OfficeSite::try_place(const std::string& name,
   return true;
 }
 
-void OfficeSite::place(const std::string& name,
-                       const QuarterFrame& frame,
-                       const Vector3d& at_m,
-                       int yaw_deg) {
+void BuildingSite::place(const std::string& name,
+                         const QuarterFrame& frame,
+                         const Vector3d& at_m,
+                         int yaw_deg) {
   const int turned = ((frame.quarters * 90 + yaw_deg) % 360 + 360) % 360;
   world_.instances.push_back({name, to_grid(frame * at_m), turned * (std::numbers::pi / 180)});
 }
 
-bool OfficeSite::try_carton(const QuarterFrame& frame, const AlignedBox3d& box) {
+bool BuildingSite::try_carton(const QuarterFrame& frame, const AlignedBox3d& box) {
   const AlignedBox3d placed = frame * box;
   if (!is_free(placed)) return false;
   occupy(placed);
@@ -156,7 +176,7 @@ bool OfficeSite::try_carton(const QuarterFrame& frame, const AlignedBox3d& box) 
   return true;
 }
 
-WorldDescription OfficeSite::finish() {
+WorldDescription BuildingSite::finish() {
   std::set<std::string> used;
   for (const auto& instance : world_.instances) used.insert(instance.template_name);
   std::erase_if(world_.templates,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office_shapes.h"
+#include "sim/buildings/wire_shapes.h"
 
 #include <algorithm>
 #include <cmath>

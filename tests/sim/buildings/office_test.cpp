@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office.h"
+#include "sim/buildings/office.h"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,13 @@
 #include "calib/error.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
+#include "tests/support/clear_route.h"
 
 namespace vernier {
 
 using namespace vernier::sim;
 using namespace vernier::sim::internal;
+using test::expect_clear_route;
 
 namespace {
 
@@ -32,55 +34,6 @@ Grid grid(const Vector3d& x) {
 const World& workshop() {
   static const World world = build_world(make_office(1));
   return world;
-}
-
-double distance(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
-  const Vector2d d = b - a;
-  const double t = std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (x - a - t * d).norm();
-}
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-bool cut(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  return cross(b - a, c - a) * cross(b - a, d - a) < 0 &&
-         cross(d - c, a - c) * cross(d - c, b - c) < 0;
-}
-
-double clearance(const Vector2d& a, const Vector2d& b, const WorldSurface& surface) {
-  double nearest = 1e9;
-  const auto& polygon = surface.polygon_m;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d c = polygon[i].head<2>(), d = polygon[(i + 1) % polygon.size()].head<2>();
-    if (cut(a, b, c, d)) return 0;
-    nearest = std::min({nearest, distance(c, a, b)});
-    if ((d - c).norm() > 0) nearest = std::min({nearest, distance(a, c, d), distance(b, c, d)});
-  }
-  return nearest;
-}
-
-bool is_floor(const WorldSurface& surface) {
-  return std::all_of(surface.polygon_m.begin(), surface.polygon_m.end(),
-                     [](const Vector3d& x) { return x.z() == 0; });
-}
-
-double lowest(const WorldSurface& surface) {
-  double z = 1e9;
-  for (const auto& point : surface.polygon_m) z = std::min(z, point.z());
-  return z;
-}
-
-void expect_clear_route(const World& world) {
-  for (const auto& leg : world.route) {
-    for (std::size_t i = 0; i + 1 < leg.points_m.size(); ++i) {
-      for (const auto& surface : world.surfaces) {
-        if (is_floor(surface) || lowest(surface) >= 1.4) continue;
-        ASSERT_GE(clearance(leg.points_m[i], leg.points_m[i + 1], surface), 0.3)
-            << world.objects[surface.object].template_name << " near "
-            << surface.polygon_m[0].transpose();
-      }
-    }
-  }
 }
 
 // Exactly the same two ends, whichever comes first; across all objects.

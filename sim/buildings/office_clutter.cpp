@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office_clutter.h"
+#include "sim/buildings/office_clutter.h"
 
 #include <algorithm>
 
 #include "calib/statistics/random.h"
-#include "sim/world/office_furniture.h"
-#include "sim/world/office_shapes.h"
-#include "sim/world/office_site.h"
+#include "sim/buildings/building_site.h"
+#include "sim/buildings/office_furniture.h"
+#include "sim/buildings/wire_shapes.h"
 
 namespace vernier::sim::internal {
 
@@ -42,7 +42,7 @@ void row_of_books(Shapes& loose, double x, double end, double board, RandomStrea
   }
 }
 
-void fill_board(OfficeSite& site, double x, double board, RandomStream& draws) {
+void fill_board(BuildingSite& site, double x, double board, RandomStream& draws) {
   const double full = x + shelf_clear_m;
   const double start = x + draws.uniform(0.005, 0.15);
   const double kind = draws.uniform();
@@ -81,14 +81,17 @@ void poster(Shapes& loose, const Vector2d& low, const Vector2d& high, RandomStre
 
 }  // namespace
 
-void fill_bookshelf(OfficeSite& site, const QuarterFrame& frame, double x_m, RandomStream& draws) {
+void fill_bookshelf(BuildingSite& site,
+                    const QuarterFrame& frame,
+                    double x_m,
+                    RandomStream& draws) {
   site.loose().frame = frame;
   for (const double board : shelf_boards_m) {
     fill_board(site, x_m + shelf_side_m, board, draws);
   }
 }
 
-void pin_papers(OfficeSite& site,
+void pin_papers(BuildingSite& site,
                 const QuarterFrame& frame,
                 const Vector2d& low_m,
                 const Vector2d& high_m,
@@ -111,7 +114,7 @@ void pin_papers(OfficeSite& site,
   }
 }
 
-void litter_top(OfficeSite& site,
+void litter_top(BuildingSite& site,
                 const QuarterFrame& frame,
                 const Vector3d& corner_m,
                 const Vector2d& size_m,
@@ -131,7 +134,7 @@ void litter_top(OfficeSite& site,
   }
 }
 
-void stack_cartons(OfficeSite& site,
+void stack_cartons(BuildingSite& site,
                    const QuarterFrame& frame,
                    const Vector3d& corner_m,
                    const Vector2d& size_m,
@@ -147,7 +150,7 @@ void stack_cartons(OfficeSite& site,
   }
 }
 
-void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, RandomStream& draws) {
+void hang_pictures(BuildingSite& site, const RoomWall& wall, int tries, RandomStream& draws) {
   for (int i = 0; i < tries; ++i) {
     const double width = draws.uniform(0.25, 0.95), height = draws.uniform(0.25, 0.75);
     const Vector2d low{draws.uniform(0.05, std::max(0.06, wall.length_m - width - 0.05)),
@@ -166,7 +169,7 @@ void hang_pictures(OfficeSite& site, const OfficeWall& wall, int tries, RandomSt
   }
 }
 
-void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, RandomStream& draws) {
+void drop_cartons(BuildingSite& site, const RoomWall& wall, int tries, RandomStream& draws) {
   for (int i = 0; i < tries; ++i) {
     const Vector3d size{draws.uniform(0.25, 0.6), draws.uniform(0.2, 0.45),
                         draws.uniform(0.2, 0.5)};
@@ -181,7 +184,7 @@ void drop_cartons(OfficeSite& site, const OfficeWall& wall, int tries, RandomStr
   }
 }
 
-void run_cables(OfficeSite& site, const OfficeWall& wall, RandomStream& draws) {
+void run_cables(BuildingSite& site, const RoomWall& wall, RandomStream& draws) {
   const double ceiling = site.room().high_m.z();
   const double width = draws.uniform(0.12, 0.3), depth = draws.uniform(0.1, 0.25);
   const AlignedBox3d duct(Vector3d(0, 0, 0), Vector3d(width, depth, ceiling));

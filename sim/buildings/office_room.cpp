@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/world/office_room.h"
+#include "sim/buildings/office_room.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <cstdint>
 
 #include "calib/statistics/random.h"
-#include "sim/world/office_clutter.h"
-#include "sim/world/office_furniture.h"
-#include "sim/world/office_shapes.h"
-#include "sim/world/office_site.h"
+#include "sim/buildings/building_site.h"
+#include "sim/buildings/office_clutter.h"
+#include "sim/buildings/office_furniture.h"
+#include "sim/buildings/wire_shapes.h"
 
 namespace vernier::sim::internal {
 
@@ -69,7 +69,7 @@ int draw_furniture(const Style& style, RandomStream& draws) {
 }
 
 // A chair turns within its circle; it may reach below the board in front of it.
-void place_chair(OfficeSite& site,
+void place_chair(BuildingSite& site,
                  const char* name,
                  const QuarterFrame& frame,
                  const Vector2d& middle,
@@ -84,7 +84,7 @@ void place_chair(OfficeSite& site,
   site.place(name, frame, {middle.x(), middle.y(), 0}, yaw_deg);
 }
 
-void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
+void equip_desk(BuildingSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
   const double seat = x + draws.uniform(0.55, 0.95);
   const int screens = 1 + static_cast<int>(draws.below(2));
   for (int i = 0; i < screens; ++i) {
@@ -113,7 +113,7 @@ void equip_desk(OfficeSite& site, const QuarterFrame& frame, double x, RandomStr
   if (draws.below(2)) site.try_place("bin", frame, {x - 0.2, draws.uniform(0.2, 0.5), 0});
 }
 
-void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
+void equip_table(BuildingSite& site, const QuarterFrame& frame, double x, RandomStream& draws) {
   const int chairs = 1 + static_cast<int>(draws.below(2));
   for (int i = 0; i < chairs; ++i) {
     const double at = x + (chairs == 1 ? 0.6 : 0.26 + 0.68 * i) + draws.uniform(-0.03, 0.03);
@@ -124,7 +124,7 @@ void equip_table(OfficeSite& site, const QuarterFrame& frame, double x, RandomSt
   litter_top(site, frame, {x + 0.03, 0.05, board_top_m}, {1.14, 0.62}, things, draws);
 }
 
-void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, RandomStream& draws) {
+void equip(BuildingSite& site, int kind, const QuarterFrame& frame, double x, RandomStream& draws) {
   switch (kind) {
     case furniture::desk:
       return equip_desk(site, frame, x, draws);
@@ -144,8 +144,8 @@ void equip(OfficeSite& site, int kind, const QuarterFrame& frame, double x, Rand
   }
 }
 
-void furnish_wall(OfficeSite& site, int side, const Style& style) {
-  const OfficeWall wall = site.room().wall(side);
+void furnish_wall(BuildingSite& site, int side, const Style& style) {
+  const RoomWall wall = site.room().wall(side);
   std::uint32_t item = wall_item + 1000 * side;
   double x = site.draws(item).uniform(0.03, 0.5);
   while (x < wall.length_m) {
@@ -167,7 +167,7 @@ void furnish_wall(OfficeSite& site, int side, const Style& style) {
   }
 }
 
-void open_windows(OfficeSite& site, const OfficeWall& wall) {
+void open_windows(BuildingSite& site, const RoomWall& wall) {
   RandomStream draws = site.draws(window_item);
   const int windows = std::max(1, static_cast<int>(std::floor(wall.length_m / 3.2)));
   const double share = wall.length_m / windows;
@@ -183,7 +183,7 @@ void open_windows(OfficeSite& site, const OfficeWall& wall) {
   }
 }
 
-void fit_ceiling(OfficeSite& site) {
+void fit_ceiling(BuildingSite& site) {
   RandomStream draws = site.draws(light_item);
   const Vector3d low = site.room().low_m, size = site.room().high_m - low;
   const bool across = draws.below(2);
@@ -204,7 +204,7 @@ void fit_ceiling(OfficeSite& site) {
 }
 
 // The leaf beside the opening, on the side with more wall, and the switch on the other.
-void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
+void hang_door(BuildingSite& site, const RoomWall& wall, double door_x) {
   RandomStream draws = site.draws(door_item);
   const double half = door_width_m / 2 + casing_m + 0.02;
   site.occupy(wall.frame * AlignedBox3d(Vector3d(door_x - half, 0, 0),
@@ -218,8 +218,8 @@ void hang_door(OfficeSite& site, const OfficeWall& wall, double door_x) {
                  {leaf_right ? door_x - half - 0.13 : door_x + half + 0.05, 0, 0});
 }
 
-void mount_boards(OfficeSite& site, int side) {
-  const OfficeWall wall = site.room().wall(side);
+void mount_boards(BuildingSite& site, int side) {
+  const RoomWall wall = site.room().wall(side);
   RandomStream draws = site.draws(board_item + side);
   for (int i = 0; i < 8; ++i) {
     const bool notice = draws.below(2);
@@ -232,8 +232,8 @@ void mount_boards(OfficeSite& site, int side) {
   }
 }
 
-void fit_sockets(OfficeSite& site, int side) {
-  const OfficeWall wall = site.room().wall(side);
+void fit_sockets(BuildingSite& site, int side) {
+  const RoomWall wall = site.room().wall(side);
   RandomStream draws = site.draws(socket_item + side);
   const int sockets = 1 + static_cast<int>(wall.length_m / 3);
   for (int i = 0; i < sockets; ++i) {
@@ -244,7 +244,7 @@ void fit_sockets(OfficeSite& site, int side) {
 
 }  // namespace
 
-void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
+void furnish_room(BuildingSite& site, int window_side, double door_x_m) {
   const Style& style = styles[site.draws(style_item).below(styles.size())];
   const int door_side = (window_side + 2) % 4;
   hang_door(site, site.room().wall(door_side), door_x_m);
@@ -255,7 +255,7 @@ void furnish_room(OfficeSite& site, int window_side, double door_x_m) {
   furnish_wall(site, window_side, style);
   furnish_wall(site, door_side, style);
   for (int side = 0; side < 4; ++side) {
-    const OfficeWall wall = site.room().wall(side);
+    const RoomWall wall = site.room().wall(side);
     mount_boards(site, side);
     fit_sockets(site, side);
     RandomStream cables = site.draws(cable_item + side);

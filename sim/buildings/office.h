@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "sim/buildings/space.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -14,6 +15,7 @@ struct OfficeOptions {
   Eigen::Vector3d size_m{20, 15, 2.5};  ///< outer length, width and height
   double corridor_width_m = 1.8;
   double room_width_m = 4.0;  ///< target; rooms divide the length evenly
+  OpenEnds open;              ///< doorways at the ends of the corridor
 };
 
 /// Generates an office floor from a seed: a corridor along x with rooms on both sides. Door frames,

@@ -4,7 +4,7 @@
 """How time and memory of a study of one trial grow with the world: the shipped workshop repeated
 K times side by side, each with its route, so that every place has K - 1 others that look the same.
 
-    world_growth.py PROGRAM [K…]
+    study_growth.py PROGRAM [K…]
 """
 import os
 import pathlib

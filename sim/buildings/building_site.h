@@ -11,40 +11,51 @@
 
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/random.h"
+#include "sim/buildings/wire_shapes.h"
 #include "sim/world.h"
-#include "sim/world/office_shapes.h"
 
 namespace vernier::sim::internal {
 
-/// The stream of all draws of a generated office.
-inline constexpr auto office_draws =
+/// The stream of all draws of a generated building.
+inline constexpr auto building_draws =
     static_cast<std::uint32_t>(vernier::internal::DrawSource::office);
 
 /// One wall of a room seen from inside: x along it, y into the room, z up.
-struct OfficeWall {
+struct RoomWall {
   QuarterFrame frame;
   double length_m = 0;
 };
 
 /// A rectangle of floor with its four walls: 0 at low y, 1 at high x, 2 at high y, 3 at low x.
-struct OfficeRoom {
+struct RectangularRoom {
   std::uint32_t number = 0;  ///< key of its draws
   Eigen::Vector3d low_m, high_m;
 
-  OfficeWall wall(int side) const;
+  RoomWall wall(int side) const;
 };
 
-/// Shortest horizontal distance from a polyline on the floor to an upright box.
-double distance_to_path(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector2d>& path_m);
+/// A path on the floor that furniture keeps clear of.
+using FloorPath = std::vector<Eigen::Vector2d>;
 
-/// Assembles an office: places templates and loose objects in the current room, and keeps them
+/// Shortest horizontal distance from a polyline on the floor to an upright box.
+double distance_to_path(const Eigen::AlignedBox3d& box, const FloorPath& path_m);
+
+/// Assembles a building: places templates and loose objects in the current room, and keeps them
 /// apart from each other and from the route.
-class OfficeSite {
+class BuildingSite {
  public:
-  explicit OfficeSite(std::uint64_t seed);
+  explicit BuildingSite(std::uint64_t seed);
 
   /// Begins a room; objects placed in it stay clear of `path_m`.
-  void enter(const OfficeRoom& room, const std::vector<Eigen::Vector2d>& path_m);
+  void enter(const RectangularRoom& room, const FloorPath& path_m);
+
+  /// Begins a room that is the union of `parts`; an object lies in one of them.
+  void enter(std::uint32_t number,
+             const std::vector<Eigen::AlignedBox3d>& parts,
+             const std::vector<FloorPath>& paths_m);
+
+  /// A template that the site shall know, from now on.
+  void define(const WorldTemplate& entry);
 
   /// Random stream of one item of the current room.
   vernier::internal::RandomStream draws(std::uint32_t item) const;
@@ -70,7 +81,7 @@ class OfficeSite {
 
   WorldDescription& world() { return world_; }
   Shapes& loose() { return loose_; }
-  const OfficeRoom& room() const { return room_; }
+  const RectangularRoom& room() const { return room_; }
 
   /// The description with all loose features, without templates that were never placed.
   WorldDescription finish();
@@ -80,8 +91,9 @@ class OfficeSite {
   WorldDescription world_;
   std::map<std::string, Eigen::AlignedBox3d> bounds_;
   Shapes loose_;
-  OfficeRoom room_;
-  std::vector<Eigen::Vector2d> path_m_;
+  RectangularRoom room_;
+  std::vector<Eigen::AlignedBox3d> parts_;  ///< of the current room, a hair larger
+  std::vector<FloorPath> paths_m_;
   std::vector<Eigen::AlignedBox3d> occupied_;
 };
 

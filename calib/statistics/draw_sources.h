@@ -37,6 +37,7 @@ enum class DrawSource : std::uint32_t {
   moved_furniture = 33,     // which objects moved since the map was recorded, and whereto
   surface_appearance = 34,  // reflectances, textures and painted lines of rendered worlds
   sensor_noise = 35,        // photons and read noise of rendered images
+  unseen_edges = 36,        // edges that no image shows
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

@@ -30,7 +30,7 @@ p { max-width: 46rem; }
 figure { margin: 0; border: 1px solid #d5dbe3; border-radius: 6px; padding: 8px; }
 figcaption { font-size: .85rem; margin-bottom: 4px; }
 svg { width: 100%; height: auto; display: block; }
-svg text { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
+svg > * { paint-order: stroke; } svg > :is(text) { stroke: #fff; stroke-width: 3px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .82rem; }
 th, td { padding: 3px 8px; text-align: right; border-bottom: 1px solid #e3e8ee; white-space: nowrap; }

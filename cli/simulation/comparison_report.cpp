@@ -97,6 +97,7 @@ ComparisonReport comparison_report(const ComparedEdges& compared,
   report.sources = compared_sources(compared, 0, measuring);
   report.all = edge_figures(compared, [](const EdgeSample&) { return true; });
   report.tables = comparison_tables(compared);
+  report.unseen_again = unseen_again(compared);
   report.how = how;
   return report;
 }
@@ -106,7 +107,8 @@ Json comparison_json(const ComparisonReport& report) {
                {"version", 1},
                {"how", report.how},
                {"pairs", report.pairs},
-               {"false_segments", report.false_segments}};
+               {"false_segments", report.false_segments},
+               {"unseen_again", json_number(report.unseen_again)}};
   for (const ComparedSource& s : report.sources) {
     json["sources"][s.key] = {
         {"shown", json_number(s.shown.value)},
@@ -131,6 +133,11 @@ std::string comparison_text(const ComparisonReport& report) {
   std::string text = fmt::format("{:<20}{:>9}{:>20}{:>8}{:>9}\n", "source", "shown",
                                  "95 % over pairs", "n", "default");
   for (const ComparedSource& s : report.sources) text += source_line(s);
+  if (!std::isnan(report.unseen_again)) {
+    text += fmt::format(
+        "an edge unseen in one view is unseen in {:.0f} % of the other views of its segment\n",
+        100 * report.unseen_again);
+  }
   std::string head = fmt::format("\n{:<24}{:>7}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}",
                                  "", "edges", "left %", "pair %", "none %", "|shift|", "common",
                                  "indep.", "across", "along", "ends %", "T along");

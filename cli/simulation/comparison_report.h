@@ -18,6 +18,7 @@ namespace vernier::cli {
 struct ComparisonReport {
   std::vector<std::string> matchers;
   int pairs = 0, false_segments = 0;
+  double unseen_again = 0;  ///< of edges unseen in one view, in another
   std::vector<ComparedSource> sources;
   EdgeFigures all;
   std::vector<ComparisonTable> tables;

@@ -34,16 +34,27 @@ double default_of(std::string_view key) {
 
 double share(const Sums& s) { return s.whole > 0 ? s.part / s.whole : std::nan(""); }
 
-ComparedSource edge_loss(const ComparedEdges& compared, const MeasuringOptions& options) {
+ComparedSource unseen(const ComparedEdges& compared, const MeasuringOptions& options) {
   SumsByPair sums;
   for (const EdgeSample& edge : compared.edges) {
+    sums[edge.pair].part += is_unseen(edge) ? 1 : 0;
+    sums[edge.pair].whole += 1;
+  }
+  return {"unseen", measured_ratio(sums, static_cast<int>(compared.edges.size()), options, share),
+          default_of("unseen"), "true edges of which no part is on segments of both images"};
+}
+
+ComparedSource edge_loss(const ComparedEdges& compared, const MeasuringOptions& options) {
+  SumsByPair sums;
+  int edges = 0;
+  for (const EdgeSample& edge : compared.edges) {
+    if (is_unseen(edge)) continue;
     sums[edge.pair].part += edge.length_px - edge.both_found_px;
     sums[edge.pair].whole += edge.length_px;
+    ++edges;
   }
-  return {"edge_loss",
-          measured_ratio(sums, static_cast<int>(compared.edges.size()), options, share),
-          default_of("edge_loss"),
-          "share of the length of true edges that is not on segments of both images"};
+  return {"edge_loss", measured_ratio(sums, edges, options, share), default_of("edge_loss"),
+          "share of the length of the other true edges that is not on segments of both images"};
 }
 
 ComparedSource lateral_shift(const ComparedEdges& compared, const MeasuringOptions& options) {
@@ -137,9 +148,9 @@ ComparedSource clutter(const ComparedEdges& compared, const MeasuringOptions& op
 std::vector<ComparedSource> compared_sources(const ComparedEdges& compared,
                                              std::size_t matcher,
                                              const MeasuringOptions& options) {
-  std::vector<ComparedSource> sources{clutter(compared, options), lateral_shift(compared, options),
-                                      edge_loss(compared, options),
-                                      endpoint_sigma(compared, options)};
+  std::vector<ComparedSource> sources{
+      unseen(compared, options), clutter(compared, options), lateral_shift(compared, options),
+      edge_loss(compared, options), endpoint_sigma(compared, options)};
   for (ComparedSource& source : stereo_mismatch(compared, matcher, options)) {
     sources.push_back(std::move(source));
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <string>
 
@@ -81,7 +82,7 @@ void add_loss(
   f.pair_loss += loss;
   if (loss <= hardly * edge.length_px) {
     ++f.kept_whole;
-  } else if (loss >= (1 - hardly) * edge.length_px) {
+  } else if (is_unseen(edge)) {
     ++f.lost_whole;
   } else {
     ++partly;
@@ -159,6 +160,23 @@ double robust_deviation(const std::vector<double>& values) {
   std::vector<double> distances;
   for (const double x : values) distances.push_back(std::abs(x - middle));
   return 1.4826 * median_or_zero(distances);
+}
+
+double unseen_again(const ComparedEdges& compared) {
+  struct Views {
+    double all = 0, unseen = 0;
+  };
+  std::map<int, Views> of_segment;
+  for (const EdgeSample& edge : compared.edges) {
+    ++of_segment[edge.segment].all;
+    if (is_unseen(edge)) ++of_segment[edge.segment].unseen;
+  }
+  double again = 0, pairs = 0;
+  for (const auto& [segment, views] : of_segment) {
+    again += views.unseen * (views.unseen - 1);
+    pairs += views.unseen * (views.all - 1);
+  }
+  return ratio(again, pairs);
 }
 
 EdgeFigures edge_figures(const ComparedEdges& compared, const EdgeFilter& of) {

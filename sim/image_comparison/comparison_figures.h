@@ -62,6 +62,10 @@ bool is_clear(const EdgeSample& edge);
 /// distance of the nearest edge, and length.
 std::vector<ComparisonTable> comparison_tables(const ComparedEdges& compared);
 
+/// Of edges unseen in one view: how often an edge of the same segment is unseen in another. NaN if
+/// there are no two views of one.
+double unseen_again(const ComparedEdges& compared);
+
 /// Robust standard deviation: 1.4826 times the median distance from the median. 0 of none.
 double robust_deviation(const std::vector<double>& values);
 

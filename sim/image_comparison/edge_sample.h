@@ -33,6 +33,7 @@ struct MatchedEdge {
 /// What became of one edge that both eyes see.
 struct EdgeSample {
   int pair = 0;
+  int segment = 0;  ///< of the world
   EdgeAppearance appearance = EdgeAppearance::border;
   double contrast = 0;   ///< grey levels across it in the noise-free left image
   double angle_rad = 0;  ///< to the rows
@@ -56,6 +57,12 @@ struct EdgeSample {
   std::array<EndError, 2> ends;
   std::vector<MatchedEdge> matches;  ///< one per matcher
 };
+
+/// At least 98 % of its length is not on segments of both images.
+inline bool is_unseen(const EdgeSample& edge) {
+  constexpr double hardly = 0.02;
+  return edge.both_found_px <= hardly * edge.length_px;
+}
 
 /// All of a pair, or of many.
 struct ComparedEdges {

@@ -143,6 +143,7 @@ class EdgeComparison {
 
   /// False if no part of the edge has a source in both images.
   bool compare(const TrueEdge& edge, EdgeSample& sample) const {
+    sample.segment = edge.segment;
     sample.appearance = edge.appearance;
     sample.angle_rad = edge.angle_rad();
     sample.depth_m = edge.depth_m;

@@ -26,6 +26,14 @@ struct VisibleInterval {
   double t0 = 0, t1 = 1;
 };
 
+enum class VisibilityMethod {
+  exact,
+  /// The memo's way: what the nearest of the world's view sets names is seen, whole as far as it
+  /// lies in the image, and nothing else; from a pose that no set reaches nothing is. Corners are
+  /// exact all the same.
+  view_sets,
+};
+
 /// Hidden-line removal in a world of opaque surfaces, exact up to rounding.
 ///
 /// A point x is hidden from the eye o by a convex surface P with plane n·x = d if and only if it
@@ -36,8 +44,8 @@ struct VisibleInterval {
 class Visibility {
  public:
   /// Keeps a reference to `world`, which must outlive this. Splits non-convex surfaces into convex
-  /// ones once.
-  explicit Visibility(const World& world);
+  /// ones once. Throws Error for view sets of a world that has none.
+  explicit Visibility(const World& world, VisibilityMethod method = VisibilityMethod::exact);
   ~Visibility();
   Visibility(Visibility&&) noexcept;
 

@@ -42,6 +42,13 @@ struct RouteLeg {
   std::vector<Eigen::Vector2d> points_m;
 };
 
+/// The segments that are seen from about a reference pose, by their indices in the world: a set of
+/// the memo's view-dependency file.
+struct ViewSet {
+  localise::Pose2D at;
+  std::vector<int> segments;  ///< ascending
+};
+
 /// A building as a wire frame with opaque surfaces, in world coordinates.
 struct World {
   std::string name;
@@ -50,6 +57,7 @@ struct World {
   std::vector<WorldSurface> surfaces;
   std::vector<WorldObject> objects;
   std::vector<RouteLeg> route;  ///< the path "default" of studies
+  std::vector<ViewSet> view_sets;
 };
 
 /// Features in the frame of a template, or of the world.
@@ -77,10 +85,12 @@ struct WorldDescription {
   std::vector<WorldInstance> instances;
   FeatureSet loose;
   std::vector<RouteLeg> route;
+  std::vector<ViewSet> view_sets;  ///< of the world that is built: loose segments come first
 };
 
 /// Instantiates the templates. Object 0 holds the loose features, object i + 1 instance i. Throws
-/// Error for an instance of an unknown template, a segment shorter than 1 mm, and a surface with
+/// Error for an instance of an unknown template, a view set that names a segment twice or one that
+/// is not there, a segment shorter than 1 mm, and a surface with
 /// fewer than three points or not planar to 1 mm, naming template and index; and for a world larger
 /// than 10 km or 1,000,000 features of a kind (docs/robustness.md).
 World build_world(const WorldDescription& description);

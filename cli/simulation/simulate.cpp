@@ -42,7 +42,7 @@ namespace vernier::cli {
 namespace {
 
 struct SimulateArguments {
-  std::string world = "workshop", rig = "nominal", pose, picture;
+  std::string world = "workshop", rig = "nominal", pose, picture, visibility = "exact";
   double height_m = 1.2, pitch_deg = 0;
   std::uint64_t seed = 1;
   std::uint32_t trial = 0;
@@ -67,7 +67,14 @@ void run(const SimulateArguments& options, Session& session) {
   constexpr double degree = std::numbers::pi / 180;
   const Pose2D pose{at[0], at[1], at[2] * degree};
 
-  const Visibility visibility(world);
+  if (options.visibility == "view_sets" && sources.moved > 0) {
+    throw Error("--visibility view_sets", "is given beside a source that moves furniture",
+                "leave one out");
+  }
+  const Visibility visibility = with_errors_of(options.world, [&] {
+    return Visibility(world, options.visibility == "exact" ? VisibilityMethod::exact
+                                                           : VisibilityMethod::view_sets);
+  });
   if (const std::string fault = standing_fault(visibility, pose, options.height_m);
       !fault.empty()) {
     throw Error("--pose " + options.pose, fault,
@@ -125,6 +132,10 @@ void add_simulate(CLI::App& app, Session& session) {
                "vernier simulate --world workshop --rig nominal --pose 10,7.5,0 "
                "--seed 1 --json");
   verb->add_option("--world", o->world, "world file or shipped name")->capture_default_str();
+  verb->add_option("--visibility", o->visibility,
+                   "exact, or view_sets: what the world's [[view_dependency]] names")
+      ->check(CLI::IsMember({"exact", "view_sets"}))
+      ->capture_default_str();
   verb->add_option("--rig", o->rig, "rig file or shipped name")->capture_default_str();
   verb->add_option("--pose", o->pose, "x,y,heading_deg (metres; heading from +x)")->required();
   verb->add_option("--height-m", o->height_m, "camera height, metres")

@@ -23,6 +23,7 @@
 #include "cli/program/share_folder.h"
 #include "cli/simulation/plan_picture.h"
 #include "cli/simulation/world_import.h"
+#include "cli/simulation/world_sets.h"
 #include "cli/simulation/world_view.h"
 #include "sim/buildings/building.h"
 #include "sim/experiment.h"
@@ -187,6 +188,13 @@ void info(const InfoOptions& options, Session& session) {
         options.poses, 100 * aliasing.unique_share, 100 * aliasing.undetermined_share,
         100 * aliasing.ceiling);
   }
+  if (!world.view_sets.empty() && !world.route.empty() && options.poses > 0) {
+    const SetFigures figures =
+        set_figures(world, read_rig(find_rig(options.rig)).estimate.rig, options.poses);
+    json["view_sets"] = figures.json;
+    json["view_sets"]["sets"] = world.view_sets.size();
+    text += fmt::format("  {} view sets\n", world.view_sets.size()) + figures.text;
+  }
   session.result(json, text);
 }
 
@@ -281,6 +289,7 @@ void add_world(CLI::App& app, Session& session) {
       ->capture_default_str();
   router->callback([r, &session] { session.action = [=, &session] { route(*r, session); }; });
 
+  add_world_sets(*verb, session);
   add_world_import(*verb, session);
   add_world_view(*verb, session);
 }

@@ -25,7 +25,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double gap_m = 3, shortest_step_m = 0.1, straight_m = 0.05;
+constexpr double gap_m = 3, shortest_step_m = 0.1, off_way_m = 0.05;
 constexpr double upright_cosine = 0.966;  // 15 degrees
 
 Vector2d rounded(const Vector2d& x) { return (x * 1e4).array().round() / 1e4; }
@@ -37,7 +37,7 @@ double off_line(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
   return (x - a - t * d).norm();
 }
 
-// Keeps what is further than straight_m from the line between two kept points, without recursion:
+// Keeps what is further than off_way_m from the line between two kept points, without recursion:
 // paths may be long.
 std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
   std::vector<bool> kept(points.size());
@@ -46,7 +46,7 @@ std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
   while (!open.empty()) {
     const auto [from, to] = open.back();
     open.pop_back();
-    double furthest = straight_m;
+    double furthest = off_way_m;
     std::size_t at = 0;
     for (std::size_t i = from + 1; i < to; ++i) {
       const double off = off_line(points[i], points[from], points[to]);

@@ -329,7 +329,8 @@ void run_study(const Study& study, const StudyRun& run) {
     return;
   }
   check_processor(stored, run.folder);
-  const Visibility visibility(study.world);
+  const Visibility visibility = with_errors_of(
+      study.file.world, [&] { return Visibility(study.world, study.file.visibility); });
   QueryWorlds worlds(study, visibility);
   check_cells(study, visibility, worlds);
 

@@ -19,6 +19,7 @@
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
+#include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
@@ -73,8 +74,16 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
 
 void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
   if (const auto* world = section(root, "world")) {
-    check_keys(*world, {"file"}, "[world]");
+    check_keys(*world, {"file", "visibility"}, "[world]");
     study.world = text(required(*world, "file", "[world]"), "world.file");
+    if (const auto* visibility = world->get("visibility")) {
+      const std::string method = text(*visibility, "world.visibility");
+      if (method != "exact" && method != "view_sets") {
+        fail(*visibility, "world.visibility = " + in_quotes(method) + " is unknown",
+             "use \"exact\" or \"view_sets\"");
+      }
+      if (method == "view_sets") study.visibility = VisibilityMethod::view_sets;
+    }
   }
   if (const auto* rig = section(root, "rig")) {
     check_keys(*rig, {"file"}, "[rig]");
@@ -215,6 +224,11 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   read_sweep(root, study);
   check_sweep_size(root, study);
   add_cells(root, study);
+  for (const StudyCell& cell : study.cells) {
+    if (study.visibility == VisibilityMethod::exact || cell.experiment.sources.moved == 0) continue;
+    throw Error(place(), "sources.moved moves what the view sets of the world name",
+                "set world.visibility = \"exact\", or moved = 0");
+  }
   return study;
 }
 

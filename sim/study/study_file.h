@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/experiment.h"
+#include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
@@ -27,6 +28,7 @@ struct StudyFile {
   int trials = 900;           ///< per cell
   int trials_per_block = 50;  ///< block_size(trials)
   std::string world = "workshop";
+  VisibilityMethod visibility = VisibilityMethod::exact;
   std::string rig = "nominal";
   std::filesystem::path sources;        ///< file that [sources] is based on; empty: none
   std::vector<std::string> sweep_keys;  ///< the first varies slowest

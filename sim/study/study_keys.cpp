@@ -31,6 +31,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
 #include "sim/study/told_rig.h"
+#include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
@@ -153,6 +154,7 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
                              {"world", study.world_fingerprint},
                              {"rig", study.rig_fingerprint}};
+  if (study.file.visibility != VisibilityMethod::exact) key["world.visibility"] = "view_sets";
   const std::set<std::string> left_out = newer_at_default(cell.experiment.sources);
   for (const auto& [name, value] : cell.settings) {
     if (name != "localiser.knows_endpoint_sigma" && !left_out.contains(name)) key[name] = value;
@@ -185,6 +187,7 @@ std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
                                 study.world_fingerprint, study.rig_fingerprint, name(s.protocol),
                                 s.mount.height_m, s.mount.pitch_rad, s.seed);
   if (s.sources.moved > 0) key += fmt::format(" moved {}", s.sources.moved);  // of that world
+  if (study.file.visibility != VisibilityMethod::exact) key += " by view sets";
   return key;
 }
 

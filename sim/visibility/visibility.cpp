@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "sim/visibility/shadow.h"
 #include "sim/visibility/shadow_grid.h"
 #include "sim/visibility/view_frustum.h"
+#include "sim/visibility/view_sets.h"
 #include "sim/world.h"
 
 namespace vernier::sim {
@@ -130,8 +133,9 @@ BoxTree tree_of(const std::vector<WorldCorner>& corners) {
 }  // namespace
 
 struct Visibility::Index {
-  explicit Index(const World& whole)
+  Index(const World& whole, VisibilityMethod how)
       : world(whole),
+        method(how),
         surfaces(convex_surfaces(whole)),
         large(surfaces),
         pieces(tree_of(surfaces)),
@@ -153,6 +157,14 @@ struct Visibility::Index {
     scratch.grid.build(surfaces, scratch.near_pieces, T, frustum, gap);
   }
 
+  /// The segments of the view set that is nearest to a camera.
+  std::span<const int> set_at(const Pose& T) const {
+    const Eigen::Vector3d eye = T.inverse().t, axis = T.R.row(2).transpose();
+    const ViewSet* set =
+        nearest_set(world.view_sets, {eye.x(), eye.y(), std::atan2(axis.y(), axis.x())});
+    return set ? std::span<const int>(set->segments) : std::span<const int>();
+  }
+
   /// Visible runs of some segments, of the view that was prepared.
   std::vector<VisibleInterval> runs_of(std::span<const int> candidates,
                                        const ViewFrustum& frustum,
@@ -165,7 +177,9 @@ struct Visibility::Index {
       const Eigen::Vector3d a = T * world.segments[i].a_m;
       const Eigen::Vector3d b = T * world.segments[i].b_m;
       Stretch open;
-      if (!frustum.clip(a, b, open) || !s.grid.hide(a, b, open, s.hidden)) continue;
+      if (!frustum.clip(a, b, open)) continue;
+      s.hidden.clear();
+      if (method == VisibilityMethod::exact && !s.grid.hide(a, b, open, s.hidden)) continue;
       frustum.in_image(a, b, open, s.inside);
       subtract_intervals(open, s.hidden, s.unhidden);
       intersect(s.unhidden, s.inside, s.seen);
@@ -180,12 +194,19 @@ struct Visibility::Index {
   }
 
   const World& world;
+  VisibilityMethod method;
   ConvexSurfaces surfaces;
   LargeSurfaces large;
   BoxTree pieces, segments, corners;
 };
 
-Visibility::Visibility(const World& world) : index_(new Index(world)) {}
+Visibility::Visibility(const World& world, VisibilityMethod method)
+    : index_(new Index(world, method)) {
+  if (method == VisibilityMethod::view_sets && world.view_sets.empty()) {
+    throw Error("the world", "has no view sets",
+                "add [[view_dependency]], or make them with vernier world sets");
+  }
+}
 Visibility::~Visibility() = default;
 Visibility::Visibility(Visibility&&) noexcept = default;
 
@@ -196,6 +217,10 @@ std::vector<VisibleInterval> Visibility::visible_intervals(const Camera& camera,
                                                            const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
+  if (index_->method == VisibilityMethod::view_sets) {
+    return index_->runs_of(index_->set_at(T_camera_world), frustum, camera, T_camera_world,
+                           options.min_length_px);
+  }
   index_->prepare(frustum, T_camera_world, &index_->segments, gap_m(options));
   return index_->runs_of(scratch.near_features, frustum, camera, T_camera_world,
                          options.min_length_px);
@@ -208,6 +233,13 @@ std::vector<VisibleInterval> Visibility::visible_intervals_of(
     const VisibilityOptions& options) const {
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
+  if (index_->method == VisibilityMethod::view_sets) {
+    std::vector<int> both;
+    const std::span<const int> set = index_->set_at(T_camera_world);
+    std::set_intersection(segments.begin(), segments.end(), set.begin(), set.end(),
+                          std::back_inserter(both));
+    return index_->runs_of(both, frustum, camera, T_camera_world, options.min_length_px);
+  }
   index_->prepare(frustum, T_camera_world, nullptr, gap_m(options));
   return index_->runs_of(segments, frustum, camera, T_camera_world, options.min_length_px);
 }

@@ -8,7 +8,11 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "calib/error.h"
 #include "calib/pose.h"
 #include "sim/world/world_check.h"
 
@@ -49,6 +53,23 @@ void place_features(const FeatureSet& features, const Pose& T, std::int32_t obje
 
 namespace {
 
+void check_view_sets(const std::vector<ViewSet>& sets, std::size_t segments) {
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    int last = -1;
+    for (const int segment : sets[i].segments) {
+      if (segment > last && static_cast<std::size_t>(segment) < segments) {
+        last = segment;
+        continue;
+      }
+      throw Error("view_dependency " + std::to_string(i),
+                  "its segment " + std::to_string(segment) +
+                      (segment <= last ? " is not larger than the one before it"
+                                       : " is not one of the world's " + std::to_string(segments)),
+                  "give ascending indices, from 0");
+    }
+  }
+}
+
 /// Mean of each object's segment ends.
 void find_centres(World& world) {
   std::vector<double> ends(world.objects.size(), 0);
@@ -79,6 +100,8 @@ World build_world(const WorldDescription& description) {
     place_features(by_name.at(instance.template_name)->features, pose_of(instance), object, world);
   }
   find_centres(world);
+  check_view_sets(description.view_sets, world.segments.size());
+  world.view_sets = description.view_sets;
   return world;
 }
 

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/world_file.h"
 
+#include <cstdint>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +19,7 @@
 #include "calib/error.h"
 #include "sim/world.h"
 #include "sim/world/world_check.h"
+#include "sim/world/written_rows.h"
 
 namespace vernier::sim {
 
@@ -40,6 +46,7 @@ class WorldReader : private TomlReader {
   WorldTemplate read_template(const toml::table& table, const std::string& what) const;
   WorldInstance read_instance(const toml::table& table, const std::string& what) const;
   RouteLeg read_route(const toml::table& table, const std::string& what) const;
+  ViewSet read_view_set(const toml::table& table, const std::string& what) const;
   void read_templates(const toml::table& root, WorldDescription& world) const;
   void read_instances(const toml::table& root, WorldDescription& world) const;
 };
@@ -180,6 +187,24 @@ RouteLeg WorldReader::read_route(const toml::table& table, const std::string& wh
   return leg;
 }
 
+ViewSet WorldReader::read_view_set(const toml::table& table, const std::string& what) const {
+  check_keys(table, {"at_m", "heading_deg", "segments"}, "[[view_dependency]]");
+  const Eigen::Vector2d at = numbers<2>(required(table, "at_m", what), what + " at_m");
+  const double heading =
+      number(required(table, "heading_deg", what), what + " heading_deg") * rad_per_deg;
+  ViewSet set{{at.x(), at.y(), heading}, {}};
+  for (const auto& index : list(required(table, "segments", what), what + " segments")) {
+    const std::int64_t segment = integer(index, what + " segment");
+    if (segment < 0 || segment > std::numeric_limits<int>::max() ||
+        (!set.segments.empty() && segment <= set.segments.back())) {
+      fail(index, what + " segment " + std::to_string(segment) + " is not larger than the last",
+           "give ascending indices, from 0");
+    }
+    set.segments.push_back(static_cast<int>(segment));
+  }
+  return set;
+}
+
 void WorldReader::check_header(const toml::table& root) const {
   const toml::node* format = root.get("format");
   if (!format) fail(1, "the file has no format", "add format = \"vernier/world\"");
@@ -197,7 +222,6 @@ void WorldReader::check_header(const toml::table& root) const {
 
 WorldDescription WorldReader::read(const toml::table& root) {
   check_header(root);
-  // [[view_dependency]] is read by the visibility and accepted here.
   check_keys(root,
              {"format", "version", "name", "template", "instance", "loose", "segment", "surface",
               "corner", "route", "view_dependency"},
@@ -210,6 +234,10 @@ WorldDescription WorldReader::read(const toml::table& root) {
   for (const auto* entry : tables(root, "route")) {
     world.route.push_back(read_route(*entry, "route " + std::to_string(world.route.size())));
   }
+  for (const auto* entry : tables(root, "view_dependency")) {
+    world.view_sets.push_back(
+        read_view_set(*entry, "view_dependency " + std::to_string(world.view_sets.size())));
+  }
   if (const auto fault = size_error(world)) throw Error(place(), fault->fault, fault->remedy);
   return world;
 }
@@ -217,7 +245,21 @@ WorldDescription WorldReader::read(const toml::table& root) {
 }  // namespace
 
 WorldDescription parse_world(const std::string& text, const std::string& place) {
-  return WorldReader(place).read(parse_toml(text, place));
+  std::optional<WrittenRows> written = take_written_rows(text);
+  if (!written) return WorldReader(place).read(parse_toml(text, place));
+  WorldDescription world = WorldReader(place).read(parse_toml(written->rest, place));
+  // A list that was taken is empty in the rest; what else the file adds comes after it.
+  const auto join = [](auto& first, auto& then) {
+    first.insert(first.end(), std::make_move_iterator(then.begin()),
+                 std::make_move_iterator(then.end()));
+    then = std::move(first);
+  };
+  FeatureSet& taken = written->features;
+  join(taken.segments_m, world.loose.segments_m);
+  join(taken.surfaces_m, world.loose.surfaces_m);
+  join(taken.corners_m, world.loose.corners_m);
+  if (const auto fault = size_error(world)) throw Error(place, fault->fault, fault->remedy);
+  return world;
 }
 
 WorldDescription read_world(const std::filesystem::path& file) {

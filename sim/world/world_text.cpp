@@ -129,6 +129,16 @@ void append_instance(const WorldInstance& instance, std::string& text) {
   if (yaw_deg != "0") text += "yaw_deg = " + yaw_deg + "\n";
 }
 
+void append_view_set(const ViewSet& set, std::string& text) {
+  text += "\n[[view_dependency]]\nat_m = [" + numbers(Eigen::Vector2d(set.at.x_m, set.at.y_m)) +
+          "]\nheading_deg = " + number(set.at.heading_rad * (180 / std::numbers::pi)) +
+          "\nsegments = [";
+  for (std::size_t i = 0; i < set.segments.size(); ++i) {
+    text += (i > 0 ? ", " : "") + std::to_string(set.segments[i]);
+  }
+  text += "]\n";
+}
+
 }  // namespace
 
 std::string format_world(const WorldDescription& description) {
@@ -149,6 +159,7 @@ std::string format_world(const WorldDescription& description) {
   for (const auto& leg : world.route) {
     text += "\n[[route]]\npoints_m = [" + bracketed(leg.points_m) + "]\n";
   }
+  for (const ViewSet& set : world.view_sets) append_view_set(set, text);
   return text;
 }
 

@@ -68,6 +68,22 @@ class World(verb_calls.ProgramCase):
                                             '-o', 'no.world.toml'))
         self.assertFalse((self.folder / 'no.world.toml').exists())
 
+    def test_view_sets_are_made_used_and_compared(self):
+        self.done('make', '--kind', 'home', '--size-m', '7,6,2.5', '--seed', 2, '-o', 'h.world.toml')
+        made = self.done('sets', 'h.world.toml', '--spacing-m', 1, '--headings', 8, '--poses', 20,
+                         '-o', 's.world.toml')
+        self.assertGreater(made['sets'], 10)
+        self.assertLess(made['agreement']['precision'], 1)
+        info = self.done('info', 's.world.toml', '--poses', 20)
+        self.assertEqual(info['view_sets']['recall'], made['agreement']['recall'])
+        study = '[study]\ntrials = 3\n[world]\nfile = "{}"\nvisibility = "view_sets"\n'
+        for world, code in (('s.world.toml', (0, 3)), ('h.world.toml', (2,))):
+            (self.folder / 'study.toml').write_text(study.format(world))
+            run = subprocess.run([PROGRAM, 'study', 'study.toml', '-o', f'of-{world}', '--threads',
+                                  '1'], capture_output=True, text=True, cwd=self.folder, timeout=120)
+            self.assertIn(run.returncode, code, run.stderr)
+        self.assertIn('has no view sets', run.stderr)
+
     def test_units_and_axes_are_given_or_asked_for(self):
         text = (self.folder / 'room.ply').read_text()
         head, body = text.split('end_header\n')

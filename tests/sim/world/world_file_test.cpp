@@ -10,11 +10,15 @@
 #include <sstream>
 
 #include "calib/error.h"
+#include "sim/buildings/office.h"
 #include "sim/world.h"
+#include "sim/world/written_rows.h"
 
 namespace vernier {
 
 using namespace vernier::sim;
+using sim::internal::make_office;
+using sim::internal::take_written_rows;
 
 namespace {
 
@@ -144,7 +148,9 @@ polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 [[corner]]
 at_m = [1, 0, 0]
 [[view_dependency]]
-anything = "goes"
+at_m = [0, 0]
+heading_deg = 90
+segments = [0, 2]
 )",
                                              "text");
   EXPECT_EQ(world.templates[0].features.segments_m.size(), 3u);
@@ -169,6 +175,58 @@ struct Fault {
   const char* text;
   const char* message;
 };
+
+/// A world of more than 1 MB whose features are all loose, as imported meshes are.
+std::string long_text() {
+  const World office = build_world(make_office(1, {.size_m = {40, 15, 2.5}}));
+  WorldDescription flat;
+  for (const WorldSegment& s : office.segments) flat.loose.segments_m.emplace_back(s.a_m, s.b_m);
+  for (const WorldSurface& s : office.surfaces) flat.loose.surfaces_m.push_back(s.polygon_m);
+  for (const WorldCorner& c : office.corners) flat.loose.corners_m.push_back(c.position_m);
+  flat.route = office.route;
+  return format_world(flat);
+}
+
+// Rows as they are written are read at once, all others by the TOML parser: with a comment in one
+// row that must give the same bits.
+TEST(WorldFile, RowsAsTheyAreWrittenAreReadAsTheParserDoes) {
+  const std::string text = long_text() + "[[segment]]\nsegment = [0, 0, 0, 1, 2, 3]\n";
+  ASSERT_GT(text.size(), 1'000'000u);
+  ASSERT_TRUE(take_written_rows(text));
+  std::string commented = text;
+  commented.insert(commented.find("],\n") + 2, "  # a row");
+  ASSERT_FALSE(take_written_rows(commented));
+  const WorldDescription fast = parse_world(text, "text"), slow = parse_world(commented, "text");
+  EXPECT_EQ(fast.loose.segments_m, slow.loose.segments_m);
+  EXPECT_EQ(fast.loose.surfaces_m, slow.loose.surfaces_m);
+  EXPECT_EQ(fast.loose.corners_m, slow.loose.corners_m);
+  EXPECT_EQ(fast.loose.segments_m.back().second, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(fast.route.size(), slow.route.size());
+  EXPECT_EQ(format_world(fast), format_world(slow));
+}
+
+TEST(WorldFile, FaultsOfLongTextsHaveTheirLines) {
+  const std::string text = long_text();
+  const std::string row = "  [0, 0, 0, 0, 0, 0],\n";
+  const std::size_t at = text.find("surfaces = [") - 2;
+  const auto line = std::to_string(1 + std::count(text.begin(), text.begin() + at, '\n'));
+  std::string zero = text;
+  zero.insert(at, row);
+  EXPECT_NE(message_of(zero).find(":" + line + ": loose segment"), std::string::npos)
+      << message_of(zero);
+  for (const char* odd :
+       {"  [01, 0, 0, 0, 0, 1],\n", "  [1_0, 0, 0, 0, 0, 1],\n", "  [1e0, 0, 0, 0, 0, 1],\n",
+        "  [+1, 0, 0, 0, 0, 1],\n", "  [.5, 0, 0, 0, 0, 1],\n", "  [1., 0, 0, 0, 0, 1],\n",
+        "  [1, 0, 0, 0, 0],\n", "  [1, 0, 0, 0, 0, 1, 2],\n"}) {
+    std::string changed = text;
+    changed.insert(at, odd);
+    EXPECT_FALSE(take_written_rows(changed)) << odd;
+  }
+  // What comes later in the file keeps its line too.
+  const auto lines = std::to_string(1 + std::count(text.begin(), text.end(), '\n'));
+  EXPECT_NE(message_of(text + "[[rute]]\n").find(":" + lines + ": unknown key"), std::string::npos);
+  EXPECT_NE(message_of(text + "[loose]\n").find(":" + lines + ":"), std::string::npos);
+}
 
 class WorldFileFault : public testing::TestWithParam<Fault> {};
 

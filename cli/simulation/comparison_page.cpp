@@ -74,7 +74,7 @@ std::vector<Quantity> quantities(const ComparisonReport& report) {
 
 /// Bars of the groups of a table; a dashed line where the simulator's default is.
 std::string bars(const ComparisonTable& table, const Quantity& quantity) {
-  constexpr int row = 26, left = 165, right = 392, width = 460;
+  constexpr int row = 26, left = 165, right = 365, width = 460;
   double largest = std::isnan(quantity.assumed) ? 0 : quantity.assumed;
   for (const ComparisonGroup& group : table.groups) {
     const double value = quantity.of(group.figures);

@@ -20,6 +20,7 @@
 #include "cli/program/share_folder.h"
 #include "cli/report/report_data.h"
 #include "cli/verbs.h"
+#include "sim/images/ray_scene.h"
 #include "sim/mesh_files/mesh_file.h"
 
 namespace vernier::cli {
@@ -83,6 +84,15 @@ Finding assimp_finding() {
           !version.empty()};
 }
 
+Finding embree_finding() {
+  const std::string version = embree_version();
+  return {"Embree",
+          !version.empty() ? version
+                           : "missing: install Debian's libembree-dev and rebuild; used by vernier "
+                             "render",
+          !version.empty()};
+}
+
 Finding world_view_finding() {
   const bool there = !shipped_file("page/three.js").empty();
   return {"three.js",
@@ -143,6 +153,7 @@ std::vector<Finding> findings() {
       plots_finding(),
       library_finding(),
       assimp_finding(),
+      embree_finding(),
       world_view_finding(),
       python_finding(),
       image_finding(),

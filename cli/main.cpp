@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
   cli::add_simulate(app, session);
   cli::add_drive(app, session);
   cli::add_servo(app, session);
+  cli::add_render(app, session);
   cli::add_study(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);

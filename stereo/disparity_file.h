@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace vernier::stereo {
@@ -50,5 +51,8 @@ DisparityMap read_disparity(const std::filesystem::path& file,
 /// KITTI's 256 per pixel (unknown is 0; known disparities below 1/512 px become 1/256 px). Throws
 /// Error for other extensions and, for PNG, for disparities below 0 or above 255.99 px.
 void write_disparity(const std::filesystem::path& file, const DisparityMap& map);
+
+/// The content of the .pfm file that write_disparity makes. Throws Error for a map without values.
+std::string disparity_pfm(const DisparityMap& map);
 
 }  // namespace vernier::stereo

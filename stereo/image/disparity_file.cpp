@@ -134,15 +134,12 @@ StoredMap parse_map(const std::filesystem::path& file) {
               "use one of these formats");
 }
 
-std::string pfm_bytes(const DisparityMap& map) {
-  std::string bytes = fmt::format("Pf\n{} {}\n-1\n", map.width_px, map.height_px);
-  for (int y = map.height_px - 1; y >= 0; --y) {
-    for (int x = 0; x < map.width_px; ++x) {
-      append_number(bytes, map.known(x, y) ? map(x, y) : std::numeric_limits<float>::infinity(),
-                    false);
-    }
+void check_size(const DisparityMap& map, const std::string& place) {
+  if (map.width_px < 1 || map.height_px < 1 ||
+      map.values.size() != static_cast<std::size_t>(map.width_px) * map.height_px) {
+    throw Error(place, "the number of values does not match the map's size",
+                "give width x height values");
   }
-  return bytes;
 }
 
 std::string png_bytes(const DisparityMap& map, const std::string& place) {
@@ -185,15 +182,23 @@ DisparityMap read_disparity(const std::filesystem::path& file,
   return map;
 }
 
+std::string disparity_pfm(const DisparityMap& map) {
+  check_size(map, "disparity map");
+  std::string bytes = fmt::format("Pf\n{} {}\n-1\n", map.width_px, map.height_px);
+  for (int y = map.height_px - 1; y >= 0; --y) {
+    for (int x = 0; x < map.width_px; ++x) {
+      append_number(bytes, map.known(x, y) ? map(x, y) : std::numeric_limits<float>::infinity(),
+                    false);
+    }
+  }
+  return bytes;
+}
+
 void write_disparity(const std::filesystem::path& file, const DisparityMap& map) {
   const std::string kind = file.extension().string(), place = file.string();
-  if (map.width_px < 1 || map.height_px < 1 ||
-      map.values.size() != static_cast<std::size_t>(map.width_px) * map.height_px) {
-    throw Error(place, "the number of values does not match the map's size",
-                "give width x height values");
-  }
+  check_size(map, place);
   if (kind == ".pfm") {
-    write_atomically(file, pfm_bytes(map));
+    write_atomically(file, disparity_pfm(map));
   } else if (kind == ".npy") {
     write_atomically(file, numpy_bytes(map.values, map.height_px, map.width_px));
   } else if (kind == ".png") {

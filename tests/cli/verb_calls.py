@@ -170,6 +170,8 @@ def calls():
                        '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
         Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],
              ['out.csv', 'out.svg']),
+        Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
+                        '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),

@@ -12,6 +12,7 @@ const SOURCE_MEANING = {
   "sources.mount_height_m": "The camera's height differs from what is told by this standard deviation, in metres.",
   "sources.mount_pitch_deg": "The camera's pitch differs from what is told by this standard deviation, in degrees.",
   "sources.mount_roll_deg": "The camera's roll, told to be 0, has this standard deviation, in degrees.",
+  "sources.unseen": "unseen is the fraction of the world's edges that no image shows.",
   "sources.clutter": "clutter is the number of false edges, as a fraction of the edges in view.",
   "sources.merge_px": "Parallel lines nearer than merge_px, in pixels, are detected as one.",
   "sources.lateral_shift_px": "ψ_l is the shift of edges by illumination, in pixels.",

@@ -252,7 +252,8 @@ TEST(SourceDistributions, DefaultsAreTheMemos) {
   EXPECT_EQ(defaults.calibration, 1);
   for (const double SourceSettings::*off :
        {&SourceSettings::moved, &SourceSettings::mount_height_m, &SourceSettings::mount_pitch_deg,
-        &SourceSettings::mount_roll_deg, &SourceSettings::clutter, &SourceSettings::merge_px}) {
+        &SourceSettings::mount_roll_deg, &SourceSettings::clutter, &SourceSettings::merge_px,
+        &SourceSettings::unseen}) {
     EXPECT_EQ(defaults.*off, 0);
   }
 }

@@ -77,8 +77,9 @@ def world_files(program, options):
     for seed in range(first, last + 1):
         file = options.output.resolve() / f"world{seed}.world.toml"
         if not file.exists():
-            subprocess.run([program, "world", "make", "--seed", str(seed), "--size-m", options.size_m,
-                            "-o", file, "-q"], check=True)
+            size = ["--size-m", options.size_m] if options.size_m else []
+            subprocess.run([program, "world", "make", "--kind", options.kind, "--seed", str(seed),
+                            *size, "-o", file, "-q"], check=True)
         made.append((f"world{seed}", str(file)))
     return made
 
@@ -126,8 +127,9 @@ def main():
     parser.add_argument("program")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     parser.add_argument("--world", default="workshop")
-    parser.add_argument("--worlds", help="seeds of generated offices, as 201-220")
-    parser.add_argument("--size-m", default="20,15,2.5", help="of generated offices")
+    parser.add_argument("--worlds", help="seeds of generated buildings, as 201-220")
+    parser.add_argument("--kind", default="office", help="of generated buildings (world make)")
+    parser.add_argument("--size-m", help="of generated buildings (default: what suits the kind)")
     parser.add_argument("--trials", type=int, default=10000, help="queries a row and world")
     parser.add_argument("--seed", type=int, default=11)
     parser.add_argument("--psi-c", type=float, default=1)

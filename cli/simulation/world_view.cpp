@@ -29,8 +29,11 @@
 #include "cli/program/share_folder.h"
 #include "cli/simulation/source_options.h"
 #include "localise/place.h"
+#include "sim/mount_error.h"
+#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
+#include "sim/sources.h"
 #include "sim/sources/source_losses.h"
 #include "sim/visibility.h"
 #include "sim/visibility/convex_pieces.h"
@@ -95,16 +98,18 @@ class PoseViews {
   PoseViews(const Visibility& visibility, const Rig& rig, const ViewArguments& options)
       : visibility_(visibility),
         rig_(rig),
-        sensor_(rig, sources_of(options.sources, {})),
+        sources_(sources_of(options.sources, {})),
+        sensor_(rig, sources_),
+        told_mount_{options.height_m, options.pitch_deg * std::numbers::pi / 180},
         seed_(options.seed) {
-    looking_.mount = {options.height_m, options.pitch_deg * std::numbers::pi / 180};
     kinds_.emplace_back("told", "edges that stereo gets");
   }
 
   Json view(const Pose2D& pose, std::uint32_t trial) {
-    const NoiseFreeView seen = look(visibility_, rig_, pose, looking_);
+    const NoiseFreeViewOptions looking = look_from(draw_mount(told_mount_, sources_, seed_, trial));
+    const NoiseFreeView seen = look(visibility_, rig_, pose, looking);
     const SensedEdges sensed = source_losses(sensor_, seen, {.seed = seed_, .trial = trial});
-    const Pose T_world_left = T_left_world(pose, looking_.mount).inverse();
+    const Pose T_world_left = T_left_world(pose, looking.mount, looking.roll_rad).inverse();
     Json edges = Json::object();
     const auto add = [&](const std::string& name, const std::vector<SpaceEdge>& list) {
       Json& numbers = edges[name] = Json::array();
@@ -139,9 +144,10 @@ class PoseViews {
 
   const Visibility& visibility_;
   const Rig& rig_;
+  SourceSettings sources_;
   Sensor sensor_;  // one, since it may run a program
+  localise::CameraMount told_mount_;
   std::uint64_t seed_;
-  NoiseFreeViewOptions looking_;
   std::vector<std::pair<std::string, std::string>> kinds_;
 };
 
@@ -158,7 +164,10 @@ std::filesystem::path page_folder() {
 void run(const ViewArguments& options, Session& session) {
   const std::filesystem::path folder = page_folder();
   const std::filesystem::path file = find_world(options.world);
-  const World world = build_world(read_world(file));
+  World world = build_world(read_world(file));
+  if (const double moved = sources_of(options.sources, {}).moved; moved > 0) {
+    world = with_moved_furniture(world, moved, options.seed);
+  }
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const Rig& true_rig = rig.estimate.rig;

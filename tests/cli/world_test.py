@@ -155,6 +155,12 @@ class World(verb_calls.ProgramCase):
         self.assertIn('lost:edge_loss', names)
         for view in data['views']:
             self.assertLessEqual(set(view['edges']), names)
+        pages = set()
+        for source in ('calibration=0', 'moved=0.5', 'mount_pitch_deg=10'):
+            self.done('view', 'workshop', '--poses', 2, '--source', 'none', '--source', source,
+                      '-o', 'source.html')
+            pages.add((self.folder / 'source.html').read_bytes())
+        self.assertEqual(len(pages), 3)
         bare = self.done('view', 'workshop', '--poses', 2, '--source', 'none', '-o', 'bare.html')
         self.assertEqual(bare['poses'], 2)
         page = (self.folder / 'bare.html').read_text()

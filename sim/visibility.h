@@ -55,7 +55,8 @@ class Visibility {
                                                  const Pose& T_camera_world,
                                                  const VisibilityOptions& options = {}) const;
 
-  /// The same for some segments only: indices into the world's, ascending.
+  /// The same for some segments only: indices into the world's, ascending. By view sets all of
+  /// them are taken as the set: the right eye of a pair has that of the left.
   std::vector<VisibleInterval> visible_intervals_of(std::span<const int> segments,
                                                     const Camera& camera,
                                                     const Pose& T_camera_world,

@@ -13,11 +13,13 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "calib/base/file_in_progress.h"
 #include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 #include "cli/robot/drive_commands.h"
 #include "cli/robot/robot_options.h"
 #include "cli/simulation/plan_picture.h"
@@ -45,12 +47,32 @@ struct DriveArguments {
 
 /// A drive as it went.
 struct DriveLog {
-  std::string observations;  ///< lines of JSON
+  vernier::internal::FileInProgress* observations = nullptr;  ///< lines of JSON, if wanted
   std::vector<double> times_s;
   std::vector<Pose2D> truth, odometry;  ///< in the world; odometry begins at the true start
   int contacts = 0;
   double way_m = 0;
   std::string ended = "commands", failure;
+};
+
+/// The files of a drive, open from its beginning: what cannot be written is known before it.
+class DriveFiles {
+ public:
+  explicit DriveFiles(const DriveArguments& options)
+      : observations(opened(options.output)),
+        truth(opened(options.truth)),
+        odometry(opened(options.odometry)),
+        plan(opened(options.plan)) {}
+  void commit() { files_.commit(); }
+
+ private:
+  using File = vernier::internal::FileInProgress;
+  File* opened(const std::string& name) { return name.empty() ? nullptr : &files_.add(name); }
+
+  vernier::internal::OutputFiles files_;
+
+ public:
+  File *observations, *truth, *odometry, *plan;
 };
 
 using NextCommand = std::function<std::optional<DriveCommand>(const RobotObservation&)>;
@@ -59,7 +81,7 @@ void note(const Robot& robot, const RobotObservation& seen, DriveLog& log) {
   if (!seen.view.failure.empty()) {
     throw Error("--source command", seen.view.failure, "correct the program (docs/own-source.md)");
   }
-  log.observations += observation_json(seen).dump() + "\n";
+  if (log.observations) log.observations->append(observation_json(seen).dump() + "\n");
   log.times_s.push_back(seen.time_s);
   if (!log.truth.empty()) log.way_m += distance_m(log.truth.back(), robot.true_pose());
   log.truth.push_back(robot.true_pose());
@@ -70,27 +92,35 @@ void note(const Robot& robot, const RobotObservation& seen, DriveLog& log) {
 DriveLog drive(Robot& robot,
                const DriveArguments& options,
                const NextCommand& next,
-               RobotObservation seen) {
+               RobotObservation seen,
+               vernier::internal::FileInProgress* observations) {
   DriveLog log;
+  log.observations = observations;
   note(robot, seen, log);
   for (int step = 0;; ++step) {
-    if (step == options.steps) {
+    // A program is not asked for a command that nobody drives; a file may end there.
+    const bool is_last = step == options.steps;
+    const std::optional<DriveCommand> command =
+        is_last && !options.command.empty() ? DriveCommand{} : next(seen);
+    if (!command) break;
+    if (is_last) {
       log.ended = "steps";
       break;
     }
-    const std::optional<DriveCommand> command = next(seen);
-    if (!command) break;
     seen = robot.step(*command);
     note(robot, seen, log);
   }
   return log;
 }
 
-DriveLog drive_by_program(Robot& robot, const DriveArguments& options, RobotObservation seen) {
+DriveLog drive_by_program(Robot& robot,
+                          const DriveArguments& options,
+                          RobotObservation seen,
+                          vernier::internal::FileInProgress* observations) {
   DrivingProgram program(options.command, options.time_limit_s, robot.told_rig(), robot.options());
   DriveLog log = drive(
       robot, options, [&](const RobotObservation& o) { return program.command(o); },
-      std::move(seen));
+      std::move(seen), observations);
   log.failure = program.failure();
   if (log.ended != "steps") log.ended = log.failure.empty() ? "done" : "failed";
   return log;
@@ -106,19 +136,13 @@ std::string trajectory_text(const std::vector<double>& times_s,
   return tum_text(trajectory);
 }
 
-void write_files(const DriveArguments& options, const RobotStage& stage, const DriveLog& log) {
-  vernier::internal::OutputFiles files;
+void write_files(DriveFiles& files, const RobotStage& stage, const DriveLog& log) {
   const CameraMount& mount = stage.options().mount;
-  if (!options.output.empty()) files.add(options.output, log.observations);
-  if (!options.truth.empty()) {
-    files.add(options.truth, trajectory_text(log.times_s, log.truth, mount));
-  }
-  if (!options.odometry.empty()) {
-    files.add(options.odometry, trajectory_text(log.times_s, log.odometry, mount));
-  }
-  if (!options.plan.empty()) {
-    files.add(options.plan, plan_svg(stage.world(), {{"true way", "#06c", log.truth},
-                                                     {"by odometry", "#e80", log.odometry}}));
+  if (files.truth) files.truth->append(trajectory_text(log.times_s, log.truth, mount));
+  if (files.odometry) files.odometry->append(trajectory_text(log.times_s, log.odometry, mount));
+  if (files.plan) {
+    files.plan->append(plan_svg(
+        stage.world(), {{"true way", "#06c", log.truth}, {"by odometry", "#e80", log.odometry}}));
   }
   files.commit();
 }
@@ -163,9 +187,9 @@ void run(const DriveArguments& options, Session& session) {
   }
   for (const std::string* file :
        {&options.output, &options.truth, &options.odometry, &options.plan}) {
-    if (!file->empty() && !options.commands.empty()) {
-      check_output_is_not_input({options.commands}, *file);
-    }
+    if (file->empty()) continue;
+    check_output_is_not_input(
+        {options.commands, find_world(options.robot.world), find_rig(options.robot.rig)}, *file);
   }
   const std::vector<double> at = parse_numbers(options.pose, 3, "--pose");
   const RobotStage stage(options.robot, session);
@@ -174,6 +198,7 @@ void run(const DriveArguments& options, Session& session) {
   std::vector<DriveCommand> commands;
   if (!options.commands.empty()) commands = read_commands(options.commands, robot_options.drive);
   Robot robot(stage.visibility(), stage.rig(), robot_options);
+  DriveFiles files(options);
   RobotObservation seen = vernier::internal::with_errors_of("--pose " + options.pose, [&] {
     return robot.reset(options.robot.seed, options.trial, {at[0], at[1], at[2] * degree});
   });
@@ -182,9 +207,14 @@ void run(const DriveArguments& options, Session& session) {
     if (done == commands.size()) return std::nullopt;
     return commands[done++];
   };
-  const DriveLog log = options.command.empty() ? drive(robot, options, from_file, std::move(seen))
-                                               : drive_by_program(robot, options, std::move(seen));
-  write_files(options, stage, log);
+  const DriveLog log = options.command.empty()
+                           ? drive(robot, options, from_file, std::move(seen), files.observations)
+                           : drive_by_program(robot, options, std::move(seen), files.observations);
+  if (log.ended == "steps" && options.command.empty()) {
+    session.warn(fmt::format("{}: holds {} commands, of which --steps {} were driven",
+                             options.commands, commands.size(), options.steps));
+  }
+  write_files(files, stage, log);
   report(log, session);
 }
 

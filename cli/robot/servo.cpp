@@ -14,13 +14,16 @@
 #include <vector>
 
 #include "calib/base/error_place.h"
+#include "calib/base/file_in_progress.h"
 #include "calib/base/ordered_parallel.h"
 #include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
+#include "cli/program/share_folder.h"
 #include "cli/robot/robot_options.h"
 #include "cli/simulation/plan_picture.h"
 #include "localise/place.h"
@@ -124,19 +127,33 @@ void report(const std::vector<ServoTrial>& trials,
   session.result(json, text);
 }
 
-void write_files(const ServoArguments& options,
-                 const World& world,
-                 const std::vector<ServoTrial>& trials) {
-  vernier::internal::OutputFiles files;
-  if (!options.output.empty()) files.add(options.output, trials_csv(trials));
-  if (!options.plan.empty()) {
+/// The files of a run, open from its beginning: what cannot be written is known before it.
+class ServoFiles {
+ public:
+  explicit ServoFiles(const ServoArguments& options)
+      : trials(opened(options.output)), plan(opened(options.plan)) {}
+  void commit() { files_.commit(); }
+
+ private:
+  using File = vernier::internal::FileInProgress;
+  File* opened(const std::string& name) { return name.empty() ? nullptr : &files_.add(name); }
+
+  vernier::internal::OutputFiles files_;
+
+ public:
+  File *trials, *plan;
+};
+
+void write_files(ServoFiles& files, const World& world, const std::vector<ServoTrial>& trials) {
+  if (files.trials) files.trials->append(trials_csv(trials));
+  if (files.plan) {
     std::vector<PlanWay> ways;
     for (const ServoTrial& t : trials) {
       const bool arrived = t.status == ServoStatus::converged;
       const std::string label = trials.size() > 3 ? "" : fmt::format("trial {}", t.trial);
       ways.push_back({label, arrived ? "#06c" : "#c22", t.way});
     }
-    files.add(options.plan, plan_svg(world, ways));
+    files.plan->append(plan_svg(world, ways));
   }
   files.commit();
 }
@@ -145,16 +162,27 @@ void run(const ServoArguments& options, Session& session) {
   ServoOptions servo = options.servo;
   servo.goal =
       vernier::internal::with_errors_of("--goal", [&] { return servo_goal(options.goal); });
+  for (const std::string* file : {&options.output, &options.plan}) {
+    if (file->empty()) continue;
+    check_output_is_not_input({find_world(options.robot.world), find_rig(options.robot.rig)},
+                              *file);
+  }
+  constexpr std::uint64_t most_trials = std::uint64_t{1} << 31U;  // the others are those of maps
+  if (std::uint64_t{options.first} + static_cast<std::uint64_t>(options.trials) > most_trials) {
+    throw Error("--trial " + std::to_string(options.first), "and --trials go beyond 2147483647",
+                "begin with a smaller number");
+  }
   const RobotStage stage(options.robot, session);
   const ServoExperiment experiment = vernier::internal::with_errors_of(options.robot.world, [&] {
     return ServoExperiment(stage.visibility(), stage.rig(), stage.options(), servo);
   });
+  ServoFiles files(options);
   std::vector<ServoTrial> trials(static_cast<std::size_t>(options.trials));
   vernier::internal::for_each_index(trials.size(), options.threads, [&](std::size_t i) {
     trials[i] = experiment.run(options.robot.seed, options.first + static_cast<std::uint32_t>(i));
     if (options.plan.empty()) trials[i].way = {};
   });
-  write_files(options, stage.world(), trials);
+  write_files(files, stage.world(), trials);
   report(trials, options, session);
 }
 

@@ -60,7 +60,8 @@ void run(const SimulateArguments& options, Session& session) {
   SourceSettings initial;
   initial.calibration = 0;
   const SourceSettings sources = sources_of(options.sources, initial);
-  World world = build_world(read_world(find_world(options.world)));
+  const std::filesystem::path file = find_world(options.world);
+  World world = with_errors_of(file.string(), [&] { return build_world(read_world(file)); });
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);

@@ -20,6 +20,7 @@
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/simulation/plan_picture.h"
 #include "sim/import/axes_and_unit.h"
@@ -78,6 +79,10 @@ std::vector<PathCamera> level_by_cameras(ImportArguments& arguments, Mesh& mesh)
   if (arguments.colmap.empty()) return {};
   ImportOptions& options = arguments.options;
   if (options.up_axis) throw Error("--up", "is given beside --colmap", "leave one out");
+  if (options.storey != 1) {
+    throw Error("--storey", "is given beside --colmap, whose cameras say where the floor is",
+                "leave one out, or give --floor-m");
+  }
   std::vector<PathCamera> cameras = read_camera_path(arguments.colmap);
   level(up_of(cameras, mesh, arguments.colmap), mesh, cameras);
   options.unit_m = axes_and_unit(mesh, options.up_axis, options.unit_m, arguments.file).unit_m;
@@ -93,6 +98,13 @@ void run(ImportArguments arguments, Session& session) {
   if (!arguments.up.empty()) options.up_axis = axis_of(arguments.up);
   if (options.floor_m && options.storey != 1) {
     throw Error("--storey", "is given beside --floor-m", "leave one out");
+  }
+  for (const std::string* output : {&arguments.output, &arguments.plan}) {
+    std::vector<std::filesystem::path> inputs{arguments.file};
+    if (!arguments.colmap.empty()) {
+      inputs.push_back(std::filesystem::path(arguments.colmap) / "images.txt");
+    }
+    if (!output->empty()) check_output_is_not_input(inputs, *output);
   }
   Mesh mesh = read_mesh(arguments.file, arguments.selection);
   const std::vector<PathCamera> cameras = level_by_cameras(arguments, mesh);
@@ -130,7 +142,7 @@ void run(ImportArguments arguments, Session& session) {
     }
   }
   RouteProposal proposal;
-  if (!cameras.empty()) {
+  if (!cameras.empty() && !arguments.no_route) {
     description.route = route_of(cameras, report.axes.unit_m, report.moved_m);
     if (description.route.empty()) {
       session.warn(arguments.colmap +
@@ -167,7 +179,7 @@ void run(ImportArguments arguments, Session& session) {
   const double length_m = route_length_m(world.route);
   const std::string route =
       world.route.empty() ? "no route\n"
-      : !cameras.empty()
+      : !cameras.empty() && !arguments.no_route
           ? fmt::format("the way of its {} cameras, {:.1f} m in {} legs, is the route\n",
                         cameras.size(), length_m, world.route.size())
           : fmt::format(

@@ -21,6 +21,7 @@
 #include "cli/program/share_folder.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/study/standing_place.h"
 #include "sim/visibility.h"
 #include "sim/visibility/view_sets.h"
 #include "sim/world.h"
@@ -29,11 +30,9 @@
 namespace vernier::cli {
 namespace {
 
-constexpr double usual_height_m = 1.2;
-
 struct SetsOptions {
   std::string world, output, rig = "nominal";
-  double spacing_m = 0.5, height_m = usual_height_m;
+  double spacing_m = 0.5, height_m = 1.2;
   int headings = 16, poses = 200;
 };
 
@@ -48,14 +47,23 @@ void make_sets(const SetsOptions& options, Session& session) {
   }
   const Rig rig = read_rig(find_rig(options.rig)).estimate.rig;
   const localise::CameraMount mount{options.height_m, 0};
-  description.view_sets = view_sets(Visibility(world), rig.cameras.at(0), mount,
-                                    map_poses(world.route, options.spacing_m, options.headings));
+  const Visibility visibility(world);
+  std::vector<localise::Pose2D> poses = map_poses(world.route, options.spacing_m, options.headings);
+  std::erase_if(poses, [&](const localise::Pose2D& pose) {
+    return !standing_fault(visibility, pose, options.height_m).empty();
+  });
+  if (poses.empty()) {
+    throw Error("--height-m " + fmt::format("{:g}", options.height_m),
+                "a camera can stand nowhere along the route at this height",
+                "give the height of the robot's camera");
+  }
+  description.view_sets = view_sets(visibility, rig.cameras.at(0), mount, poses);
   world.view_sets = description.view_sets;
-  write_world(description, options.output);
   std::size_t segments = 0;
   for (const ViewSet& set : world.view_sets) segments += set.segments.size();
   const double mean = static_cast<double>(segments) / static_cast<double>(world.view_sets.size());
-  const SetFigures figures = set_figures(world, rig, options.poses);
+  const SetFigures figures = set_figures(world, rig, options.poses, options.height_m);
+  write_world(description, options.output);
   session.result({{"file", options.output},
                   {"sets", world.view_sets.size()},
                   {"segments_mean", mean},
@@ -66,13 +74,12 @@ void make_sets(const SetsOptions& options, Session& session) {
 
 }  // namespace
 
-SetFigures set_figures(const World& world, const Rig& rig, int poses) {
+SetFigures set_figures(const World& world, const Rig& rig, int poses, double height_m) {
   const Visibility visibility(world);
-  const QueryPlaces places(visibility, QueryProtocol::path, usual_height_m);
+  const QueryPlaces places(visibility, QueryProtocol::path, height_m);
   std::vector<localise::Pose2D> drawn;
   for (int i = 0; i < poses; ++i) drawn.push_back(places.draw(1, static_cast<std::uint32_t>(i)));
-  const SetAgreement agreement =
-      set_agreement(world, rig.cameras.at(0), {usual_height_m, 0}, drawn);
+  const SetAgreement agreement = set_agreement(world, rig.cameras.at(0), {height_m, 0}, drawn);
   return {
       {{"poses", poses},
        {"precision", agreement.precision},

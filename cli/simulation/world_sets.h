@@ -20,6 +20,6 @@ struct SetFigures {
   Json json;
   std::string text;
 };
-SetFigures set_figures(const World& world, const Rig& rig, int poses);
+SetFigures set_figures(const World& world, const Rig& rig, int poses, double height_m = 1.2);
 
 }  // namespace vernier::cli

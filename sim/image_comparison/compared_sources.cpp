@@ -69,9 +69,10 @@ ComparedSource lateral_shift(const ComparedEdges& compared, const MeasuringOptio
     ++edges;
   }
   return {"lateral_shift_px",
-          measured_ratio(
-              sums, edges, options,
-              [](const Sums& s) { return std::sqrt(std::max(0.0, share(s)) / mean_square); }),
+          measured_ratio(sums, edges, options,
+                         [](const Sums& s) {  // a share of nothing stays unknown
+                           return share(s) < 0 ? 0 : std::sqrt(share(s) / mean_square);
+                         }),
           default_of("lateral_shift_px"), "of the line from the true edge, common to both images"};
 }
 

@@ -108,7 +108,9 @@ struct Shifts {
 
   void write(EdgeFigures& f) const {
     f.shifted = static_cast<int>(size.size());
-    f.common_px = std::sqrt(std::max(0.0, ratio(product, f.shifted)) / mean_square_of_shift);
+    f.common_px = f.shifted > 0
+                      ? std::sqrt(std::max(0.0, ratio(product, f.shifted)) / mean_square_of_shift)
+                      : nothing;
     f.independent_px = std::sqrt(ratio(difference2, f.shifted) / (2 * mean_square_of_shift));
     f.median_shift_px = f.shifted > 0 ? median_or_zero(size) : nothing;
     f.towards_brighter_px = f.shifted > 0 ? median_or_zero(to_brighter) : nothing;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <utility>
 
 #include "calib/error.h"
@@ -29,6 +30,33 @@ constexpr double gap_m = 3, shortest_step_m = 0.1, off_way_m = 0.05;
 constexpr double upright_cosine = 0.966;  // 15 degrees
 
 Vector2d rounded(const Vector2d& x) { return (x * 1e4).array().round() / 1e4; }
+
+bool starts_number(char c) { return c >= '0' && c <= '9'; }
+
+// Runs of digits are compared as numbers: 2.jpg comes before 10.jpg.
+bool comes_before(const std::string& a, const std::string& b) {
+  std::size_t i = 0, k = 0;
+  while (i < a.size() && k < b.size()) {
+    if (!starts_number(a[i]) || !starts_number(b[k])) {
+      if (a[i] != b[k]) return a[i] < b[k];
+      ++i;
+      ++k;
+      continue;
+    }
+    while (i < a.size() && a[i] == '0') ++i;
+    while (k < b.size() && b[k] == '0') ++k;
+    std::size_t i_end = i, k_end = k;
+    while (i_end < a.size() && starts_number(a[i_end])) ++i_end;
+    while (k_end < b.size() && starts_number(b[k_end])) ++k_end;
+    if (i_end - i != k_end - k) return i_end - i < k_end - k;
+    const int order = a.compare(i, i_end - i, b, k, k_end - k);
+    if (order != 0) return order < 0;
+    i = i_end;
+    k = k_end;
+  }
+  if (i < a.size() || k < b.size()) return k < b.size();
+  return a < b;
+}
 
 double off_line(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
   const Vector2d d = b - a;
@@ -92,8 +120,9 @@ std::vector<PathCamera> read_camera_path(const std::filesystem::path& folder) {
          {q.normalized().toRotationMatrix(), {line.number(5), line.number(6), line.number(7)}}});
   }
   if (cameras.empty()) throw Error(file.string(), "holds no images", "give a model with images");
-  std::stable_sort(cameras.begin(), cameras.end(),
-                   [](const PathCamera& a, const PathCamera& b) { return a.name < b.name; });
+  std::stable_sort(cameras.begin(), cameras.end(), [](const PathCamera& a, const PathCamera& b) {
+    return comes_before(a.name, b.name);
+  });
   return cameras;
 }
 

@@ -18,7 +18,8 @@ struct PathCamera {
   Pose T_camera_world;
 };
 
-/// Cameras of COLMAP's images.txt in a folder, by name. Throws Error naming file and line.
+/// Cameras of COLMAP's images.txt in a folder, by name, digits in it by the number they are. Throws
+/// Error naming file and line.
 std::vector<PathCamera> read_camera_path(const std::filesystem::path& folder);
 
 /// The direction that is up: against the mean of the cameras' y axes, then the mean direction of

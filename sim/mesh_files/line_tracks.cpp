@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -76,11 +77,39 @@ void add(Mesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const s
   }
 }
 
-/// How many different images the words from `from` on name.
-int images_of(const Rows& rows, std::size_t from) {
-  std::set<int> images;
-  for (std::size_t i = from; i < rows.words().size(); ++i) images.insert(rows.whole(i, "image"));
-  return static_cast<int>(images.size());
+/// A number that counts something.
+int count(const Rows& rows, std::size_t i, std::string_view what) {
+  const int number = rows.whole(i, what);
+  if (number >= 0) return number;
+  throw Error(rows.place(), "has a negative " + std::string(what), "write the file again");
+}
+
+/// What a track says of itself.
+struct TrackCounts {
+  int lines = 0, images = 0;
+};
+
+/// Checks the words from `from` on, one for each line of a track, and how many are different.
+void check_list(const Rows& rows,
+                std::size_t from,
+                const TrackCounts& counts,
+                std::string_view what,
+                std::optional<int> different = {}) {
+  std::set<int> found;
+  for (std::size_t i = from; i < rows.words().size(); ++i) found.insert(count(rows, i, what));
+  const std::size_t words = rows.words().size() - std::min(from, rows.words().size());
+  if (words != static_cast<std::size_t>(counts.lines)) {
+    throw Error(rows.place(),
+                "names " + std::to_string(words) + " of the " + std::string(what) + "s of " +
+                    std::to_string(counts.lines) + " lines",
+                "write the file again");
+  }
+  if (different && found.size() != static_cast<std::size_t>(*different)) {
+    throw Error(
+        rows.place(),
+        "names " + std::to_string(found.size()) + " images, not " + std::to_string(*different),
+        "write the file again");
+  }
 }
 
 /// All tracks in one file: their number; of each "number, lines, images", the two ends, and the
@@ -88,18 +117,20 @@ int images_of(const Rows& rows, std::size_t from) {
 void read_all_tracks(const std::filesystem::path& file, int least_images, Mesh& mesh) {
   Rows rows(file);
   rows.need(1, "the number of tracks");
-  const int count = rows.whole(0, "number of tracks");
-  for (int i = 0; i < count; ++i) {
+  const int tracks = count(rows, 0, "number of tracks");
+  for (int i = 0; i < tracks; ++i) {
     const std::string what = "track " + std::to_string(i);
     rows.need(3, what);
+    const TrackCounts counts{count(rows, 1, "number of lines"), count(rows, 2, "number of images")};
     rows.need(3, "the first end of " + what);
     const Eigen::Vector3d a = rows.point(0);
     rows.need(3, "the second end of " + what);
     const Eigen::Vector3d b = rows.point(0);
     rows.need("the images of " + what);
-    const int images = images_of(rows, 0);
+    check_list(rows, 0, counts, "image", counts.images);
     rows.need("the lines of " + what);
-    if (images >= least_images) {
+    check_list(rows, 0, counts, "line");
+    if (counts.images >= least_images) {
       add(mesh, a, b, rows.place());
     } else {
       ++mesh.parts_left_out;
@@ -107,7 +138,7 @@ void read_all_tracks(const std::filesystem::path& file, int least_images, Mesh& 
   }
   while (rows.next()) {
     if (rows.words().empty()) continue;
-    throw Error(rows.place(), "comes after the last of " + std::to_string(count) + " tracks",
+    throw Error(rows.place(), "comes after the last of " + std::to_string(tracks) + " tracks",
                 "correct the number in the first line");
   }
 }
@@ -118,11 +149,13 @@ void read_track(const std::filesystem::path& file, int least_images, Mesh& mesh)
   rows.need(6, "the ends of the line");
   const Eigen::Vector3d a = rows.point(0), b = rows.point(3);
   rows.need(2, "the counts");
+  const TrackCounts counts{count(rows, 0, "number of lines"), count(rows, 1, "number of images")};
   rows.need("image_id_list");
   if (rows.words().empty() || rows.words()[0] != "image_id_list") {
     throw Error(rows.place(), "is not image_id_list", "give tracks as LIMAP writes them");
   }
-  if (images_of(rows, 1) >= least_images) {
+  check_list(rows, 1, counts, "image", counts.images);
+  if (counts.images >= least_images) {
     add(mesh, a, b, rows.place());
   } else {
     ++mesh.parts_left_out;
@@ -153,7 +186,9 @@ std::vector<std::filesystem::path> track_files(const std::filesystem::path& fold
 bool holds_line_tracks(const std::filesystem::path& file) {
   TextLines lines(file);
   std::string_view line;
-  return lines.next(line) && words_of(line).size() == 1;
+  if (!lines.next(line)) return false;
+  const std::vector<std::string_view> words = words_of(line);
+  return words.size() == 1 && words[0].find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 Mesh read_line_tracks(const std::filesystem::path& path, int least_images) {

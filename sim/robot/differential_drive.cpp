@@ -65,6 +65,11 @@ void check(const DifferentialDrive& drive, const std::string& place) {
 void check(const DriveCommand& command, const DifferentialDrive& drive, const std::string& place) {
   need(std::isfinite(command.speed_mps) && std::isfinite(command.turn_radps), place,
        "a speed is not a finite number", "give metres and radians per second");
+  constexpr double fastest_turn_radps = 50;  // whose way is integrated in pieces of 0.25 rad
+  need(std::abs(command.turn_radps) <= fastest_turn_radps, place,
+       fmt::format("it turns at {:.3g} rad/s, more than {:g}", command.turn_radps,
+                   fastest_turn_radps),
+       "command less turning");
   need(command.duration_s > 0 && command.duration_s <= longest_step_s, place,
        fmt::format("the duration of {:g} s is not above 0 and at most {:g} s", command.duration_s,
                    longest_step_s),

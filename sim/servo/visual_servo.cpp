@@ -72,6 +72,14 @@ Pose2D goal_before(const WorldObject& door, double distance_m) {
           std::atan2(-c, s)};
 }
 
+/// Slowed down, on the same arc, to what the wheels may run.
+DriveCommand as_fast_as_wheels(const DriveCommand& command, const DifferentialDrive& drive) {
+  const double fastest =
+      std::abs(command.speed_mps) + 0.5 * drive.wheel_base_m * std::abs(command.turn_radps);
+  const double share = std::min(1.0, drive.max_speed_mps / std::max(fastest, 1e-12));
+  return {share * command.speed_mps, share * command.turn_radps, command.duration_s};
+}
+
 /// One drive, from the first view to the last.
 class ServoDrive {
  public:
@@ -80,6 +88,7 @@ class ServoDrive {
 
   void run(RobotObservation seen, ServoTrial& trial) {
     const ServoOptions& o = options_;
+    if (!seen.view.failure.empty()) return fail(seen.view.failure, trial);
     constexpr double more_m = 0.1, more_rad = 0.05;  // of the search than the start's range
     const auto found =
         find_goal(desired_, see_all(robot_.told_rig(), seen.view.segments),
@@ -96,7 +105,8 @@ class ServoDrive {
       trial.status = command ? ServoStatus::timed_out : ServoStatus::converged;
       if (!command || seen.time_s + o.law.frame_s > o.law.time_limit_s) return;
       const double half = 0.5 * robot_.told_rig().cameras[0].size_px.x() / desired_.focal_px;
-      seen = robot_.step(kept_in_view(*command, desired_, control.goal(), half));
+      seen = robot_.step(as_fast_as_wheels(kept_in_view(*command, desired_, control.goal(), half),
+                                           robot_.options().drive));
       trial.way.push_back(robot_.true_pose());
       trial.frames = static_cast<int>(seen.frame);
       trial.time_s = seen.time_s;

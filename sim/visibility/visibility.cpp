@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -234,11 +233,7 @@ std::vector<VisibleInterval> Visibility::visible_intervals_of(
   check(T_camera_world, options);
   const ViewFrustum frustum(camera, options.near_m, options.far_m);
   if (index_->method == VisibilityMethod::view_sets) {
-    std::vector<int> both;
-    const std::span<const int> set = index_->set_at(T_camera_world);
-    std::set_intersection(segments.begin(), segments.end(), set.begin(), set.end(),
-                          std::back_inserter(both));
-    return index_->runs_of(both, frustum, camera, T_camera_world, options.min_length_px);
+    return index_->runs_of(segments, frustum, camera, T_camera_world, options.min_length_px);
   }
   index_->prepare(frustum, T_camera_world, nullptr, gap_m(options));
   return index_->runs_of(segments, frustum, camera, T_camera_world, options.min_length_px);

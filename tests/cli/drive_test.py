@@ -184,6 +184,22 @@ class Drive(verb_calls.ProgramCase):
             (self.folder / 'bad.csv').write_text(text)
             self.assertIn(why, self.refused('--commands', 'bad.csv'))
 
+    def test_files_are_checked_before_the_drive(self):
+        (self.folder / 'c.csv').write_text('speed_mps,turn_radps,duration_s\n' + '0.1,0,0.2\n' * 3)
+        run = self.run_program(*START, '--commands', 'c.csv', '-o', 'c.csv')
+        self.assertEqual(run.returncode, 2)
+        self.assertIn('would be overwritten', run.stderr)
+        run = self.run_program(*START, '--commands', 'c.csv', '--steps', '2')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('holds 3 commands', run.stderr)
+        run = self.run_program(*START, '--commands', 'c.csv', '--steps', '3')
+        self.assertEqual(run.stderr, '')
+        self.assertIn('ended by commands', run.stdout)
+        (self.folder / 'spin.csv').write_text('speed_mps,turn_radps,duration_s\n0,1000,60\n')
+        run = self.run_program(*START, '--robot', 'wheel_base_m=0.001', '--commands', 'spin.csv')
+        self.assertEqual(run.returncode, 2)
+        self.assertIn('rad/s', run.stderr)
+
     def test_bad_options_get_one_line(self):
         self.assertIn('no commands are given', self.refused())
         self.assertIn('commands and a program',

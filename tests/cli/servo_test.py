@@ -71,6 +71,15 @@ class Servo(verb_calls.ProgramCase):
         self.assertIn('has no free place', self.refused('--distance-m', '15'))
         self.assertIn('unknown error source', self.refused('--source', 'fog=1'))
 
+    def test_a_slow_robot_arrives_too_and_files_are_checked_first(self):
+        run = self.run_program('--trials', '2', '--source', 'none', '--robot', 'max_speed_mps=0.2')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.run_program('--trials', '1000000', '-o', 'no-such-folder/x.csv')
+        self.assertEqual(run.returncode, 2)
+        run = self.run_program('--trial', '4294967295', '--trials', '2')
+        self.assertEqual(run.returncode, 2)
+        self.assertIn('--trial', run.stderr)
+
     def test_a_source_that_fails_is_told(self):
         run = self.run_program('--trials', 1, '--source', 'command=false', '--json')
         self.assertEqual(run.returncode, 3, run.stdout + run.stderr)

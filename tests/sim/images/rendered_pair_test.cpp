@@ -118,7 +118,8 @@ TEST(RenderedPair, CorrespondingPixelsLookAlike) {
   ASSERT_GT(differences.size(), 100'000U);
   std::nth_element(differences.begin(), differences.begin() + differences.size() / 2,
                    differences.end());
-  EXPECT_LT(differences[differences.size() / 2], 2.5);  // vignetting and texture at half a pixel
+  // Texture of 2 % at half a pixel, and vignetting: it depends on the reflectances that were drawn.
+  EXPECT_LT(differences[differences.size() / 2], 4);
 }
 
 }  // namespace

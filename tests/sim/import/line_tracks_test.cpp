@@ -123,6 +123,16 @@ TEST(LineTracks, ALevelledModelIsTheBuildingUpToItsHeading) {
   EXPECT_LT(route[0].points_m.size(), 5u);  // a straight corridor
 }
 
+TEST(LineTracks, TheWayOfCamerasFollowsTheNumbersInTheirNames) {
+  const Folder folder;
+  folder.write("images.txt",
+               "1 1 0 0 0 0 0 0 1 a10.jpg\n\n2 1 0 0 0 0 0 1 1 a9.jpg\n\n"
+               "3 1 0 0 0 0 0 2 1 b1.jpg\n\n4 1 0 0 0 0 0 3 1 a009b.jpg\n\n");
+  std::string names;
+  for (const PathCamera& camera : read_camera_path(folder.path())) names += camera.name + " ";
+  EXPECT_EQ(names, "a9.jpg a009b.jpg a10.jpg b1.jpg ");
+}
+
 TEST(LineTracks, OfFewImagesAreLeftOut) {
   const Reconstruction made;
   const Folder folder;
@@ -156,6 +166,11 @@ TEST(LineTracks, BadOnesAreNamed) {
   EXPECT_NE(said("1\n0 1 1\n0 0\n1 0 0\n0\n0\n").find("t.txt:3: has 2 numbers"), std::string::npos);
   EXPECT_NE(said("1\n0 1 1\n0 0 x\n1 0 0\n0\n0\n").find("t.txt:3"), std::string::npos);
   EXPECT_NE(said("1\n0 1 1\n0 0 0\n1 0 0\n0\n0\n7\n").find("t.txt:7"), std::string::npos);
+  EXPECT_NE(said("1\n0 5 3\n0 0 0\n1 0 0\n1\n0\n").find("t.txt:5: names 1"), std::string::npos);
+  EXPECT_NE(said("1\n0 2 2\n0 0 0\n1 0 0\n7 7\n0 1\n").find("names 1 images, not 2"),
+            std::string::npos);
+  EXPECT_NE(said("1\n0 1 1\n0 0 0\n1 0 0\n-7\n0\n").find("negative image"), std::string::npos);
+  EXPECT_EQ(read_mesh(folder.write("t.txt", "#edges\n0 0 0 1 0 0\n")).format, "list of lines");
   folder.write("track_0.txt", "0 0 0 1 1 1\n1 1\nlines 3\n");
   EXPECT_NE(error_message([&] { read_mesh(folder.path()); }).find("image_id_list"),
             std::string::npos);

@@ -107,17 +107,23 @@ TEST(ViewSets, AgreeLessTheFurtherTheyAreApart) {
   EXPECT_NEAR(set_agreement(office_with_sets(), camera(), mount, references).recall, 1, 1e-9);
 }
 
-TEST(ViewSets, OfSomeSegmentsAreTheirPart) {
-  const World& world = office_with_sets();
+// The right eye of a pair may be out of reach of the left one's reference.
+TEST(ViewSets, OfAPairAreThoseOfTheLeftEye) {
+  World world = test::small_office();
+  const Pose2D reference = office_with_sets().view_sets[8].at;
+  world.view_sets = {office_with_sets().view_sets[8]};
   const Visibility by_sets(world, VisibilityMethod::view_sets);
-  const Pose T = T_left_world(world.view_sets[3].at, mount);
-  std::vector<int> even;
-  for (int i = 0; i < static_cast<int>(world.segments.size()); i += 2) even.push_back(i);
-  const auto all = by_sets.visible_intervals(camera(), T);
-  const auto some = by_sets.visible_intervals_of(even, camera(), T);
-  EXPECT_EQ(some.size(), static_cast<std::size_t>(std::count_if(
-                             all.begin(), all.end(),
-                             [](const VisibleInterval& run) { return run.segment % 2 == 0; })));
+  const double c = std::cos(reference.heading_rad), s = std::sin(reference.heading_rad);
+  std::size_t seen_far = 0;
+  for (const double aside : {0.0, 0.5, 0.85, 0.95}) {  // to the right, where the right eye is
+    const Pose2D pose{reference.x_m + aside * s, reference.y_m - aside * c, reference.heading_rad};
+    const NoiseFreeView seen = look(by_sets, test::nominal_rig().rig, pose);
+    EXPECT_GT(seen.edges.size(), 20u) << aside;
+    seen_far = seen.edges.size();
+  }
+  EXPECT_GT(seen_far, 20u);
+  const Pose2D beyond{reference.x_m + 1.05 * s, reference.y_m - 1.05 * c, reference.heading_rad};
+  EXPECT_TRUE(look(by_sets, test::nominal_rig().rig, beyond).edges.empty());
 }
 
 TEST(ViewSets, AreWrittenAndRead) {

@@ -30,6 +30,10 @@ class OutputFiles {
   /// A file to append to until commit(); the reference stays valid. Throws Error as FileInProgress
   /// does, and if another output has the same name.
   FileInProgress& add(const std::filesystem::path& file);
+  /// The same for an output that may not be wanted: null for an empty name.
+  FileInProgress* add_wanted(const std::string& name) {
+    return name.empty() ? nullptr : &add(name);
+  }
   /// A whole file; it is closed, so that any number of them may be added.
   void add(const std::filesystem::path& file, std::string_view content);
   void commit();

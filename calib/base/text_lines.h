@@ -35,6 +35,9 @@ class TextLines {
   std::size_t number_ = 0;
 };
 
+/// Whether a byte is an ASCII digit, in every locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// Fields of a line between separators. If the separators include a blank, repeated ones count as
 /// one.
 std::vector<std::string_view> split_fields(std::string_view line, std::string_view separators);

@@ -37,13 +37,6 @@ Pose pose(const Eigen::Vector4d& wxyz, const Eigen::Vector3d& t_m, const std::st
   return {q.normalized().toRotationMatrix(), t_m};
 }
 
-/// The pose that begins at word `at`: QW QX QY QZ TX TY TZ.
-Pose pose(const Line& line, std::size_t at, double unit_m) {
-  Eigen::Matrix<double, 7, 1> v;
-  for (std::size_t i = 0; i < 7; ++i) v[static_cast<Eigen::Index>(i)] = line.number(at + i);
-  return pose(v.head<4>(), translation(v.tail<3>(), unit_m, line.place()), line.place());
-}
-
 /// The cameras of cameras.txt and the unit of length.
 struct Cameras {
   const std::vector<Line>& lines;  ///< by ascending CAMERA_ID
@@ -228,6 +221,12 @@ std::vector<PlacedId> from_beside(const std::filesystem::path& file,
 }
 
 }  // namespace
+
+Pose pose(const Line& line, std::size_t at, double unit_m) {
+  Eigen::Matrix<double, 7, 1> v;
+  for (std::size_t i = 0; i < 7; ++i) v[static_cast<Eigen::Index>(i)] = line.number(at + i);
+  return pose(v.head<4>(), translation(v.tail<3>(), unit_m, line.place()), line.place());
+}
 
 Line::Line(const std::string& text, std::string place) : place_(std::move(place)) {
   constexpr std::size_t most_words = 1000;  // a rig of 32 cameras has 323

@@ -33,6 +33,10 @@ class Line {
 /// (images.txt: the points of the image, possibly none).
 std::vector<Line> read_lines(const std::filesystem::path& file, bool skip_every_second = false);
 
+/// The pose that begins at word `at`: QW QX QY QZ TX TY TZ, the translation in units of unit_m. The
+/// quaternion must have length 1 to 1e-6.
+Pose pose(const Line& line, std::size_t at, double unit_m);
+
 struct PlacedId {
   int id = 0;
   std::string name;  ///< empty if not given

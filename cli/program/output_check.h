@@ -11,7 +11,7 @@
 namespace vernier::cli {
 
 /// Throws Error if writing `output` would overwrite an input file, also through a link. Missing
-/// inputs are ignored.
+/// inputs are ignored, and an output without a name.
 void check_output_is_not_input(const std::vector<std::filesystem::path>& inputs,
                                const std::filesystem::path& output);
 

@@ -56,23 +56,15 @@ struct DriveLog {
 };
 
 /// The files of a drive, open from its beginning: what cannot be written is known before it.
-class DriveFiles {
- public:
+struct DriveFiles {
   explicit DriveFiles(const DriveArguments& options)
-      : observations(opened(options.output)),
-        truth(opened(options.truth)),
-        odometry(opened(options.odometry)),
-        plan(opened(options.plan)) {}
-  void commit() { files_.commit(); }
+      : observations(files.add_wanted(options.output)),
+        truth(files.add_wanted(options.truth)),
+        odometry(files.add_wanted(options.odometry)),
+        plan(files.add_wanted(options.plan)) {}
 
- private:
-  using File = vernier::internal::FileInProgress;
-  File* opened(const std::string& name) { return name.empty() ? nullptr : &files_.add(name); }
-
-  vernier::internal::OutputFiles files_;
-
- public:
-  File *observations, *truth, *odometry, *plan;
+  vernier::internal::OutputFiles files;
+  vernier::internal::FileInProgress *observations, *truth, *odometry, *plan;
 };
 
 using NextCommand = std::function<std::optional<DriveCommand>(const RobotObservation&)>;
@@ -144,7 +136,7 @@ void write_files(DriveFiles& files, const RobotStage& stage, const DriveLog& log
     files.plan->append(plan_svg(
         stage.world(), {{"true way", "#06c", log.truth}, {"by odometry", "#e80", log.odometry}}));
   }
-  files.commit();
+  files.files.commit();
 }
 
 Json pose_json(const Pose2D& p) {
@@ -187,7 +179,6 @@ void run(const DriveArguments& options, Session& session) {
   }
   for (const std::string* file :
        {&options.output, &options.truth, &options.odometry, &options.plan}) {
-    if (file->empty()) continue;
     check_output_is_not_input(
         {options.commands, find_world(options.robot.world), find_rig(options.robot.rig)}, *file);
   }

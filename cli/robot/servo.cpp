@@ -128,20 +128,12 @@ void report(const std::vector<ServoTrial>& trials,
 }
 
 /// The files of a run, open from its beginning: what cannot be written is known before it.
-class ServoFiles {
- public:
+struct ServoFiles {
   explicit ServoFiles(const ServoArguments& options)
-      : trials(opened(options.output)), plan(opened(options.plan)) {}
-  void commit() { files_.commit(); }
+      : trials(files.add_wanted(options.output)), plan(files.add_wanted(options.plan)) {}
 
- private:
-  using File = vernier::internal::FileInProgress;
-  File* opened(const std::string& name) { return name.empty() ? nullptr : &files_.add(name); }
-
-  vernier::internal::OutputFiles files_;
-
- public:
-  File *trials, *plan;
+  vernier::internal::OutputFiles files;
+  vernier::internal::FileInProgress *trials, *plan;
 };
 
 void write_files(ServoFiles& files, const World& world, const std::vector<ServoTrial>& trials) {
@@ -155,7 +147,7 @@ void write_files(ServoFiles& files, const World& world, const std::vector<ServoT
     }
     files.plan->append(plan_svg(world, ways));
   }
-  files.commit();
+  files.files.commit();
 }
 
 void run(const ServoArguments& options, Session& session) {
@@ -163,7 +155,6 @@ void run(const ServoArguments& options, Session& session) {
   servo.goal =
       vernier::internal::with_errors_of("--goal", [&] { return servo_goal(options.goal); });
   for (const std::string* file : {&options.output, &options.plan}) {
-    if (file->empty()) continue;
     check_output_is_not_input({find_world(options.robot.world), find_rig(options.robot.rig)},
                               *file);
   }

@@ -104,7 +104,7 @@ void run(ImportArguments arguments, Session& session) {
     if (!arguments.colmap.empty()) {
       inputs.push_back(std::filesystem::path(arguments.colmap) / "images.txt");
     }
-    if (!output->empty()) check_output_is_not_input(inputs, *output);
+    check_output_is_not_input(inputs, *output);
   }
   Mesh mesh = read_mesh(arguments.file, arguments.selection);
   const std::vector<PathCamera> cameras = level_by_cameras(arguments, mesh);

@@ -95,10 +95,13 @@ Json kinds_json(const std::vector<std::pair<std::string, std::string>>& kinds) {
 
 class PoseViews {
  public:
-  PoseViews(const Visibility& visibility, const Rig& rig, const ViewArguments& options)
+  PoseViews(const Visibility& visibility,
+            const Rig& rig,
+            const SourceSettings& sources,
+            const ViewArguments& options)
       : visibility_(visibility),
         rig_(rig),
-        sources_(sources_of(options.sources, {})),
+        sources_(sources),
         sensor_(rig, sources_),
         told_mount_{options.height_m, options.pitch_deg * std::numbers::pi / 180},
         seed_(options.seed) {
@@ -165,9 +168,8 @@ void run(const ViewArguments& options, Session& session) {
   const std::filesystem::path folder = page_folder();
   const std::filesystem::path file = find_world(options.world);
   World world = build_world(read_world(file));
-  if (const double moved = sources_of(options.sources, {}).moved; moved > 0) {
-    world = with_moved_furniture(world, moved, options.seed);
-  }
+  const SourceSettings sources = sources_of(options.sources, {});
+  if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
   const RigFile rig = read_rig(find_rig(options.rig));
   for (const std::string& warning : rig.warnings) session.warn(warning);
   const Rig& true_rig = rig.estimate.rig;
@@ -185,7 +187,7 @@ void run(const ViewArguments& options, Session& session) {
       add_edge(route, {a.x(), a.y(), 0.02}, {b.x(), b.y(), 0.02});
     }
   }
-  PoseViews at_poses(visibility, true_rig, options);
+  PoseViews at_poses(visibility, true_rig, sources, options);
   Json views = Json::array();
   const double length_m = route_length_m(world.route);
   for (int i = 0; i < options.poses && length_m > 0; ++i) {

@@ -13,6 +13,7 @@
 #include "sim/buildings/office_furniture.h"
 #include "sim/buildings/wire_shapes.h"
 #include "sim/world.h"
+#include "sim/world/plan_distance.h"
 
 namespace vernier::sim::internal {
 
@@ -27,13 +28,6 @@ using Eigen::Vector3d;
 constexpr double route_clearance_m = 0.35;  ///< the documented minimum is 0.3 m
 constexpr double headroom_m = 2.0;
 constexpr double site_gap_m = 0.015;  ///< between neighbours, so that edges never coincide
-
-double distance_to_segment(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
-  const Vector2d d = b - a;
-  const double length2 = d.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((x - a).dot(d) / length2, 0.0, 1.0) : 0;
-  return (x - a - t * d).norm();
-}
 
 bool crosses(const Eigen::AlignedBox2d& box, const Vector2d& a, const Vector2d& b) {
   double first = 0, last = 1;
@@ -63,7 +57,7 @@ double distance_to_path(const AlignedBox3d& box, const FloorPath& path_m) {
     nearest = std::min({nearest, plan.exteriorDistance(a), plan.exteriorDistance(b)});
     for (const auto corner : {Eigen::AlignedBox2d::BottomLeft, Eigen::AlignedBox2d::BottomRight,
                               Eigen::AlignedBox2d::TopLeft, Eigen::AlignedBox2d::TopRight}) {
-      nearest = std::min(nearest, distance_to_segment(plan.corner(corner), a, b));
+      nearest = std::min(nearest, plan_distance(plan.corner(corner), a, b));
     }
   }
   return nearest;

@@ -230,15 +230,7 @@ WorldDescription make_corridors(std::uint64_t seed, const CorridorOptions& optio
   for (const WorldTemplate& entry : corridor_templates()) site.define(entry);
   raise_room(site.loose(), floor, walls, size.z(), openings);
   site.enter(1, parts, paths);
-  for (const Opening& opening : openings) {
-    const RoomWall& wall = walls[opening.wall];
-    const double half = opening.width_m / 2 + casing_m + 0.02;
-    site.occupy(wall.frame * AlignedBox3d(Vector3d(opening.middle_m - half, 0, 0),
-                                          Vector3d(opening.middle_m + half, 0.8, 2.2)));
-    if (wall.frame.quarters != 1) continue;  // the part before this one raises the other
-    raise_reveals(site.loose(), wall, opening);
-    site.place("door_frame", wall.frame, {opening.middle_m, 0, 0});
-  }
+  fit_end_doorways(site, walls, openings, casing_m + 0.02, 0.8);
   for (const Corridor& corridor : corridors) light_corridor(site, corridor, size.z());
   for (std::uint32_t i = 0; i < walls.size(); ++i) {
     furnish_corridor_side(site, walls[i], size, pitch, i);

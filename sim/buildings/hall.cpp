@@ -246,15 +246,7 @@ WorldDescription make_hall(std::uint64_t seed, const HallOptions& options) {
   std::vector<FloorPath> paths;
   for (const RouteLeg& leg : plan.route) paths.push_back(leg.points_m);
   site.enter(1, {AlignedBox3d(Vector3d::Zero(), size)}, paths);
-  for (const Opening& opening : openings) {
-    const RoomWall& wall = walls[opening.wall];
-    const double half = opening.width_m / 2 + 0.15;
-    site.occupy(wall.frame * AlignedBox3d(Vector3d(opening.middle_m - half, 0, 0),
-                                          Vector3d(opening.middle_m + half, 1, 2.2)));
-    if (wall.frame.quarters != 1) continue;  // the part before this one raises the other
-    raise_reveals(site.loose(), wall, opening);
-    site.place("door_frame", wall.frame, {opening.middle_m, 0, 0});
-  }
+  fit_end_doorways(site, walls, openings, 0.15, 1);
   raise_structure(site, plan);
   for (std::size_t row = 0; row < plan.rows_m.size(); ++row) {
     for (std::size_t i = 0; i < plan.stretches_m.size(); ++i) fill_row(site, plan, row, i);

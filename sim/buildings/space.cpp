@@ -176,6 +176,24 @@ void raise_reveals(Shapes& shapes, const RoomWall& wall, const Opening& opening)
                          left_face | right_face | top_face | bottom_face);
 }
 
+void fit_end_doorways(BuildingSite& site,
+                      const std::vector<RoomWall>& walls,
+                      const std::vector<Opening>& openings,
+                      double beside_m,
+                      double before_m) {
+  constexpr double above_m = 2.2;
+  for (const Opening& opening : openings) {
+    const RoomWall& wall = walls[opening.wall];
+    const double half = opening.width_m / 2 + beside_m;
+    site.occupy(wall.frame *
+                Eigen::AlignedBox3d(Vector3d(opening.middle_m - half, 0, 0),
+                                    Vector3d(opening.middle_m + half, before_m, above_m)));
+    if (wall.frame.quarters != 1) continue;
+    raise_reveals(site.loose(), wall, opening);
+    site.place("door_frame", wall.frame, {opening.middle_m, 0, 0});
+  }
+}
+
 void raise_outer_walls(Shapes& shapes, const Vector3d& size_m, const OpenEnds& open) {
   shapes.surfaces_of_box(
       Vector3d::Zero(), size_m,

@@ -50,6 +50,14 @@ void raise_room(Shapes& shapes,
 /// The reveals of an opening: the faces of the wall, of wall_thickness_m, that it goes through.
 void raise_reveals(Shapes& shapes, const RoomWall& wall, const Opening& opening);
 
+/// Keeps the doorways at the ends free, so far beside and before them, and fits those at high x,
+/// with reveals and frames; those at low x belong to the part before.
+void fit_end_doorways(BuildingSite& site,
+                      const std::vector<RoomWall>& walls,
+                      const std::vector<Opening>& openings,
+                      double beside_m,
+                      double before_m);
+
 /// The faces of a box from the origin to `size_m`, seen from inside, with the doorways of the open
 /// ends.
 void raise_outer_walls(Shapes& shapes, const Eigen::Vector3d& size_m, const OpenEnds& open);

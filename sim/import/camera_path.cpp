@@ -11,11 +11,13 @@
 #include <string>
 #include <utility>
 
+#include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/formats/colmap_poses.h"
 #include "calib/statistics/quantile.h"
 #include "sim/import/mesh.h"
 #include "sim/world.h"
+#include "sim/world/plan_distance.h"
 
 namespace vernier::sim::internal {
 
@@ -31,13 +33,11 @@ constexpr double upright_cosine = 0.966;  // 15 degrees
 
 Vector2d rounded(const Vector2d& x) { return (x * 1e4).array().round() / 1e4; }
 
-bool starts_number(char c) { return c >= '0' && c <= '9'; }
-
 // Runs of digits are compared as numbers: 2.jpg comes before 10.jpg.
 bool comes_before(const std::string& a, const std::string& b) {
   std::size_t i = 0, k = 0;
   while (i < a.size() && k < b.size()) {
-    if (!starts_number(a[i]) || !starts_number(b[k])) {
+    if (!is_digit(a[i]) || !is_digit(b[k])) {
       if (a[i] != b[k]) return a[i] < b[k];
       ++i;
       ++k;
@@ -46,8 +46,8 @@ bool comes_before(const std::string& a, const std::string& b) {
     while (i < a.size() && a[i] == '0') ++i;
     while (k < b.size() && b[k] == '0') ++k;
     std::size_t i_end = i, k_end = k;
-    while (i_end < a.size() && starts_number(a[i_end])) ++i_end;
-    while (k_end < b.size() && starts_number(b[k_end])) ++k_end;
+    while (i_end < a.size() && is_digit(a[i_end])) ++i_end;
+    while (k_end < b.size() && is_digit(b[k_end])) ++k_end;
     if (i_end - i != k_end - k) return i_end - i < k_end - k;
     const int order = a.compare(i, i_end - i, b, k, k_end - k);
     if (order != 0) return order < 0;
@@ -56,13 +56,6 @@ bool comes_before(const std::string& a, const std::string& b) {
   }
   if (i < a.size() || k < b.size()) return k < b.size();
   return a < b;
-}
-
-double off_line(const Vector2d& x, const Vector2d& a, const Vector2d& b) {
-  const Vector2d d = b - a;
-  const double length2 = d.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((x - a).dot(d) / length2, 0.0, 1.0) : 0;
-  return (x - a - t * d).norm();
 }
 
 // Keeps what is further than off_way_m from the line between two kept points, without recursion:
@@ -77,7 +70,7 @@ std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
     double furthest = off_way_m;
     std::size_t at = 0;
     for (std::size_t i = from + 1; i < to; ++i) {
-      const double off = off_line(points[i], points[from], points[to]);
+      const double off = plan_distance(points[i], points[from], points[to]);
       if (off > furthest) {
         furthest = off;
         at = i;
@@ -110,14 +103,7 @@ std::vector<PathCamera> read_camera_path(const std::filesystem::path& folder) {
   std::vector<PathCamera> cameras;
   for (const colmap::Line& line : colmap::read_lines(file, true)) {
     if (line.size() < 10) line.check_count(10);
-    const Eigen::Quaterniond q(line.number(1), line.number(2), line.number(3), line.number(4));
-    if (!(std::abs(q.norm() - 1) <= 1e-6)) {
-      throw Error(line.place(), fmt::format("its quaternion has the length {}", q.norm()),
-                  "it must be 1 to 1e-6");
-    }
-    cameras.push_back(
-        {line.word(9),
-         {q.normalized().toRotationMatrix(), {line.number(5), line.number(6), line.number(7)}}});
+    cameras.push_back({line.word(9), colmap::pose(line, 1, 1)});
   }
   if (cameras.empty()) throw Error(file.string(), "holds no images", "give a model with images");
   std::stable_sort(cameras.begin(), cameras.end(), [](const PathCamera& a, const PathCamera& b) {

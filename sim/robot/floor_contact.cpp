@@ -11,6 +11,7 @@
 #include "sim/differential_drive.h"
 #include "sim/visibility/box_tree.h"
 #include "sim/world.h"
+#include "sim/world/plan_distance.h"
 
 namespace vernier::sim::internal {
 
@@ -22,15 +23,6 @@ constexpr double lowest_m = 0.02;  // what lies lower is the floor itself
 constexpr double touch_m = 1e-5;
 constexpr double nudge_m = 1e-4;   // of a robot that touches, to see whether it comes closer
 constexpr double closer_m = 1e-9;  // by more than rounding
-
-double distance_to_side(const Eigen::Vector2d& p,
-                        const Eigen::Vector2d& a,
-                        const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = b - a;
-  const double dd = d.squaredNorm();
-  const double t = dd > 0 ? std::clamp((p - a).dot(d) / dd, 0.0, 1.0) : 0.0;
-  return (a + t * d - p).norm();
-}
 
 Eigen::Vector2d place(const Pose2D& pose) { return {pose.x_m, pose.y_m}; }
 
@@ -63,7 +55,7 @@ double Obstacles::distance_m(const Eigen::Vector2d& at_m, double within_m) const
       },
       [&](int i) {
         const auto& [a, b] = sides_[static_cast<std::size_t>(i)];
-        nearest = std::min(nearest, distance_to_side(at_m, a, b));
+        nearest = std::min(nearest, plan_distance(at_m, a, b));
         return false;
       });
   return nearest;

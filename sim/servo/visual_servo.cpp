@@ -98,7 +98,6 @@ class ServoDrive {
     ServoControl control(*found, o.law);
     LineTracker tracker(desired_, *found);
     for (int unseen = 0; unseen < most_unseen;) {
-      if (!seen.view.failure.empty()) return fail(seen.view.failure, trial);
       unseen = take(seen, control, tracker, trial) ? 0 : unseen + 1;
       const auto command = control.next(unseen == 0, seen.contact);
       trial.retreats = control.retreats();
@@ -111,6 +110,7 @@ class ServoDrive {
       trial.frames = static_cast<int>(seen.frame);
       trial.time_s = seen.time_s;
       trial.contacts += seen.contact;
+      if (!seen.view.failure.empty()) return fail(seen.view.failure, trial);
     }
     trial.status = ServoStatus::lost;
   }

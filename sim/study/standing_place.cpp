@@ -18,6 +18,7 @@
 #include "sim/study/floor_grid.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
+#include "sim/world/plan_distance.h"
 
 namespace vernier::sim::internal {
 
@@ -26,14 +27,6 @@ using namespace localise;
 namespace {
 
 constexpr double floor_m = 0.02;  ///< what lies lower is the floor itself
-
-/// Distance on the floor from a point to a segment.
-double plan_distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  const Eigen::Vector2d d = b - a;
-  const double dd = d.squaredNorm();
-  const double t = dd > 0 ? std::clamp((p - a).dot(d) / dd, 0.0, 1.0) : 0.0;
-  return (a + t * d - p).norm();
-}
 
 /// Height of the highest level surface over a point, such as a ceiling; infinite if there is none.
 double ceiling_height_m(const World& world, const Eigen::Vector2d& at_m) {

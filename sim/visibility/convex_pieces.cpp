@@ -194,4 +194,12 @@ ConvexSurfaces convex_surfaces(const World& world) {
   return surfaces;
 }
 
+Eigen::AlignedBox3d box_of(const ConvexSurfaces& surfaces, const ConvexSurface& piece) {
+  Eigen::AlignedBox3d box;
+  for (int k = 0; k < piece.vertex_count; ++k) {
+    box.extend(surfaces.vertices_m[piece.first_vertex + k]);
+  }
+  return box;
+}
+
 }  // namespace vernier::sim::internal

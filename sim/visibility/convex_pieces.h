@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "sim/world.h"
@@ -43,5 +44,8 @@ struct ConvexSurfaces {
   std::vector<Eigen::Vector3d> vertices_m;
 };
 ConvexSurfaces convex_surfaces(const World& world);
+
+/// The bounding box of a piece.
+Eigen::AlignedBox3d box_of(const ConvexSurfaces& surfaces, const ConvexSurface& piece);
 
 }  // namespace vernier::sim::internal

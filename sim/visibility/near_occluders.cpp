@@ -30,14 +30,6 @@ double area_of(const ConvexSurfaces& surfaces, const ConvexSurface& piece) {
   return twice.norm() / 2;
 }
 
-AlignedBox3d box_of(const ConvexSurfaces& surfaces, const ConvexSurface& piece) {
-  AlignedBox3d box;
-  for (int k = 0; k < piece.vertex_count; ++k) {
-    box.extend(surfaces.vertices_m[piece.first_vertex + k]);
-  }
-  return box;
-}
-
 }  // namespace
 
 LargeSurfaces::LargeSurfaces(const ConvexSurfaces& surfaces) {

@@ -105,10 +105,7 @@ PointInShadow classify(const ConvexSurfaces& surfaces,
 BoxTree tree_of(const ConvexSurfaces& surfaces) {
   std::vector<AlignedBox3d> boxes(surfaces.pieces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const ConvexSurface& piece = surfaces.pieces[i];
-    for (int k = 0; k < piece.vertex_count; ++k) {
-      boxes[i].extend(surfaces.vertices_m[piece.first_vertex + k]);
-    }
+    boxes[i] = box_of(surfaces, surfaces.pieces[i]);
   }
   return BoxTree(std::move(boxes));
 }

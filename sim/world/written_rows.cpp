@@ -12,16 +12,18 @@
 #include <utility>
 #include <vector>
 
+#include "calib/base/text_lines.h"
 #include "sim/world.h"
 #include "sim/world/world_check.h"
 #include "sim/world/world_limits.h"
 
 namespace vernier::sim::internal {
+
+using vernier::internal::is_digit;
+
 namespace {
 
 constexpr std::size_t worth_it_bytes = 1'000'000;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Reads a line from its front; each call says whether the expected stood there.
 class Row {

@@ -27,6 +27,7 @@
 #include "sim/experiment.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/instruction_sets.h"
 #include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -120,6 +121,15 @@ Study open_folder(const fs::path& folder, Session& session) {
                   folder / "world.world.toml", folder / "rig.json", session);
 }
 
+std::string shard_options(const std::vector<Shard>& shards) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, shards.size()); ++i) {
+    text += fmt::format("{}--shard {}/{}", i > 0 ? ", " : "", shards[i].index, shards[i].count);
+  }
+  return shards.size() > most ? text + fmt::format(" and {} more", shards.size() - most) : text;
+}
+
 std::string short_label(const StudyCell& cell) {
   std::string label = cell.label;
   const std::string key = "sources.calibration";
@@ -206,7 +216,12 @@ Json study_json(const Study& study, const StudyResults& results) {
             {"rig", {{"file", study.file.rig}, {"covariance_kind", covariance_json(study)}}},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
+            {"instruction_sets", results.instruction_sets},
+            {"missing_shards", Json::array()},
             {"cells", Json::array()}};
+  for (const Shard& shard : results.missing_shards) {
+    json["missing_shards"].push_back(fmt::format("{}/{}", shard.index, shard.count));
+  }
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
   json["comparisons"] = comparisons_json(results);
   return json;
@@ -262,10 +277,16 @@ std::string study_table(const Study& study, const StudyResults& results) {
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
                   swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
+  if (is_mixture(results.instruction_sets)) {
+    text += fmt::format("computed with instruction sets {}: not comparable to the bit\n",
+                        results.instruction_sets);
+  }
   if (results.blocks_done == 0) text += "no trials are stored yet\n";
   if (results.blocks_done < results.blocks_total) {
-    text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
-                        results.blocks_done, results.blocks_total);
+    text += fmt::format(
+        "{} of {} blocks done: run the study again to finish it{}\n", results.blocks_done,
+        results.blocks_total,
+        results.missing_shards.empty() ? "" : ", with " + shard_options(results.missing_shards));
   }
   return text;
 }

@@ -30,9 +30,9 @@ struct SplitHalvesResult {
   int splits = 0;  ///< of which both halves could be calibrated
   int failed = 0;  ///< the others
   int dof = 0;     ///< degrees of freedom, the expected distance if the covariance is true
-  double nees_mean_honest = 0, nees_mean_mvb = 0;      ///< mean squared distance over splits
-  double inside_95_honest = 0, inside_95_mvb = 0;      ///< fraction of splits below chi2's 95 %
-  std::vector<HalvesDistance> distances;               ///< of each split that counts, in order
+  double nees_mean_honest = 0, nees_mean_mvb = 0;  ///< mean squared distance over splits
+  double inside_95_honest = 0, inside_95_mvb = 0;  ///< fraction of splits below chi2's 95 %
+  std::vector<HalvesDistance> distances;           ///< of each split that counts, in order
 };
 
 /// Calibrates two random halves of the frames apart, and compares them by their own covariances,

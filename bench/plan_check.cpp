@@ -79,9 +79,7 @@ int first_within(const std::vector<double>& sd, double target, int from) {
 
 struct Tally {
   int plans = 0, within = 0, narrow = 0, narrow_within = 0, below = 0, above = 0;
-  double log_ratio = 0, log_ratio_squares = 0, log_width = 0;
-  double error_squares = 0;
-  std::vector<double> stated;
+  double log_ratio = 0, log_ratio_squares = 0, log_width = 0, stated = 0;
 
   void add(const ViewsNeeded& needed, int reached) {
     ++plans;
@@ -96,16 +94,17 @@ struct Tally {
     log_ratio += r;
     log_ratio_squares += r * r;
     log_width += std::log(width);
+    stated += needed.confidence;
   }
 
   void print(const std::string& what) const {
     const double mean = log_ratio / plans;
     std::printf(
         "%-22s plans %3d  within %3d (below %d, above %d)  upper/lower <= 2: %3d, of these within "
-        "%3d  reached/median %.2f (sd of log %.2f)  mean width %.2f\n",
+        "%3d  reached/median %.2f (sd of log %.2f)  mean width %.2f, stated %.0f %%\n",
         what.c_str(), plans, within, below, above, narrow, narrow_within, std::exp(mean),
         std::sqrt(std::max(0.0, log_ratio_squares / plans - mean * mean)),
-        std::exp(log_width / plans));
+        std::exp(log_width / plans), 100 * stated / plans);
   }
 };
 

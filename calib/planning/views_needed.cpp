@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "calib/base/decompositions.h"
 #include "calib/error.h"
@@ -134,6 +136,21 @@ Interval middle_of(const std::vector<double>& values, double confidence) {
           quantile(values, 1 - outside, QuantileKind::upper)};
 }
 
+/// Of all intervals with this ratio of ends the one that holds the most values, and the
+/// share it holds.
+std::pair<Interval, double> fullest_interval(std::vector<double> values, double ratio) {
+  std::sort(values.begin(), values.end());
+  std::pair<Interval, double> best{{0, 0}, 0};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto end = std::upper_bound(values.begin(), values.end(), ratio * values[i]);
+    const double share =
+        static_cast<double>(end - values.begin() - static_cast<std::ptrdiff_t>(i)) /
+        static_cast<double>(values.size());
+    if (share > best.second) best = {{values[i], std::floor(ratio * values[i])}, share};
+  }
+  return best;
+}
+
 }  // namespace
 
 ViewsNeeded views_needed(const ViewKnowledge& known,
@@ -149,6 +166,10 @@ ViewsNeeded views_needed(const ViewKnowledge& known,
   ViewsNeeded needed;
   needed.views = static_cast<int>(quantile(numbers, 0.5, QuantileKind::lower));
   needed.interval = middle_of(numbers, options.confidence);
+  needed.confidence = options.confidence;
+  if (needed.interval.high > options.widest * needed.interval.low) {
+    std::tie(needed.interval, needed.confidence) = fullest_interval(numbers, options.widest);
+  }
   needed.is_reached = needed.interval.high < options.most_views;
   return needed;
 }

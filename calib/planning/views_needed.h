@@ -57,7 +57,8 @@ ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
                                      const std::string& place);
 
 struct ViewPlanOptions {
-  double confidence = 0.9;  ///< of intervals
+  double confidence = 0.95;  ///< of intervals
+  double widest = 2;         ///< upper over lower end of an interval of views, at most
   int most_views = 2000;
   int sequences = 400;  ///< of views, shared among the pools
   std::uint64_t seed = 1;
@@ -68,6 +69,7 @@ struct ViewPlanOptions {
 struct ViewsNeeded {
   int views = 0;           ///< the median; most_views if not reached
   Interval interval;       ///< `confidence` of the sequences lie within
+  double confidence = 0;   ///< that of the options, or less where the interval would be too wide
   bool is_reached = true;  ///< whether the upper end lies below most_views
 };
 

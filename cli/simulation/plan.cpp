@@ -167,11 +167,16 @@ Covariance reference_covariance(const ViewKnowledge& known) {
   return {CovarianceKind::mvb, parameter_names(pool.rig), 0.5 * (full + full.transpose())};
 }
 
+/// The cause without which success rises by more than its interval's half width, if there is one.
 std::string causes_in_words(const PlanResult& plan) {
-  if (plan.causes.empty()) return "the world";
-  const LimitingCause& first = plan.causes[0];
-  if (first.success <= plan.successes[0].success) return "no single source of error";
-  return fmt::format("first {} (without it {:.1f} %)", first.name, 100 * first.success);
+  const SuccessAt& now = plan.successes[0];
+  const double noise = 0.5 * (now.interval_95.high - now.interval_95.low);
+  if (!plan.causes.empty() && plan.causes[0].success > now.success + noise) {
+    return fmt::format("first {} (without it {:.1f} %)", plan.causes[0].name,
+                       100 * plan.causes[0].success);
+  }
+  return "no single source of error, but the localiser, its map or places that look alike (vernier "
+         "study gives the world's ceiling)";
 }
 
 /// Success against the calibration's error, and from it the depth error that is allowed.

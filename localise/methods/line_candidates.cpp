@@ -13,9 +13,11 @@
 #include "localise/methods/line_query.h"
 #include "localise/place.h"
 #include "localise/place/space_lines.h"
+#include "localise/posterior/pose_posterior.h"
 #include "localise/ranking/node_ranker.h"
 #include "localise/topological_map.h"
 #include "localise/verification/floor_plan_votes.h"
+#include "localise/verification/image_lines.h"
 #include "localise/verification/view_agreement.h"
 
 namespace vernier::localise::internal {

@@ -12,6 +12,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/stored_results.h"
@@ -83,7 +84,7 @@ void merge_studies(const std::vector<fs::path>& parts,
   all.check_agreement();
   const std::vector<Shard> missing = missing_shards(study, study_work(study), all);
   for (const StudyCell& cell : study.file.cells) {  // throws if parts disagree on a ceiling
-    noted_queries(study, all.notes(), ceiling_key(study, cell.experiment));
+    noted_queries(study, all.notes(), ceiling_key(study, cell));
   }
   const FolderClaim claim(study, inputs_of_folder(parts[0]), target);
   try {

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,11 +26,16 @@
 #include "sim/study/instruction_sets.h"
 #include "sim/study/result_recorder.h"
 #include "sim/study/stored_results.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
 #include "sim/study/study_ranks.h"
+#include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
 #include "sim/study/study_work.h"
 #include "sim/study/work_units.h"
 #include "sim/study/worker_threads.h"
+#include "sim/told/fresh_calibrations.h"
+#include "sim/world.h"
 
 namespace vernier::sim::internal {
 
@@ -87,6 +93,24 @@ void check_processor(const StoredResults& stored, const StudyRun& run) {
               "continue in another folder, or give --allow-other-instruction-set");
 }
 
+/// Of the first trials of each cell with [calibration], which use the same calibrations.
+void record_calibrations(const Study& study,
+                         StudyScenes& scenes,
+                         const StoreNotes& known,
+                         const StudyRun& run,
+                         StudyStore& store) {
+  std::set<std::string> recorded;
+  for (const StudyCell& cell : study.file.cells) {
+    const auto calibrations = scenes.calibrations(cell);
+    if (!calibrations || run.stop.stop_requested()) continue;
+    const std::string key = calibration_key(study, cell);
+    if (known.count(key) > 0 || !recorded.insert(key).second) continue;
+    constexpr int enough = 100;
+    const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
+    store.set_note(name, note);
+  }
+}
+
 /// Computes units on the threads of an arena, each of which takes the next one when it is free.
 void compute_here(const std::vector<WorkUnit>& units,
                   const UnitComputer& computer,
@@ -128,6 +152,15 @@ void compute_on_ranks(const std::vector<WorkUnit>& queries,
 }
 
 }  // namespace
+
+const World& world_of(const Study& study, const StudyCell& cell) {
+  return cell.world == study.file.world ? study.world : study.other_worlds.at(cell.world).world;
+}
+
+const std::string& world_fingerprint_of(const Study& study, const StudyCell& cell) {
+  return cell.world == study.file.world ? study.world_fingerprint
+                                        : study.other_worlds.at(cell.world).fingerprint;
+}
 
 std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard) {
   return folder / (shard.count == 1
@@ -173,6 +206,7 @@ void run_study(const Study& study, const StudyRun& run) {
   const std::vector<WorkUnit> queries = query_units(missing), blocks = block_units(missing);
   ResultRecorder recorder(work, missing, run, *store);
   if (ranks) ranks->welcome(!blocks.empty());
+  record_calibrations(study, computer.scenes(), stored.notes(), run, *store);
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
   if (ranks) {
     compute_on_ranks(queries, blocks, computer, run, *ranks, recorder, store);

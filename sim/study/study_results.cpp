@@ -41,7 +41,10 @@ StudyResults without_trials(const Study& study,
     CellResult result;
     result.cell = cell;
     result.trials_per_block = study.file.trials_per_block;
-    result.ceiling = noted_ceiling(study, stored.notes(), ceiling_key(study, cell.experiment));
+    result.ceiling = noted_ceiling(study, stored.notes(), ceiling_key(study, cell));
+    if (cell.told.calibration) {
+      result.calibrations = noted_calibrations(stored.notes(), calibration_key(study, cell));
+    }
     results.cells.push_back(std::move(result));
   }
   results.blocks_total = static_cast<int>(work.blocks.size());

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "calib/base/fingerprint.h"
-#include "sim/experiment.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -26,7 +25,7 @@ using namespace vernier::internal;
 
 StudyWork study_work(const Study& study) {
   StudyWork work;
-  std::map<std::string, const ExperimentSettings*> ceilings;
+  std::map<std::string, const StudyCell*> ceilings;
   const int trials = study.file.trials, size = study.file.trials_per_block;
   for (const StudyCell& cell : study.file.cells) {
     const int number = static_cast<int>(work.cell_keys.size());
@@ -34,10 +33,10 @@ StudyWork study_work(const Study& study) {
     for (int first = 0, block = 0; first < trials; first += size, ++block) {
       work.blocks.push_back({number, block, first, std::min(size, trials - first)});
     }
-    ceilings.emplace(ceiling_key(study, cell.experiment), &cell.experiment);
+    ceilings.emplace(ceiling_key(study, cell), &cell);
   }
-  for (const auto& [key, settings] : ceilings) {
-    work.ceilings.push_back({key, settings, ceiling_queries(study, key)});
+  for (const auto& [key, cell] : ceilings) {
+    work.ceilings.push_back({key, cell, ceiling_queries(study, key)});
   }
   return work;
 }

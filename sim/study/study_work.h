@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/experiment.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
+#include "sim/study/study_file.h"
 
 namespace vernier::sim::internal {
 
@@ -20,8 +20,8 @@ struct BlockJob {
 
 /// The queries of a world ceiling, which several cells may share.
 struct CeilingJob {
-  std::string key;  ///< ceiling_key()
-  const ExperimentSettings* settings = nullptr;
+  std::string key;                  ///< ceiling_key()
+  const StudyCell* cell = nullptr;  ///< the first that has it
   int queries = 0;
 };
 

@@ -15,13 +15,12 @@
 #include "sim/experiment.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/ceiling.h"
-#include "sim/study/query_worlds.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
+#include "sim/study/study_scenes.h"
 #include "sim/study/study_work.h"
-#include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
@@ -50,25 +49,22 @@ std::vector<WorkUnit> query_units(const MissingWork& missing) {
 }
 
 UnitComputer::UnitComputer(const Study& study, const StudyWork& work)
-    : study_(study),
-      work_(work),
-      visibility_(with_errors_of(study.file.world,
-                                 [&] { return Visibility(study.world, study.file.visibility); })),
-      worlds_(study, visibility_) {
+    : study_(study), work_(work), scenes_(study) {
   for (const StudyCell& cell : study.file.cells) {
-    ExperimentSettings settings = cell.experiment;
-    settings.sources.moved = 0;  // a changed world takes time
-    const LocalisationExperiment tried(visibility_, study.rig, nullptr, settings,
-                                       worlds_.of(settings).places);
+    StudyCell still = cell;
+    still.experiment.sources.moved = 0;  // a changed world takes time
+    const LocalisationExperiment tried(scenes_.visibility(cell), study.rig, nullptr,
+                                       still.experiment, scenes_.queries(still).places, nullptr,
+                                       scenes_.told(cell));
   }
 }
 
 void UnitComputer::prepare_maps() {
   for (const StudyCell& cell : study_.file.cells) {
-    auto& shared = looks_[looks_key(cell.experiment)];
+    auto& shared = looks_[looks_key(cell)];
     if (shared) continue;
-    shared = std::make_shared<MapViews>(with_errors_of(study_.file.world, [&] {
-      return map_views(visibility_, study_.rig.rig, cell.experiment);
+    shared = std::make_shared<MapViews>(with_errors_of(cell.world, [&] {
+      return map_views(scenes_.visibility(cell), study_.rig.rig, cell.experiment);
     }));
   }
 }
@@ -79,32 +75,32 @@ UnitResult UnitComputer::compute(const WorkUnit& unit, const std::stop_token& st
 }
 
 BlockRow UnitComputer::block(const BlockJob& job) const {
-  const ExperimentSettings& settings =
-      study_.file.cells[static_cast<std::size_t>(job.cell)].experiment;
-  const QueryWorld world = worlds_.of(settings);
-  const LocalisationExperiment experiment(visibility_, study_.rig, looks_.at(looks_key(settings)),
-                                          settings, world.places, world.changed);
+  const StudyCell& cell = study_.file.cells[static_cast<std::size_t>(job.cell)];
+  const QueryWorld world = scenes_.queries(cell);
+  const LocalisationExperiment experiment(scenes_.visibility(cell), study_.rig,
+                                          looks_.at(looks_key(cell)), cell.experiment, world.places,
+                                          world.changed, scenes_.told(cell));
   const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
                           .first = static_cast<std::uint32_t>(job.first),
                           .count = static_cast<std::uint32_t>(job.count)};
   return block_row(work_.cell_keys[static_cast<std::size_t>(job.cell)], job.block,
-                   with_errors_of(study_.file.world, [&] { return experiment.run_block(trials); }));
+                   with_errors_of(cell.world, [&] { return experiment.run_block(trials); }));
 }
 
 std::shared_ptr<const AliasFinder> UnitComputer::finder(int ceiling) const {
   const std::lock_guard lock(finder_mutex_);
   if (finder_ceiling_ == ceiling) return finder_;
-  const ExperimentSettings& settings = *work_.ceilings[static_cast<std::size_t>(ceiling)].settings;
+  const StudyCell& cell = *work_.ceilings[static_cast<std::size_t>(ceiling)].cell;
   // Whoever uses the finder keeps the world that it refers to.
   struct Kept {
     QueryWorld world;
     AliasFinder finder;
   };
   NoiseFreeViewOptions options;
-  options.mount = settings.mount;
-  const QueryWorld world = worlds_.of(settings);
+  options.mount = cell.experiment.mount;
+  const QueryWorld world = scenes_.queries(cell);
   const auto kept = std::make_shared<const Kept>(
-      Kept{world, AliasFinder(world.changed ? world.changed->visibility : visibility_,
+      Kept{world, AliasFinder(world.changed ? world.changed->visibility : scenes_.visibility(cell),
                               study_.rig.rig, options)});
   finder_ = std::shared_ptr<const AliasFinder>(kept, &kept->finder);
   finder_ceiling_ = ceiling;
@@ -113,15 +109,14 @@ std::shared_ptr<const AliasFinder> UnitComputer::finder(int ceiling) const {
 
 std::vector<std::pair<int, int>> UnitComputer::queries(const WorkUnit& unit,
                                                        const std::stop_token& stop) const {
-  const ExperimentSettings& settings =
-      *work_.ceilings[static_cast<std::size_t>(unit.ceiling)].settings;
+  const StudyCell& cell = *work_.ceilings[static_cast<std::size_t>(unit.ceiling)].cell;
   const std::shared_ptr<const AliasFinder> aliases = finder(unit.ceiling);
-  const QueryWorld world = worlds_.of(settings);
+  const QueryWorld world = scenes_.queries(cell);
   std::vector<std::pair<int, int>> found;
   for (const int query : unit.queries) {
     if (stop.stop_requested()) break;
-    const Aliases of_query =
-        aliases->aliases(world.places->draw(settings.seed, static_cast<std::uint32_t>(query)));
+    const Aliases of_query = aliases->aliases(
+        world.places->draw(cell.experiment.seed, static_cast<std::uint32_t>(query)));
     found.emplace_back(query, of_query.determined ? of_query.elsewhere : not_determined);
   }
   return found;

@@ -13,11 +13,10 @@
 
 #include "sim/experiment.h"
 #include "sim/study/ceiling.h"
-#include "sim/study/query_worlds.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/study.h"
+#include "sim/study/study_scenes.h"
 #include "sim/study/study_work.h"
-#include "sim/visibility.h"
 
 namespace vernier::sim::internal {
 
@@ -50,6 +49,9 @@ class UnitComputer {
   /// Makes the views that maps are recorded from; needed before the first block.
   void prepare_maps();
 
+  /// What the cells share.
+  StudyScenes& scenes() { return scenes_; }
+
   /// Of queries, those that are done when it is asked to stop.
   UnitResult compute(const WorkUnit& unit, const std::stop_token& stop) const;
 
@@ -61,8 +63,7 @@ class UnitComputer {
 
   const Study& study_;
   const StudyWork& work_;
-  Visibility visibility_;
-  mutable QueryWorlds worlds_;
+  mutable StudyScenes scenes_;
   std::map<std::string, std::shared_ptr<const MapViews>> looks_;
   mutable std::mutex finder_mutex_;
   mutable std::shared_ptr<const AliasFinder> finder_;

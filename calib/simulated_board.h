@@ -14,6 +14,7 @@ namespace vernier {
 struct SimulatedBoardOptions {
   std::uint64_t seed = 1;   ///< of poses and noise
   std::uint32_t trial = 0;  ///< of the noise alone
+  std::uint32_t poses = 0;  ///< number of the set of poses
   int frames = 20;
   double pixel_sigma_px = 0.2;  ///< white noise on each coordinate; 0 for none
   double distance_m = 1.0;      ///< of the board's centre, varied by a third either way
@@ -26,9 +27,9 @@ struct SimulatedBoard {
 };
 
 /// Views of a chessboard that every camera of `rig` sees completely, with white noise, for tests
-/// and planning. The same seed and trial give the same poses; noise is drawn by (trial, frame,
-/// camera), poses by (seed) alone, so trials differ in noise only. Throws Error if no such view
-/// can be found in 1000 tries.
+/// and planning. Poses are drawn by (seed, set of poses, frame), noise by (seed, trial, frame,
+/// camera): trials differ in noise only, and fewer frames are the first of more. Throws Error if no
+/// such view can be found in 1000 tries.
 SimulatedBoard simulate_board(const Rig& rig,
                               const Chessboard& board,
                               const SimulatedBoardOptions& options = {});

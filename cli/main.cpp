@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
   cli::add_convert(app, session);
   cli::add_diff(app, session);
   cli::add_advise(app, session);
+  cli::add_plan(app, session);
   cli::add_rectify(app, session);
   cli::add_stereo(app, session);
   cli::add_evaluate(app, session);

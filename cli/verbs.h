@@ -19,6 +19,7 @@ void add_sample(CLI::App& app, Session& session);
 void add_convert(CLI::App& app, Session& session);
 void add_diff(CLI::App& app, Session& session);
 void add_advise(CLI::App& app, Session& session);
+void add_plan(CLI::App& app, Session& session);
 void add_rectify(CLI::App& app, Session& session);
 void add_stereo(CLI::App& app, Session& session);
 void add_evaluate(CLI::App& app, Session& session);

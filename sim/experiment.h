@@ -10,7 +10,6 @@
 
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/sampler.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "localise/topological_map.h"
@@ -20,6 +19,7 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
+#include "sim/told_rigs.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim {
@@ -145,11 +145,13 @@ MapViews map_views(const Visibility& visibility,
                    const TrueMount& stands);
 
 /// A simulated robot that records a map with one calibration of its rig and localises with another.
-/// The estimate is the true rig; the rigs assumed by the estimator are drawn around it.
+/// The estimate is the true rig, which makes all images; the rigs assumed by the estimator are
+/// drawn around it, or told by `told`.
 class LocalisationExperiment {
  public:
   /// Keeps a reference to `visibility`; `looks` is needed for maps and blocks only. Throws Error
-  /// for settings out of range, or a rig without covariance if sources.calibration > 0. `changed`
+  /// for settings out of range, or a rig without covariance if sources.calibration > 0 and nothing
+  /// is `told` (which then scales by psi_c itself). `changed`
   /// is the world as queries find it if furniture has moved (sources.moved), `places` those of the
   /// settings' protocol and height in that world; without, it makes its own. The map is recorded in
   /// the world of `visibility`.
@@ -158,11 +160,12 @@ class LocalisationExperiment {
                          std::shared_ptr<const MapViews> looks,
                          ExperimentSettings settings,
                          std::shared_ptr<const QueryPlaces> places = nullptr,
-                         std::shared_ptr<const ChangedWorld> changed = nullptr);
+                         std::shared_ptr<const ChangedWorld> changed = nullptr,
+                         std::shared_ptr<const ToldRigs> told = nullptr);
 
   /// Runs the trials of one block: the map is recorded once, with draws of its own. With
   /// MapRig::same the map is recorded again for every trial. Results depend on (settings, block,
-  /// trial) only.
+  /// trial) only. A trial without a told rig of its own, or of the map, has failed.
   std::vector<TrialResult> run_block(const TrialBlock& block) const;
 
   /// One trial with a localiser of one's own or of make_localiser(), whose map record_map() made.
@@ -175,7 +178,7 @@ class LocalisationExperiment {
   /// one's own fails.
   localise::TopologicalMap record_map(std::uint32_t block, const Rig& rig) const;
 
-  /// The rig assumed by the estimator in a trial.
+  /// The rig assumed by the estimator in a trial. Throws Error if it has none.
   Rig estimator_rig(std::uint32_t trial) const;
   Rig map_estimator_rig(std::uint32_t block) const;
 
@@ -188,7 +191,9 @@ class LocalisationExperiment {
   /// What the map's drive of a block sees, by a camera that stands as it does in this block.
   std::shared_ptr<const MapViews> views_of(std::uint32_t block) const;
   localise::Pose2D place_of(std::uint32_t trial) const;
-  Rig draw_rig(std::uint32_t trial, bool of_map) const;
+  /// Of the trial, or of the map of block draw - 2³¹.
+  ToldRig told_rig(std::uint32_t draw) const;
+  TrialResult spoilt_trial(std::uint32_t trial, std::string failure) const;
   std::vector<localise::StereoCorner> described(const StereoObservation& sighting,
                                                 const localise::Pose2D& pose,
                                                 const SensingDraw& draw,
@@ -197,12 +202,12 @@ class LocalisationExperiment {
   const Visibility& visibility_;                 // of the recorded world
   std::shared_ptr<const ChangedWorld> changed_;  // null if nothing has moved
   const Visibility& queried_;                    // of the world that queries see
-  RigEstimate rig_;
+  Rig truth_;
+  std::shared_ptr<const ToldRigs> told_;  // null without calibration error
   std::shared_ptr<const MapViews> map_views_;
   std::shared_ptr<const QueryPlaces> places_;
   ExperimentSettings settings_;
   Sensor sensor_;
-  std::unique_ptr<RigSampler> sampler_;                   // null without calibration error
   std::unique_ptr<CornerAppearance> appearance_;          // null if views hold no corners
   std::unique_ptr<CornerAppearance> changed_appearance_;  // in the changed world, if there is one
 };

@@ -79,6 +79,7 @@ SimulatedBoard simulate_board(const Rig& rig,
       0.5 * (observations.target_m.front() + observations.target_m.back());
   for (int frame = 0; frame < options.frames; ++frame) {
     RandomStream poses({.seed = options.seed,
+                        .trial = options.poses,
                         .feature = static_cast<std::uint32_t>(frame),
                         .source = board_source,
                         .eye = 3});

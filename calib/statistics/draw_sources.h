@@ -41,6 +41,8 @@ enum class DrawSource : std::uint32_t {
   sensor_noise = 37,        // photons and read noise of rendered images
   unseen_edges = 38,        // edges that no image shows
   split_halves = 39,        // which frames make the halves of a split
+  calibration_views = 40,   // which views of a board a calibration takes
+  planned_views = 41,       // kinds and sequences of views that a plan expects
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

@@ -20,6 +20,7 @@
 #include "cli/report/report_data.h"
 #include "cli/report/report_evaluation.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/study/study.h"
 #include "sim/study/study_store.h"
 
@@ -77,6 +78,9 @@ void add_study(const std::string& folder, Session& session, Validation proof, Js
   data["world"] = report_world(study.world);
   data["view"] = report_view(study);
   data["rigs"].push_back(report_rig(study.rig, study.file.rig, proof, session));
+  for (const auto& [file, told] : study.told_rigs) {
+    data["rigs"].push_back(report_rig(told.estimate, file, proof, session));
+  }
 }
 
 struct NamedRig {
@@ -89,9 +93,7 @@ std::vector<fs::path> files_read(const Inputs& inputs) {
   std::vector<fs::path> files;
   if (!inputs.study.empty()) {
     files = store_files(inputs.study);
-    for (const char* name : {"study.toml", "world.world.toml", "rig.json", "sources.toml"}) {
-      files.push_back(fs::path(inputs.study) / name);
-    }
+    for (fs::path& file : input_files(inputs.study)) files.push_back(std::move(file));
   }
   if (!inputs.evaluation.empty()) {
     const std::vector<fs::path> more = evaluation_files(inputs.evaluation);

@@ -12,11 +12,9 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
-#include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"
-#include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
 
 namespace vernier::cli {
@@ -24,9 +22,6 @@ namespace vernier::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char *study_name = "study.toml", *world_name = "world.world.toml",
-                     *rig_name = "rig.json", *sources_name = "sources.toml";
 
 /// The folder and its parents as far as they do not exist, innermost first.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
@@ -53,25 +48,6 @@ bool holds_results(const StoreContent& content) {
 
 }  // namespace
 
-StudyInputs inputs_of_study(const fs::path& study_file) {
-  const StudyFile study = read_study(study_file);
-  StudyInputs inputs{{world_name, read_whole(find_world(study.world, study_file.parent_path()))},
-                     {rig_name, read_whole(find_rig(study.rig, study_file.parent_path()))}};
-  if (!study.sources.empty()) inputs.emplace_back(sources_name, read_whole(study.sources));
-  inputs.emplace_back(study_name, read_whole(study_file));  // last: it makes the folder a study's
-  return inputs;
-}
-
-StudyInputs inputs_of_folder(const fs::path& folder) {
-  StudyInputs inputs;
-  for (const char* name : {world_name, rig_name, sources_name, study_name}) {
-    std::error_code unknown;
-    if (name == sources_name && !fs::exists(folder / name, unknown)) continue;
-    inputs.emplace_back(name, read_whole(folder / name));
-  }
-  return inputs;
-}
-
 FolderClaim::FolderClaim(const Study& wanted, StudyInputs inputs, fs::path folder)
     : inputs_(std::move(inputs)),
       folder_(std::move(folder)),
@@ -87,7 +63,7 @@ FolderClaim::Found FolderClaim::find_study(const Study& wanted) const {
   if (!fs::is_directory(folder_, unknown)) {
     throw Error(folder_.string(), "exists and is not a folder", "give another -o DIR");
   }
-  if (!fs::exists(folder_ / study_name, unknown)) {
+  if (!fs::exists(folder_ / study_copy, unknown)) {
     refuse_other_files();
     return Found::nothing;
   }

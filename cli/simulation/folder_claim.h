@@ -4,21 +4,13 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cli/program/namespaces.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/study/study.h"
 
 namespace vernier::cli {
-
-/// What a study's folder keeps beside its stores, each a name and its content: world.world.toml,
-/// rig.json, sources.toml if [sources] names a file, study.toml.
-using StudyInputs = std::vector<std::pair<std::string, std::string>>;
-
-/// The inputs of a study file, and those that a folder has.
-StudyInputs inputs_of_study(const std::filesystem::path& study_file);
-StudyInputs inputs_of_folder(const std::filesystem::path& folder);
 
 /// The folder in which a study is about to run: new or empty, or with the same study, which the
 /// wanted one may extend by trials or cells.

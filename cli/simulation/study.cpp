@@ -14,6 +14,7 @@
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_merge.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
@@ -35,6 +36,13 @@ void print(const Study& study, const fs::path& folder, Session& session) {
     const int failed = summarise(cell).failed;
     if (failed == 0) continue;
     const SourceSettings& sources = cell.cell.experiment.sources;
+    if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
+      session.warn(
+          fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "
+                      "those of their maps, did",
+                      failed, cell.trials.size(), cell.cell.label));
+      continue;
+    }
     session.add_trust_warning(fmt::format(
         "{} failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
         "settings says why",

@@ -13,57 +13,25 @@
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
-#include "calib/base/fingerprint.h"
 #include "calib/base/text_lines.h"
 #include "calib/covariance.h"
-#include "calib/error.h"
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "sim/experiment.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
-#include "sim/world.h"
-#include "sim/world_file.h"
+#include "sim/study/told_settings.h"
+#include "sim/told/fresh_calibrations.h"
 
 namespace vernier::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Throws Error for a route without or with too many views, before anything is written.
-void check_maps(const Study& study) {
-  std::set<std::pair<double, int>> checked;
-  for (const StudyCell& cell : study.file.cells) {
-    const ExperimentSettings& settings = cell.experiment;
-    if (!checked.emplace(settings.map_spacing_m, settings.map_headings).second) continue;
-    map_poses(study.world.route, settings.map_spacing_m, settings.map_headings);
-  }
-}
-
-Study assemble(StudyFile file, const fs::path& world, const fs::path& rig, Session& session) {
-  Study study;
-  study.file = std::move(file);
-  const std::string world_text = read_whole(world), rig_text = read_whole(rig);
-  study.world = build_world(parse_world(world_text, world.string()));
-  study.world_fingerprint = fingerprint(world_text);
-  RigFile rig_file = parse_rig(rig_text, rig.string());
-  for (const std::string& warning : rig_file.warnings) session.warn(warning);
-  study.rig = std::move(rig_file.estimate);
-  study.rig_fingerprint = fingerprint(rig_text);
-  check_maps(study);
-  for (const StudyCell& cell : study.file.cells) {
-    if (cell.experiment.sources.calibration > 0) required_covariance(study.rig, rig.string());
-  }
-  return study;
-}
 
 /// A setting as a JSON number, Boolean or string.
 Json value_json(const std::string& text) {
@@ -97,28 +65,33 @@ Json thresholds_json(const std::vector<TrialResult>& trials) {
   return json;
 }
 
-/// The kind of the rig's covariance, which psi_c scales; null if there is none.
-Json covariance_json(const Study& study) {
-  return study.rig.covariance ? Json(name(study.rig.covariance->kind)) : Json();
+/// The rigs of a study, with the kind of covariance that psi_c scales; null if there is none.
+Json rig_json(const Study& study) {
+  const auto kind = [](const RigEstimate& rig) {
+    return rig.covariance ? Json(name(rig.covariance->kind)) : Json();
+  };
+  Json json{{"file", study.file.rig}, {"covariance_kind", kind(study.rig)}};
+  for (const std::string& file : told_rigs_of(study.file)) {
+    json["told"].push_back(
+        {{"file", file}, {"covariance_kind", kind(study.told_rigs.at(file).estimate)}});
+  }
+  return json;
+}
+
+/// What became of the calibrations of a cell; null without any.
+Json calibrations_json(const std::optional<CalibrationRecord>& record) {
+  if (!record) return {};
+  return {{"calibrations", record->calibrations},
+          {"failed", record->failed},
+          {"doubtful", record->doubtful},
+          {"why_failed", record->why_failed},
+          {"why_doubtful", record->why_doubtful},
+          {"range_m", record->range_m},
+          {"depth_error_m", json_number(record->depth_error_m)},
+          {"depth_sd_m", json_number(record->depth_sd_m)}};
 }
 
 }  // namespace
-
-Study load_study(const fs::path& file, Session& session) {
-  StudyFile study = read_study(file);
-  const fs::path world = find_world(study.world, file.parent_path());
-  const fs::path rig = find_rig(study.rig, file.parent_path());
-  return assemble(std::move(study), world, rig, session);
-}
-
-Study open_folder(const fs::path& folder, Session& session) {
-  if (!fs::is_regular_file(folder / "study.toml")) {
-    throw Error(folder.string(), "is not a study folder",
-                "give a folder written by vernier study -o");
-  }
-  return assemble(read_study(folder / "study.toml", folder / "sources.toml"),
-                  folder / "world.world.toml", folder / "rig.json", session);
-}
 
 std::string short_label(const StudyCell& cell) {
   std::string label = cell.label;
@@ -170,7 +143,8 @@ Json cell_json(const CellResult& cell) {
           {"unaliased_share_interval_95",
            cell.ceiling ? pair(cell.ceiling->unaliased_interval_95) : Json()},
           {"reliability", reliability_json(cell.trials)},
-          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.trials) : Json()}};
+          {"thresholds", cell.cell.experiment.looks == 1 ? thresholds_json(cell.trials) : Json()},
+          {"calibration", calibrations_json(cell.calibrations)}};
 }
 
 Json comparisons_json(const StudyResults& results) {
@@ -203,7 +177,7 @@ Json comparisons_json(const StudyResults& results) {
 
 Json study_json(const Study& study, const StudyResults& results) {
   Json json{{"trials", study.file.trials},
-            {"rig", {{"file", study.file.rig}, {"covariance_kind", covariance_json(study)}}},
+            {"rig", rig_json(study)},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
             {"cells", Json::array()}};
@@ -217,6 +191,54 @@ namespace {
 std::string interval_text(const std::optional<Interval>& interval) {
   if (!interval) return "none";
   return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * interval->low, 100 * interval->high);
+}
+
+std::string world_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const std::string& file : worlds_of(study.file)) {
+    names.push_back(file == study.file.world ? study.world.name
+                                             : study.other_worlds.at(file).world.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What the estimator is told of the true rig.
+std::string rig_text(const Study& study) {
+  const auto covariance = [](const RigEstimate& rig) {
+    return rig.covariance
+               ? fmt::format("covariance (scaled by psi_c) of kind {}", name(rig.covariance->kind))
+               : std::string("no covariance");
+  };
+  const ToldSettings& told = study.file.cells[0].told;
+  if (told.calibration) {
+    return fmt::format("true rig {}; told: a fresh calibration for each trial and each map\n",
+                       study.file.rig);
+  }
+  if (told.truth.empty()) {
+    return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));
+  }
+  std::string text = fmt::format("true rig {}\n", study.file.rig);
+  for (const std::string& file : told_rigs_of(study.file)) {
+    text += fmt::format("told rig {}: {}\n", file, covariance(study.told_rigs.at(file).estimate));
+  }
+  return text;
+}
+
+/// A line for each cell with [calibration].
+std::string calibrations_text(const StudyResults& results) {
+  std::string text;
+  for (const CellResult& cell : results.cells) {
+    if (!cell.calibrations) continue;
+    const CalibrationRecord& c = *cell.calibrations;
+    text += fmt::format(
+        "calibrations from {} views: {} of {} failed, {} more are doubted; depth at {:g} m: rms "
+        "error {:.3g} m, stated {:.3g} m\n",
+        cell.cell.told.calibration->views, c.failed, c.calibrations, c.doubtful, c.range_m,
+        c.depth_error_m, c.depth_sd_m);
+    if (!c.why_failed.empty()) text += fmt::format("  failed: {}\n", c.why_failed);
+    if (!c.why_doubtful.empty()) text += fmt::format("  doubted: {}\n", c.why_doubtful);
+  }
+  return text;
 }
 
 /// A number with its unit, a dash where there is none: shards have a part of a ceiling's queries
@@ -253,14 +275,10 @@ std::string study_table(const Study& study, const StudyResults& results) {
   const auto& keys = study.file.sweep_keys;
   const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
   const auto protocol = name(study.file.cells[0].experiment.protocol);
-  const std::string covariance =
-      study.rig.covariance
-          ? fmt::format("covariance (scaled by psi_c) of kind {}", name(study.rig.covariance->kind))
-          : "no covariance";
-  text += fmt::format("rig {}: {}\n", study.file.rig, covariance);
+  text += rig_text(study) + calibrations_text(results);
   text +=
       fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
-                  swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
+                  swept_protocol ? "" : fmt::format("protocol {}, ", protocol), world_names(study));
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
   if (results.blocks_done == 0) text += "no trials are stored yet\n";
   if (results.blocks_done < results.blocks_total) {

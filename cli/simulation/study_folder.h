@@ -11,12 +11,6 @@
 
 namespace vernier::cli {
 
-/// Loads a study file with its world and rig (shipped, or relative to the study file).
-Study load_study(const std::filesystem::path& file, Session& session);
-
-/// The study of a results folder, by its own copies of the inputs, so that it can be moved.
-Study open_folder(const std::filesystem::path& folder, Session& session);
-
 /// A cell's settings and statistics.
 Json cell_json(const CellResult& cell);
 /// Compares each cell with the closest previous one that has the same queries; p-values unadjusted

@@ -9,6 +9,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"
@@ -57,7 +58,7 @@ void merge_studies(const std::vector<fs::path>& parts, const fs::path& target, S
   StoredResults all = read_parts(parts, target, study, session);
   add_folder(target, all);
   for (const StudyCell& cell : study.file.cells) {  // throws if parts disagree on a ceiling
-    noted_queries(study, all.notes, ceiling_key(study, cell.experiment));
+    noted_queries(study, all.notes, ceiling_key(study, cell));
   }
   const FolderClaim claim(study, inputs_of_folder(parts[0]), target);
   try {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/experiment.h"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
@@ -24,7 +25,8 @@
 #include "sim/noise_free_view.h"
 #include "sim/sense.h"
 #include "sim/sources.h"
-#include "sim/study/told_rig.h"
+#include "sim/study/reconstruct.h"
+#include "sim/told_rigs.h"
 #include "sim/uncertainty_source.h"
 #include "sim/visibility.h"
 #include "sim/world.h"
@@ -67,6 +69,15 @@ PlaceView interpret(const Rig& told,
   view.rig = std::make_shared<const Rig>(told);
   view.monocular_lines = sighting.left_only;
   return view;
+}
+
+/// The rig of a draw that did not fail.
+Rig required(ToldRig told, const char* what, std::uint32_t number) {
+  if (!told.failure.empty()) {
+    throw Error(fmt::format("calibration for {} {}", what, number), told.failure,
+                "give the calibration more views");
+  }
+  return std::move(told.rig);
 }
 
 /// Of sixteen turns the one that is furthest from those of all looks.
@@ -115,11 +126,13 @@ LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
                                                std::shared_ptr<const MapViews> looks,
                                                ExperimentSettings settings,
                                                std::shared_ptr<const QueryPlaces> places,
-                                               std::shared_ptr<const ChangedWorld> changed)
+                                               std::shared_ptr<const ChangedWorld> changed,
+                                               std::shared_ptr<const ToldRigs> told)
     : visibility_(visibility),
       changed_(changed_world(std::move(changed), visibility, settings)),
       queried_(changed_ ? changed_->visibility : visibility),
-      rig_(rig),
+      truth_(rig.rig),
+      told_(std::move(told)),
       map_views_(std::move(looks)),
       places_(std::move(places)),
       settings_(std::move(settings)),
@@ -128,7 +141,9 @@ LocalisationExperiment::LocalisationExperiment(const Visibility& visibility,
     places_ =
         std::make_shared<const QueryPlaces>(queried_, settings_.protocol, settings_.mount.height_m);
   }
-  if (settings_.sources.calibration > 0) sampler_ = std::make_unique<RigSampler>(rig, "rig");
+  if (!told_ && settings_.sources.calibration > 0) {
+    told_ = drawn_rigs(RigSampler(rig, "rig"), settings_.sources.calibration, settings_.seed);
+  }
   check(settings_.appearance, "appearance of corners");
   if (needs_corners(settings_.method, settings_.localiser)) {
     appearance_ = std::make_unique<CornerAppearance>(visibility.world(), settings_.appearance);
@@ -147,24 +162,22 @@ std::vector<StereoCorner> LocalisationExperiment::described(const StereoObservat
   return stereo_corners(sighting, *of, settings_.sources, eye_of(pose, settings_.mount), draw);
 }
 
-Rig LocalisationExperiment::draw_rig(std::uint32_t trial, bool of_map) const {
-  if (!sampler_) return rig_.rig;
-  return sampler_->sample(settings_.sources.calibration, settings_.seed,
-                          of_map ? map_trial + trial : trial);
+ToldRig LocalisationExperiment::told_rig(std::uint32_t draw) const {
+  return told_ ? told_->told(draw) : ToldRig{truth_, {}};
 }
 
 Rig LocalisationExperiment::estimator_rig(std::uint32_t trial) const {
-  return draw_rig(trial, false);
+  return required(told_rig(trial), "trial", trial);
 }
 Rig LocalisationExperiment::map_estimator_rig(std::uint32_t block) const {
-  return draw_rig(block, true);
+  return required(told_rig(map_trial + block), "map", block);
 }
 
 std::shared_ptr<const MapViews> LocalisationExperiment::views_of(std::uint32_t block) const {
   if (!has_mount_error(settings_.sources)) return map_views_;
   const TrueMount stands =
       draw_mount(settings_.mount, settings_.sources, settings_.seed, map_trial + block);
-  return std::make_shared<const MapViews>(map_views(visibility_, rig_.rig, settings_, stands));
+  return std::make_shared<const MapViews>(map_views(visibility_, truth_, settings_, stands));
 }
 
 TopologicalMap LocalisationExperiment::record(std::uint32_t block,
@@ -225,7 +238,7 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   for (int taken = 0; taken < std::max(1, settings_.looks); ++taken) {
     Pose2D pose = result.truth;
     pose.heading_rad += turn_rad;
-    const NoiseFreeView seen = look(queried_, rig_.rig, pose, looking);
+    const NoiseFreeView seen = look(queried_, truth_, pose, looking);
     const SensingDraw draw{
         .seed = settings_.seed, .trial = trial, .frame = static_cast<std::uint32_t>(taken)};
     StereoObservation sighting = sensor_.sense(seen, draw);
@@ -277,35 +290,39 @@ TrialResult LocalisationExperiment::run_trial(std::uint32_t trial,
   return result;
 }
 
+TrialResult LocalisationExperiment::spoilt_trial(std::uint32_t trial, std::string failure) const {
+  TrialResult spoilt;
+  spoilt.trial = trial;
+  spoilt.truth = place_of(trial);
+  spoilt.status = LocalisationStatus::failed;
+  spoilt.failure = std::move(failure);
+  spoilt.error_m = spoilt.node_error_m = spoilt.heading_error_rad =
+      std::numeric_limits<double>::quiet_NaN();
+  return spoilt;
+}
+
 std::vector<TrialResult> LocalisationExperiment::run_block(const TrialBlock& trials) const {
   const auto [block, first, count] = trials;
   std::vector<TrialResult> results;
   results.reserve(count);
   const std::shared_ptr<const MapViews> views = views_of(block);
   TopologicalMap map;
-  std::string failure;  // of a source, when the map was recorded
+  std::string failure;  // of a calibration or of a source, when the map was recorded
   std::unique_ptr<Localiser> localiser;
   for (std::uint32_t trial = first; trial < first + count; ++trial) {
-    const Rig told = estimator_rig(trial);
+    const ToldRig told = told_rig(trial);
     const bool same = settings_.map_rig == MapRig::same;
     if (same || trial == first) {
-      failure.clear();
+      const ToldRig of_map = same ? told : told_rig(map_trial + block);
+      failure = of_map.failure;
       localiser.reset();
-      map = record(block, same ? told : map_estimator_rig(block), *views, failure);
+      if (failure.empty()) map = record(block, of_map.rig, *views, failure);
       if (failure.empty()) localiser = make_localiser(settings_.method, map, settings_.localiser);
     }
-    if (failure.empty()) {
-      results.push_back(run_trial(trial, told, map, *localiser));
-      continue;
-    }
-    // Without its map a trial cannot be run.
-    TrialResult& spoilt = results.emplace_back();
-    spoilt.trial = trial;
-    spoilt.truth = place_of(trial);
-    spoilt.status = LocalisationStatus::failed;
-    spoilt.failure = failure;
-    spoilt.error_m = spoilt.node_error_m = spoilt.heading_error_rad =
-        std::numeric_limits<double>::quiet_NaN();
+    // Without a map, or a rig of its own, a trial cannot be run.
+    const std::string& why = failure.empty() ? told.failure : failure;
+    results.push_back(why.empty() ? run_trial(trial, told.rig, map, *localiser)
+                                  : spoilt_trial(trial, why));
   }
   return results;
 }

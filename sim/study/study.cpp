@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -29,14 +28,16 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "sim/experiment.h"
-#include "sim/moved_furniture.h"
 #include "sim/noise_free_view.h"
 #include "sim/study/ceiling.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
+#include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
+#include "sim/told/fresh_calibrations.h"
 #include "sim/visibility.h"
+#include "sim/world.h"
 
 namespace vernier::sim::internal {
 
@@ -121,57 +122,9 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
 
 /// A ceiling that no store of the folder has, and this shard's part of it.
 struct MissingCeiling {
-  const ExperimentSettings* settings;
+  const StudyCell* cell;
   std::vector<int> of_query;  ///< as ceiling_part() stores them
   std::vector<int> mine;      ///< the queries to compute
-};
-
-/// Where queries stand and what they see there.
-struct QueryWorld {
-  std::shared_ptr<const ChangedWorld> changed;  ///< null if nothing has moved
-  std::shared_ptr<const QueryPlaces> places;
-};
-
-/// The query worlds of a study's cells. Of those with moved furniture only the latest are kept.
-class QueryWorlds {
- public:
-  QueryWorlds(const Study& study, const Visibility& recorded)
-      : study_(study), recorded_(recorded) {}
-
-  QueryWorld of(const ExperimentSettings& settings) {
-    const double moved = settings.sources.moved;
-    std::string key = fmt::format("{} {}", name(settings.protocol), settings.mount.height_m);
-    if (moved > 0) key += fmt::format(" {} {}", moved, settings.seed);
-    const std::lock_guard lock(mutex_);
-    if (const auto found = worlds_.find(key); found != worlds_.end()) return found->second;
-    QueryWorld world;
-    with_errors_of(study_.file.world, [&] {
-      if (moved > 0) {
-        world.changed =
-            std::make_shared<const ChangedWorld>(recorded_.world(), moved, settings.seed);
-      }
-      world.places =
-          std::make_shared<const QueryPlaces>(world.changed ? world.changed->visibility : recorded_,
-                                              settings.protocol, settings.mount.height_m);
-      return 0;
-    });
-    if (moved > 0) {
-      constexpr std::size_t most_changed = 16;
-      changed_keys_.push_back(key);
-      if (changed_keys_.size() > most_changed) {
-        worlds_.erase(changed_keys_.front());
-        changed_keys_.pop_front();
-      }
-    }
-    return worlds_.emplace(key, std::move(world)).first->second;
-  }
-
- private:
-  const Study& study_;
-  const Visibility& recorded_;
-  std::mutex mutex_;
-  std::map<std::string, QueryWorld> worlds_;
-  std::deque<std::string> changed_keys_;  // oldest first
 };
 
 /// Computes this shard's queries of a ceiling until asked to stop, and stores them some hundred at
@@ -191,8 +144,8 @@ void compute_queries(const AliasFinder& finder,
     in_parallel(arena, static_cast<int>(count), [&](int i) {
       if (stop.stop_requested()) return;
       const int query = ceiling.mine[first + static_cast<std::size_t>(i)];
-      const Aliases found =
-          finder.aliases(places.draw(ceiling.settings->seed, static_cast<std::uint32_t>(query)));
+      const Aliases found = finder.aliases(
+          places.draw(ceiling.cell->experiment.seed, static_cast<std::uint32_t>(query)));
       of_query[query] = found.determined ? found.elsewhere : not_determined;
       one_done();
     });
@@ -208,9 +161,9 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
                                                        const StoreNotes& notes) {
   std::map<std::string, MissingCeiling> missing;
   for (const StudyCell& cell : study.file.cells) {
-    const std::string key = ceiling_key(study, cell.experiment);
+    const std::string key = ceiling_key(study, cell);
     if (missing.count(key) > 0) continue;
-    MissingCeiling ceiling{&cell.experiment, noted_queries(study, notes, key), {}};
+    MissingCeiling ceiling{&cell, noted_queries(study, notes, key), {}};
     for (int i = run.shard.index; i < ceiling_queries(study, key); i += run.shard.count) {
       if (ceiling.of_query[i] == not_known) ceiling.mine.push_back(i);
     }
@@ -221,9 +174,8 @@ std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
 
 /// Computes ceilings, one after the other.
 void add_ceilings(const Study& study,
-                  const Visibility& visibility,
                   const StudyRun& run,
-                  QueryWorlds& worlds,
+                  StudyScenes& scenes,
                   std::map<std::string, MissingCeiling> missing,
                   tbb::task_arena& arena,
                   StudyStore& store) {
@@ -240,10 +192,11 @@ void add_ceilings(const Study& study,
   };
   for (const auto& [key, ceiling] : missing) {
     NoiseFreeViewOptions options;
-    options.mount = ceiling.settings->mount;
-    const QueryWorld world = worlds.of(*ceiling.settings);
-    const AliasFinder finder(world.changed ? world.changed->visibility : visibility, study.rig.rig,
-                             options);
+    options.mount = ceiling.cell->experiment.mount;
+    const QueryWorld world = scenes.queries(*ceiling.cell);
+    const AliasFinder finder(
+        world.changed ? world.changed->visibility : scenes.visibility(*ceiling.cell), study.rig.rig,
+        options);
     compute_queries(finder, *world.places, key, ceiling, arena, run.stop, one_done, store);
   }
 }
@@ -260,29 +213,48 @@ void check_processor(const StoredResults& stored, const std::filesystem::path& f
 }
 
 /// Throws Error if a cell cannot be run, before anything is written.
-void check_cells(const Study& study, const Visibility& visibility, QueryWorlds& worlds) {
+void check_cells(const Study& study, StudyScenes& scenes) {
   for (const StudyCell& cell : study.file.cells) {
-    ExperimentSettings settings = cell.experiment;
-    settings.sources.moved = 0;  // a changed world takes time
-    const LocalisationExperiment tried(visibility, study.rig, nullptr, settings,
-                                       worlds.of(settings).places);
+    StudyCell still = cell;
+    still.experiment.sources.moved = 0;  // a changed world takes time
+    const LocalisationExperiment tried(scenes.visibility(cell), study.rig, nullptr,
+                                       still.experiment, scenes.queries(still).places, nullptr,
+                                       scenes.told(cell));
+  }
+}
+
+/// Of the first trials of each cell with [calibration], which use the same calibrations.
+void record_calibrations(const Study& study,
+                         StudyScenes& scenes,
+                         const StoredResults& stored,
+                         const StudyRun& run,
+                         StudyStore& store) {
+  std::set<std::string> recorded;
+  for (const StudyCell& cell : study.file.cells) {
+    const auto calibrations = scenes.calibrations(cell);
+    if (!calibrations || run.stop.stop_requested()) continue;
+    const std::string key = calibration_key(study, cell);
+    if (stored.notes.count(key) > 0 || !recorded.insert(key).second) continue;
+    constexpr int enough = 100;
+    const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
+    store.set_note(name, note);
   }
 }
 
 /// Runs the blocks and stores each as soon as it is done.
 void run_jobs(const Study& study,
-              const Visibility& visibility,
-              QueryWorlds& worlds,
+              StudyScenes& scenes,
               const StudyRun& run,
               const std::vector<Job>& jobs,
               tbb::task_arena& arena,
               StudyStore& store) {
   std::map<std::string, std::shared_ptr<const MapViews>> looks;
   for (const StudyCell& cell : study.file.cells) {
-    auto& shared = looks[looks_key(cell.experiment)];
+    auto& shared = looks[looks_key(cell)];
     if (!shared && !jobs.empty() && !run.stop.stop_requested()) {
-      shared = std::make_shared<MapViews>(with_errors_of(
-          study.file.world, [&] { return map_views(visibility, study.rig.rig, cell.experiment); }));
+      shared = std::make_shared<MapViews>(with_errors_of(cell.world, [&] {
+        return map_views(scenes.visibility(cell), study.rig.rig, cell.experiment);
+      }));
     }
   }
   std::mutex mutex;
@@ -292,14 +264,15 @@ void run_jobs(const Study& study,
   const auto do_job = [&](int i) {
     if (run.stop.stop_requested()) return;
     const Job& job = jobs[i];
-    const QueryWorld world = worlds.of(job.cell->experiment);
-    const LocalisationExperiment experiment(visibility, study.rig,
-                                            looks.at(looks_key(job.cell->experiment)),
-                                            job.cell->experiment, world.places, world.changed);
+    const StudyCell& cell = *job.cell;
+    const QueryWorld world = scenes.queries(cell);
+    const LocalisationExperiment experiment(scenes.visibility(cell), study.rig,
+                                            looks.at(looks_key(cell)), cell.experiment,
+                                            world.places, world.changed, scenes.told(cell));
     const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
                             .first = static_cast<std::uint32_t>(job.first),
                             .count = static_cast<std::uint32_t>(job.count)};
-    const StoredBlock block{job.key, job.block, with_errors_of(study.file.world, [&] {
+    const StoredBlock block{job.key, job.block, with_errors_of(cell.world, [&] {
                               return experiment.run_block(trials);
                             })};
     const std::lock_guard lock(mutex);
@@ -310,6 +283,15 @@ void run_jobs(const Study& study,
 }
 
 }  // namespace
+
+const World& world_of(const Study& study, const StudyCell& cell) {
+  return cell.world == study.file.world ? study.world : study.other_worlds.at(cell.world).world;
+}
+
+const std::string& world_fingerprint_of(const Study& study, const StudyCell& cell) {
+  return cell.world == study.file.world ? study.world_fingerprint
+                                        : study.other_worlds.at(cell.world).fingerprint;
+}
 
 std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard) {
   return folder / (shard.count == 1
@@ -329,10 +311,8 @@ void run_study(const Study& study, const StudyRun& run) {
     return;
   }
   check_processor(stored, run.folder);
-  const Visibility visibility = with_errors_of(
-      study.file.world, [&] { return Visibility(study.world, study.file.visibility); });
-  QueryWorlds worlds(study, visibility);
-  check_cells(study, visibility, worlds);
+  StudyScenes scenes(study);
+  check_cells(study, scenes);
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);
@@ -344,9 +324,9 @@ void run_study(const Study& study, const StudyRun& run) {
 
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  add_ceilings(study, visibility, run, worlds, missing_ceilings(study, run, stored.notes), arena,
-               store);
-  run_jobs(study, visibility, worlds, run, jobs, arena, store);
+  record_calibrations(study, scenes, stored, run, store);
+  add_ceilings(study, run, scenes, missing_ceilings(study, run, stored.notes), arena, store);
+  run_jobs(study, scenes, run, jobs, arena, store);
 }
 
 StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
@@ -363,7 +343,10 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
     CellResult result;
     result.cell = cell;
     result.trials_per_block = study.file.trials_per_block;
-    result.ceiling = noted_ceiling(study, notes, ceiling_key(study, cell.experiment));
+    result.ceiling = noted_ceiling(study, notes, ceiling_key(study, cell));
+    if (cell.told.calibration) {
+      result.calibrations = noted_calibrations(notes, calibration_key(study, cell));
+    }
     results.cells.push_back(std::move(result));
   }
   for (const Job& job : all_jobs(study)) {

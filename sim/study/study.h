@@ -4,26 +4,47 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "calib/board_observations.h"
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
 #include "sim/study/study_file.h"
+#include "sim/told/fresh_calibrations.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
 
+/// A world or a rig with the fingerprint of its file's content.
+struct StudyWorld {
+  World world;
+  std::string fingerprint;
+};
+struct StudyRig {
+  RigEstimate estimate;
+  std::string fingerprint;
+};
+
 /// A study with all files that it refers to loaded.
 struct Study {
   StudyFile file;
-  World world;
-  RigEstimate rig;
-  std::string world_fingerprint, rig_fingerprint;  ///< of the files' content
+  World world;                                       ///< of the first cell
+  RigEstimate rig;                                   ///< the true one, in all cells
+  std::string world_fingerprint, rig_fingerprint;    ///< of the files' content
+  std::map<std::string, StudyWorld> other_worlds;    ///< that a sweep names beside, by name
+  std::map<std::string, StudyRig> told_rigs;         ///< by name, if there is a rig.truth
+  std::shared_ptr<const BoardObservations> corners;  ///< of calibration.observations, or null
+  std::string corners_fingerprint;
 };
+
+const World& world_of(const Study& study, const StudyCell& cell);
+const std::string& world_fingerprint_of(const Study& study, const StudyCell& cell);
 
 /// Which blocks this process runs: block i belongs to shard i mod count.
 struct Shard {
@@ -70,6 +91,8 @@ struct CellResult {
   std::vector<ClusterCount> maps;       ///< one entry per block
   int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
   std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
+  /// Of a cell with [calibration]: what became of the calibrations of its first trials.
+  std::optional<CalibrationRecord> calibrations;
 };
 
 /// The part of a study that is stored in the folder.

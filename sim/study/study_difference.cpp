@@ -21,6 +21,7 @@ namespace {
 std::vector<std::string> differing_settings(const StudyCell& stored, const StudyCell& wanted) {
   std::vector<std::string> all;
   for (const auto& [key, value] : stored.settings) {
+    if (key == "rig.truth" || key == "calibration.observations") continue;  // by content
     const auto other = wanted.settings.find(key);
     if (other == wanted.settings.end() || other->second != value) {
       all.push_back(fmt::format("{} is {} there and {} here", key, value,
@@ -40,16 +41,45 @@ std::vector<std::string> least_difference(const StudyCell& stored, const Study& 
   return least;
 }
 
+/// Of files with the same name in both; which there are, the settings of the cells say.
+template <class Files>
+std::string file_difference(const Files& stored, const Files& wanted, const char* key) {
+  for (const auto& [name, file] : stored) {
+    const auto other = wanted.find(name);
+    if (other != wanted.end() && other->second.fingerprint != file.fingerprint) {
+      return fmt::format("the file {} that {} names differs", name, key);
+    }
+  }
+  return "";
+}
+
+/// All worlds by name, where there are several.
+std::map<std::string, StudyWorld> swept_worlds(const Study& study) {
+  std::map<std::string, StudyWorld> all;
+  for (const auto& [name, world] : study.other_worlds) all[name].fingerprint = world.fingerprint;
+  all[study.file.world].fingerprint = study.world_fingerprint;
+  return all;
+}
+
 }  // namespace
 
 std::string study_difference(const Study& stored, const Study& wanted) {
-  if (stored.world_fingerprint != wanted.world_fingerprint) {
+  const bool swept = stored.file.cells[0].settings.contains("world.file");
+  if (swept) {
+    const auto why = file_difference(swept_worlds(stored), swept_worlds(wanted), "world.file");
+    if (!why.empty()) return why;
+  } else if (stored.world_fingerprint != wanted.world_fingerprint) {
     return fmt::format("the world file differs (world.file is {} there and {} here)",
                        stored.file.world, wanted.file.world);
   }
   if (stored.rig_fingerprint != wanted.rig_fingerprint) {
     return fmt::format("the rig file differs (rig.file is {} there and {} here)", stored.file.rig,
                        wanted.file.rig);
+  }
+  const auto told = file_difference(stored.told_rigs, wanted.told_rigs, "rig.file");
+  if (!told.empty()) return told;
+  if (stored.corners_fingerprint != wanted.corners_fingerprint) {
+    return "the corners of calibration.observations differ";
   }
   for (const StudyCell& cell : stored.file.cells) {
     const std::vector<std::string> differing = least_difference(cell, wanted);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
+#include "sim/study/told_settings.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -48,10 +50,13 @@ class StudyReader : private SettingsReader {
 
  private:
   void read_study_section(const toml::table& root, StudyFile& study) const;
-  void read_files(const toml::table& root, StudyFile& study) const;
+  void read_world(const toml::table& root, StudyCell& cell) const;
+  StudyCell read_cell(const toml::table& root, toml::source_index line = 0) const;
+  void check_sweep_key(const toml::table& root, const std::string& key, const toml::node& at) const;
   std::filesystem::path read_sources_file(const toml::table& root,
                                           const std::filesystem::path& instead);
   void read_sweep(const toml::table& root, StudyFile& study) const;
+  void check_complete(const toml::table& root, const std::vector<std::string>& swept) const;
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
 
@@ -72,23 +77,29 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
   study.trials_per_block = block_size(study.trials);
 }
 
-void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
-  if (const auto* world = section(root, "world")) {
-    check_keys(*world, {"file", "visibility"}, "[world]");
-    study.world = text(required(*world, "file", "[world]"), "world.file");
-    if (const auto* visibility = world->get("visibility")) {
-      const std::string method = text(*visibility, "world.visibility");
-      if (method != "exact" && method != "view_sets") {
-        fail(*visibility, "world.visibility = " + in_quotes(method) + " is unknown",
-             "use \"exact\" or \"view_sets\"");
-      }
-      if (method == "view_sets") study.visibility = VisibilityMethod::view_sets;
+void StudyReader::read_world(const toml::table& root, StudyCell& cell) const {
+  const auto* world = section(root, "world");
+  if (!world) return;
+  check_keys(*world, {"file", "visibility"}, "[world]");
+  if (const auto* file = world->get("file")) cell.world = text(*file, "world.file");
+  if (const auto* visibility = world->get("visibility")) {
+    const std::string method = text(*visibility, "world.visibility");
+    if (method != "exact" && method != "view_sets") {
+      fail(*visibility, "world.visibility = " + in_quotes(method) + " is unknown",
+           "use \"exact\" or \"view_sets\"");
     }
+    if (method == "view_sets") cell.visibility = VisibilityMethod::view_sets;
   }
-  if (const auto* rig = section(root, "rig")) {
-    check_keys(*rig, {"file"}, "[rig]");
-    study.rig = text(required(*rig, "file", "[rig]"), "rig.file");
-  }
+}
+
+/// What the settings of a file, or of one combination of a sweep, say. `line` as for TomlReader.
+StudyCell StudyReader::read_cell(const toml::table& root, toml::source_index line) const {
+  const StudyReader reader(place(), line);
+  StudyCell cell;
+  cell.experiment = reader.read_settings(root, sources_);
+  reader.read_world(root, cell);
+  cell.told = ToldReader(place(), line).read(root);
+  return cell;
 }
 
 /// The file that [sources] refers to, and its values.
@@ -117,6 +128,35 @@ std::filesystem::path StudyReader::read_sources_file(const toml::table& root,
   return file;
 }
 
+void StudyReader::check_sweep_key(const toml::table& root,
+                                  const std::string& key,
+                                  const toml::node& node) const {
+  const std::string head = key.substr(0, key.find('.'));
+  const Keys sections{"study",   "world",  "rig", "calibration", "sources",
+                      "corners", "camera", "map", "localiser"};
+  if (key == "rig.file" && !(section(root, "rig") && section(root, "rig")->contains("truth"))) {
+    fail(node, "a rig is its own truth unless rig.truth is given: the cells would show other rigs",
+         "name the true rig as rig.truth; rig.file is then what the estimator is told of it");
+  }
+  const auto* calibration = section(root, "calibration");
+  if ((key == "calibration.board" || key == "calibration.square_m") && calibration &&
+      calibration->contains("observations")) {
+    fail(node, key + " is that of calibration.observations", "sweep calibration.views instead");
+  }
+  if (key.find('.') != std::string::npos &&
+      (std::find(sections.begin(), sections.end(), head) == sections.end() ||
+       key == "study.trials" || key == "sources.file" || key == "rig.truth" ||
+       key == "calibration.observations")) {
+    fail(node, "'" + shortened(key) + "' cannot be swept",
+         "sweep a key of [sources], [corners], [camera], [map], [localiser] or [calibration], "
+         "study.protocol, study.seed, world.file or rig.file");
+  }
+  if (key.find('.') == std::string::npos || node.is_table()) {
+    fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),
+         "write \"sources.calibration\" = [0.1, 1, 10]");
+  }
+}
+
 void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   const auto* sweep = section(root, "sweep");
   if (!sweep) return;
@@ -130,19 +170,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
   });
   for (const auto& [position, key] : keys) {
     const toml::node& node = *sweep->get(key);
-    const std::string head = key.substr(0, key.find('.'));
-    const Keys sections{"study", "sources", "corners", "camera", "map", "localiser"};
-    if (key.find('.') != std::string::npos &&
-        (std::find(sections.begin(), sections.end(), head) == sections.end() ||
-         key == "study.trials" || key == "sources.file")) {
-      fail(node, "'" + shortened(key) + "' cannot be swept",
-           "sweep a key of [sources], [corners], [camera], [map] or [localiser], study.protocol or "
-           "study.seed");
-    }
-    if (key.find('.') == std::string::npos || node.is_table()) {
-      fail(node, fmt::format("sweep key '{}' is not a quoted \"section.key\"", shortened(key)),
-           "write \"sources.calibration\" = [0.1, 1, 10]");
-    }
+    check_sweep_key(root, key, node);
     std::vector<std::string> values;
     const toml::array& listed = list(node, "sweep." + key);
     if (listed.size() > most_cells) {
@@ -157,8 +185,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
       }
       toml::table changed = root;  // each value separately first, so that an error has its line
       set(changed, key, value);
-      const SettingsReader reader(place(), value.source().begin.line);
-      reader.read_settings(changed, sources_);
+      read_cell(changed, value.source().begin.line);
     }
     if (values.empty())
       fail(node, "the sweep of " + shortened(key) + " is empty", "list at least one value");
@@ -187,6 +214,15 @@ void StudyReader::check_sweep_size(const toml::table& root, const StudyFile& stu
        "sweep fewer values, or reduce study.trials");
 }
 
+/// Throws Error for a key that is needed and neither given nor swept.
+void StudyReader::check_complete(const toml::table& root,
+                                 const std::vector<std::string>& swept) const {
+  const bool worlds = std::find(swept.begin(), swept.end(), "world.file") != swept.end();
+  const auto* world = section(root, "world");
+  if (world && !worlds) required(*world, "file", "[world]");
+  ToldReader(place()).check_complete(root, swept);
+}
+
 void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   const toml::table* sweep = section(root, "sweep");
   std::size_t count = 1;
@@ -204,9 +240,12 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       set(changed, key, *sweep->get(key)->as_array()->get(i));
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
     }
-    StudyCell result;
-    result.experiment = read_settings(changed, sources_);
+    StudyCell result = read_cell(changed);
     result.settings = settings_of(result.experiment);
+    result.settings.merge(settings_of(result.told));
+    for (const std::string& key : study.sweep_keys) {
+      if (key == "world.file") result.settings[key] = result.world;
+    }
     result.label = label.empty() ? "as set" : label;
     study.cells.push_back(std::move(result));
   }
@@ -214,25 +253,54 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
 
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
-             {"study", "world", "rig", "sources", "corners", "camera", "map", "localiser", "sweep"},
+             {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
+              "localiser", "sweep"},
              "");
   StudyFile study;
   read_study_section(root, study);
-  read_files(root, study);
   study.sources = read_sources_file(root, sources);
-  read_settings(root, sources_);  // the file's own values first, with their own lines
+  read_cell(root);  // the file's own values first, with their own lines
   read_sweep(root, study);
+  check_complete(root, study.sweep_keys);
   check_sweep_size(root, study);
   add_cells(root, study);
+  const StudyCell& first = study.cells[0];
+  study.world = first.world;
+  if (!first.told.truth.empty()) {
+    study.rig = first.told.truth;
+  } else if (!first.told.file.empty()) {
+    study.rig = first.told.file;
+  }
   for (const StudyCell& cell : study.cells) {
-    if (study.visibility == VisibilityMethod::exact || cell.experiment.sources.moved == 0) continue;
+    if (cell.visibility == VisibilityMethod::exact || cell.experiment.sources.moved == 0) continue;
     throw Error(place(), "sources.moved moves what the view sets of the world name",
                 "set world.visibility = \"exact\", or moved = 0");
   }
   return study;
 }
 
+std::vector<std::string> named_by_cells(const StudyFile& study,
+                                        const std::function<std::string(const StudyCell&)>& name) {
+  std::vector<std::string> names;
+  for (const StudyCell& cell : study.cells) {
+    const std::string of_cell = name(cell);
+    if (of_cell.empty() || std::find(names.begin(), names.end(), of_cell) != names.end()) continue;
+    names.push_back(of_cell);
+  }
+  return names;
+}
+
 }  // namespace
+
+std::vector<std::string> worlds_of(const StudyFile& study) {
+  return named_by_cells(study, [](const StudyCell& cell) { return cell.world; });
+}
+
+std::vector<std::string> told_rigs_of(const StudyFile& study) {
+  return named_by_cells(study, [](const StudyCell& cell) {
+    return cell.told.truth.empty() ? std::string() : cell.told.file;
+  });
+}
 
 int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
 

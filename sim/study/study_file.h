@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/experiment.h"
+#include "sim/study/told_settings.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -17,6 +18,9 @@ struct StudyCell {
   std::string label;  ///< swept keys and values, such as "sources.calibration = 10"
   std::map<std::string, std::string> settings;  ///< every setting in effect, by dotted key
   ExperimentSettings experiment;
+  std::string world = "workshop";  ///< its file
+  VisibilityMethod visibility = VisibilityMethod::exact;
+  ToldSettings told;
 };
 
 /// Number of trials per block, which share one recorded map: 50, or fewer so that `trials` make at
@@ -25,11 +29,10 @@ int block_size(int trials);
 
 /// Content of a study file (docs/file-formats.md).
 struct StudyFile {
-  int trials = 900;           ///< per cell
-  int trials_per_block = 50;  ///< block_size(trials)
-  std::string world = "workshop";
-  VisibilityMethod visibility = VisibilityMethod::exact;
-  std::string rig = "nominal";
+  int trials = 900;                     ///< per cell
+  int trials_per_block = 50;            ///< block_size(trials)
+  std::string world = "workshop";       ///< file of the first cell's world
+  std::string rig = "nominal";          ///< file of the true rig, one for all cells
   std::filesystem::path sources;        ///< file that [sources] is based on; empty: none
   std::vector<std::string> sweep_keys;  ///< the first varies slowest
   std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list per key
@@ -38,11 +41,16 @@ struct StudyFile {
 
 /// Reads a study. Everything but [study] has a default. Throws Error with file, line and key for
 /// malformed TOML, an unknown key (suggesting the nearest one), a value of the wrong type or out of
-/// range, and a sweep over a key that does not exist. The `file` of [sources] is relative to the
-/// study, unless `sources` gives the path of a copy.
+/// range, and a sweep over a key that does not exist or of rigs without rig.truth. The `file` of
+/// [sources] is relative to the study, unless `sources` gives the path of a copy.
 StudyFile read_study(const std::filesystem::path& file, const std::filesystem::path& sources = {});
 StudyFile parse_study(const std::string& text,
                       const std::string& place,
                       const std::filesystem::path& sources = {});
+
+/// The files of the cells' worlds, and those of the rigs that are told, each once, in the order in
+/// which cells first name them.
+std::vector<std::string> worlds_of(const StudyFile& study);
+std::vector<std::string> told_rigs_of(const StudyFile& study);
 
 }  // namespace vernier::sim::internal

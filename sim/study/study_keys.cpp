@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -27,10 +28,12 @@
 #include "localise/localiser.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/reconstruct.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
-#include "sim/study/told_rig.h"
+#include "sim/study/told_settings.h"
+#include "sim/told/fresh_calibrations.h"
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
@@ -152,12 +155,17 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
 
 std::string cell_key(const Study& study, const StudyCell& cell) {
   nlohmann::ordered_json key{{"results", results_version},
-                             {"world", study.world_fingerprint},
+                             {"world", world_fingerprint_of(study, cell)},
                              {"rig", study.rig_fingerprint}};
-  if (study.file.visibility != VisibilityMethod::exact) key["world.visibility"] = "view_sets";
+  if (cell.visibility != VisibilityMethod::exact) key["world.visibility"] = "view_sets";
+  if (!cell.told.truth.empty() && !cell.told.calibration) {
+    key["told"] = study.told_rigs.at(cell.told.file).fingerprint;
+  }
+  if (!cell.told.observations.empty()) key["corners"] = study.corners_fingerprint;
   const std::set<std::string> left_out = newer_at_default(cell.experiment.sources);
   for (const auto& [name, value] : cell.settings) {
-    if (name != "localiser.knows_endpoint_sigma" && !left_out.contains(name)) key[name] = value;
+    if (name == "localiser.knows_endpoint_sigma" || left_out.contains(name)) continue;
+    if (!names_a_file(name)) key[name] = value;
   }
   // Older stores had no such setting and this value; their results remain valid.
   const double once_told = std::max(0.1, cell.experiment.sources.endpoint_sigma_px);
@@ -177,25 +185,78 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   return key.dump();
 }
 
-std::string looks_key(const ExperimentSettings& s) {
-  return fmt::format("{} {} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
-                     s.map_headings, needs_corners(s.method, s.localiser));
+std::string looks_key(const StudyCell& cell) {
+  const ExperimentSettings& s = cell.experiment;
+  return fmt::format("{} {} {} {} {} {} {}", s.mount.height_m, s.mount.pitch_rad, s.map_spacing_m,
+                     s.map_headings, needs_corners(s.method, s.localiser),
+                     static_cast<int>(cell.visibility), cell.world);
 }
 
-std::string ceiling_key(const Study& study, const ExperimentSettings& s) {
+std::string ceiling_key(const Study& study, const StudyCell& cell) {
+  const ExperimentSettings& s = cell.experiment;
   std::string key = fmt::format("ceiling {} {} {} {} {} {} {}", ceiling_version,
-                                study.world_fingerprint, study.rig_fingerprint, name(s.protocol),
-                                s.mount.height_m, s.mount.pitch_rad, s.seed);
+                                world_fingerprint_of(study, cell), study.rig_fingerprint,
+                                name(s.protocol), s.mount.height_m, s.mount.pitch_rad, s.seed);
   if (s.sources.moved > 0) key += fmt::format(" moved {}", s.sources.moved);  // of that world
-  if (study.file.visibility != VisibilityMethod::exact) key += " by view sets";
+  if (cell.visibility != VisibilityMethod::exact) key += " by view sets";
   return key;
+}
+
+std::string calibration_key(const Study& study, const StudyCell& cell) {
+  std::string key = fmt::format("calibration {} {} {}", study.rig_fingerprint,
+                                cell.told.observations.empty() ? "" : study.corners_fingerprint,
+                                cell.experiment.seed);
+  for (const auto& [name, value] : settings_of(cell.told)) {
+    if (!names_a_file(name)) key += fmt::format(" {}={}", name, value);
+  }
+  return key;
+}
+
+StoreNotes::value_type calibration_note(const std::string& calibration,
+                                        const CalibrationRecord& record) {
+  const auto number = [](double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+  };
+  const nlohmann::ordered_json json{{"calibrations", record.calibrations},
+                                    {"failed", record.failed},
+                                    {"doubtful", record.doubtful},
+                                    {"why_failed", record.why_failed},
+                                    {"why_doubtful", record.why_doubtful},
+                                    {"range_m", record.range_m},
+                                    {"depth_error_m", number(record.depth_error_m)},
+                                    {"depth_sd_m", number(record.depth_sd_m)}};
+  return {calibration, json.dump()};
+}
+
+std::optional<CalibrationRecord> noted_calibrations(const StoreNotes& notes,
+                                                    const std::string& calibration) {
+  const auto note = notes.find(calibration);
+  if (note == notes.end()) return std::nullopt;
+  try {
+    const auto json = nlohmann::json::parse(note->second);
+    const auto number = [&](const char* key) {
+      const auto& value = json.at(key);
+      return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+    };
+    return CalibrationRecord{json.at("calibrations").get<int>(),
+                             json.at("failed").get<int>(),
+                             json.at("doubtful").get<int>(),
+                             json.at("why_failed").get<std::string>(),
+                             json.at("why_doubtful").get<std::string>(),
+                             number("range_m"),
+                             number("depth_error_m"),
+                             number("depth_sd_m")};
+  } catch (const nlohmann::json::exception&) {
+    throw Error("store", "its note of calibrations is damaged",
+                "delete the stores of the folder and run the study again");
+  }
 }
 
 int ceiling_queries(const Study& study, const std::string& ceiling) {
   constexpr std::int64_t enough = 5000;
   std::int64_t trials = 0;
   for (const StudyCell& cell : study.file.cells) {
-    if (ceiling_key(study, cell.experiment) == ceiling) trials += study.file.trials;
+    if (ceiling_key(study, cell) == ceiling) trials += study.file.trials;
   }
   return static_cast<int>(std::min(trials, enough));
 }

@@ -11,6 +11,7 @@
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_store.h"
+#include "sim/told/fresh_calibrations.h"
 
 /// Under which keys the parts of a study are stored, and the world ceilings that its notes hold.
 namespace vernier::sim::internal {
@@ -22,11 +23,20 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& setting
 /// of another size use other maps per trial and are therefore stored under another key.
 std::string cell_key(const Study& study, const StudyCell& cell);
 
-/// Everything that the noise-free views of the map depend on.
-std::string looks_key(const ExperimentSettings& settings);
+/// Everything that the noise-free views of the map depend on, but the true rig, which is one.
+std::string looks_key(const StudyCell& cell);
 
 /// What the ceiling of a cell depends on.
-std::string ceiling_key(const Study& study, const ExperimentSettings& settings);
+std::string ceiling_key(const Study& study, const StudyCell& cell);
+
+/// What the calibrations of a cell with [calibration] depend on.
+std::string calibration_key(const Study& study, const StudyCell& cell);
+
+/// What became of a cell's calibrations, as a note, and read back. Throws Error for a damaged note.
+StoreNotes::value_type calibration_note(const std::string& calibration,
+                                        const CalibrationRecord& record);
+std::optional<CalibrationRecord> noted_calibrations(const StoreNotes& notes,
+                                                    const std::string& calibration);
 
 /// Number of a ceiling's queries: as many as the trials of all cells that share it, up to 5,000, so
 /// that its cost stays a small part of the study's. They are the queries of trials 0, 1, ….

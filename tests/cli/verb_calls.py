@@ -151,6 +151,7 @@ def calls():
         Call('convert', ['convert', 'rig.json', '--to', 'mrcal', '-o', 'models/'], ['models']),
         Call('diff', ['diff', 'nominal', 'nominal'], []),
         Call('advise', ['advise', 'nominal', '--reduce', 'depth', '--at-m', '5'], []),
+        Call('plan', ['plan', 'nominal', '--depth-error', '0.02@5m'], []),
         Call('rectify', ['rectify', '--rig', 'rig.json', *pair, '-o', 'out'], ['out']),
         Call('stereo', ['stereo', '--rig', 'rig.json', *pair, '--max-disparity', '20', '--picture',
                         'out.png', '-o', 'out'], ['out', 'out.png']),

@@ -15,9 +15,9 @@
 #include "sim/sources.h"
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
+#include "sim/study/reconstruct.h"
 #include "sim/study/study.h"
 #include "sim/study/study_keys.h"
-#include "sim/study/told_rig.h"
 #include "sim/uncertainty_source.h"
 #include "tests/support/error_message.h"
 #include "tests/support/foreign_files.h"
@@ -186,7 +186,7 @@ TEST(StudyFile, ComplaintsNameLineAndRemedy) {
             std::string::npos);
   EXPECT_NE(complaint_of("[study]\n[sweep]\nsources.edge_loss = [1]\n").find("quoted"),
             std::string::npos);
-  for (const std::string key : {"study.trials", "world.file", "rig.file", "robot.wheels"}) {
+  for (const std::string key : {"study.trials", "sources.file", "rig.truth", "robot.wheels"}) {
     EXPECT_NE(complaint_of("[study]\n[sweep]\n\"" + key + "\" = [1]\n")
                   .find("s.toml:3: '" + key + "' cannot be swept"),
               std::string::npos);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/told_rig.h"
+#include "sim/study/reconstruct.h"
 
 #include <algorithm>
 

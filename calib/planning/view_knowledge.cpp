@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/board_target.h"
+#include "calib/error.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/planning/smooth_noise.h"
+#include "calib/planning/view_population.h"
+#include "calib/planning/views_needed.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "calib/simulated_board.h"
+#include "calib/solver/normal_equations.h"
+
+namespace vernier::internal {
+namespace {
+
+constexpr int pool_count = 24, views_per_pool = 60;
+constexpr int fewest_views = 5;
+
+/// S_f in the free directions.
+std::vector<Eigen::MatrixXd> in_directions(const std::vector<Eigen::MatrixXd>& views,
+                                           const Eigen::MatrixXd& free) {
+  std::vector<Eigen::MatrixXd> restricted_views;
+  restricted_views.reserve(views.size());
+  for (const Eigen::MatrixXd& S : views) {
+    restricted_views.emplace_back(free.transpose() * S * free);
+  }
+  return restricted_views;
+}
+
+}  // namespace
+
+ViewKnowledge knowledge_of(const RigEstimate& calibration,
+                           std::uint64_t seed,
+                           const std::string& place) {
+  if (!calibration.evidence || !calibration.calibration ||
+      calibration.evidence->observations.views.empty()) {
+    throw Error(place, "the file has no board views",
+                "give a calibration written with its evidence, or --board for a datasheet");
+  }
+  const CalibrationEvidence& evidence = *calibration.evidence;
+  ViewKnowledge known;
+  known.taken = static_cast<int>(evidence.frames.size());
+  if (known.taken < fewest_views) {
+    throw Error(place, "fewer than five views do not show what further ones would bring",
+                "take more views, or plan from a datasheet with --board");
+  }
+  const BoardState state{calibration.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
+  const Eigen::MatrixXd free = free_directions(calibration.rig, held_parameters(calibration));
+  const SmoothNoise noise =
+      smooth_noise(evidence.observations, state, static_cast<int>(free.cols()));
+  known.inflation = noise.inflation;
+  known.noise_px = noise.sd_px;
+  known.noise_log_sd = noise.log_sd;
+  const std::vector<Eigen::MatrixXd> taken = in_directions(
+      reduced_normal_equations(evidence.observations, state, 1).frame_information, free);
+  const PosePopulation population =
+      pose_population(evidence.T_first_board, evidence.observations.target_m);
+  for (std::uint32_t pool = 0; pool < pool_count; ++pool) {
+    const std::vector<Eigen::MatrixXd> views =
+        population_views(calibration.rig, evidence.observations.target_m, evidence.warp_m,
+                         redrawn(population, seed, pool), views_per_pool, seed, pool);
+    known.pools.push_back({calibration.rig, free, taken, in_directions(views, free)});
+  }
+  return known;
+}
+
+ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
+                                     const Chessboard& board,
+                                     const SimulatedBoardOptions& views,
+                                     const std::string& place) {
+  ViewKnowledge known;
+  known.noise_px = views.pixel_sigma_px;
+  known.noise_log_sd = 0.2;
+  std::string why = "the covariance gives no rig that cameras could have";
+  const Eigen::MatrixXd free = free_directions(datasheet.rig, held_parameters(datasheet));
+  for (std::uint32_t draw = 0; known.pools.size() < pool_count && draw < 4 * pool_count; ++draw) {
+    try {
+      const Rig rig = datasheet.covariance
+                          ? RigSampler(datasheet, place).sample(1, views.seed, draw)
+                          : datasheet.rig;
+      SimulatedBoardOptions options = views;
+      options.poses = draw;
+      options.frames = views_per_pool;
+      const SimulatedBoard seen = simulate_board(rig, board, options);
+      const auto equations = reduced_normal_equations(seen.observations, seen.truth, 1);
+      known.pools.push_back({rig, free, {}, in_directions(equations.frame_information, free)});
+    } catch (const Error& error) {
+      why = error.fault();
+    }
+  }
+  if (known.pools.size() < pool_count / 2) {
+    throw Error(place, why, "give another board, distance or datasheet");
+  }
+  return known;
+}
+
+}  // namespace vernier::internal

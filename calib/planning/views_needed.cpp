@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/planning/views_needed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "calib/base/decompositions.h"
+#include "calib/error.h"
+#include "calib/interval.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/quantile.h"
+#include "calib/statistics/random.h"
+#include "calib/uncertainty/target_quantity.h"
+
+namespace vernier::internal {
+namespace {
+
+constexpr auto plan_source = static_cast<std::uint32_t>(DrawSource::planned_views);
+constexpr int drawn_one_by_one = 100;  ///< later views are as informative as the mean of a pool
+
+/// A pool with what all of its sequences need.
+struct PreparedPool {
+  const ViewPool* pool;
+  Eigen::MatrixXd gradient;  ///< rows x free
+  Eigen::MatrixXd taken, mean;
+};
+
+std::vector<PreparedPool> prepared(const ViewKnowledge& known,
+                                   const std::string& what,
+                                   double at_m) {
+  std::vector<PreparedPool> pools;
+  for (const ViewPool& pool : known.pools) {
+    const TargetQuantity wanted = target_quantity(pool.rig, what, at_m);
+    const auto p = pool.free.cols();
+    PreparedPool ready{&pool, wanted.gradient * pool.free, Eigen::MatrixXd::Zero(p, p),
+                       Eigen::MatrixXd::Zero(p, p)};
+    for (const Eigen::MatrixXd& S : pool.taken) ready.taken += S;
+    for (const Eigen::MatrixXd& S : pool.views) ready.mean += S;
+    ready.mean /= static_cast<double>(pool.views.size());
+    pools.push_back(std::move(ready));
+  }
+  return pools;
+}
+
+/// At a noise of 1 px; infinite if the information is singular.
+double unit_sd(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Cholesky factor(scale.asDiagonal() * information * scale.asDiagonal());
+  if (!factor.is_positive_definite()) return std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd half =
+      factor.solve_lower(Eigen::MatrixXd((gradient * scale.asDiagonal()).transpose()));
+  return std::sqrt(half.squaredNorm() / static_cast<double>(gradient.rows()));
+}
+
+/// One sequence of views, added one by one.
+class Sequence {
+ public:
+  Sequence(const PreparedPool& pool, const ViewKnowledge& known, std::uint64_t seed, int number)
+      : pool_(pool),
+        draws_({.seed = seed,
+                .trial = static_cast<std::uint32_t>(number),
+                .source = plan_source,
+                .eye = 2}),
+        noise_px_(known.noise_px * std::exp(known.noise_log_sd * draws_.normal())),
+        information_(pool.taken),
+        views_(known.taken) {}
+
+  int views() const { return views_; }
+  double sd() const { return noise_px_ * unit_sd(pool_.gradient, information_); }
+
+  void add_view() {
+    const auto& views = pool_.pool->views;
+    information_ += views[draws_.below(static_cast<std::uint32_t>(views.size()))];
+    ++views_;
+  }
+
+  /// After `more` views as informative as the mean.
+  double sd_after_mean(int more) const {
+    return noise_px_ * unit_sd(pool_.gradient, information_ + more * pool_.mean);
+  }
+
+  /// The first number of views that reaches the target, at most `most`.
+  int first_within(double target_sd, int most) {
+    for (int i = 0; i < drawn_one_by_one && views_ < most; ++i) {
+      if (sd() <= target_sd) return views_;
+      add_view();
+    }
+    if (sd() <= target_sd || views_ >= most) return views_;
+    int low = 0, high = most - views_;
+    if (sd_after_mean(high) > target_sd) return most;
+    while (high - low > 1) {
+      const int middle = low + (high - low) / 2;
+      (sd_after_mean(middle) <= target_sd ? high : low) = middle;
+    }
+    return views_ + high;
+  }
+
+  double sd_at(int number) {
+    while (views_ < number && drawn_ < drawn_one_by_one) {
+      add_view();
+      ++drawn_;
+    }
+    return views_ < number ? sd_after_mean(number - views_) : sd();
+  }
+
+ private:
+  const PreparedPool& pool_;
+  RandomStream draws_;
+  double noise_px_;
+  Eigen::MatrixXd information_;
+  int views_, drawn_ = 0;
+};
+
+template <class Work>
+void for_sequences(const ViewKnowledge& known,
+                   const std::string& what,
+                   double at_m,
+                   const ViewPlanOptions& options,
+                   Work work) {
+  const std::vector<PreparedPool> pools = prepared(known, what, at_m);
+  for (int i = 0; i < options.sequences; ++i) {
+    Sequence sequence(pools[static_cast<std::size_t>(i) % pools.size()], known, options.seed, i);
+    work(sequence);
+  }
+}
+
+Interval middle_of(const std::vector<double>& values, double confidence) {
+  const double outside = 0.5 * (1 - confidence);
+  return {quantile(values, outside, QuantileKind::lower),
+          quantile(values, 1 - outside, QuantileKind::upper)};
+}
+
+/// Of all intervals with this ratio of ends the one that holds the most values, and the
+/// share it holds.
+std::pair<Interval, double> fullest_interval(std::vector<double> values, double ratio) {
+  std::sort(values.begin(), values.end());
+  std::pair<Interval, double> best{{0, 0}, 0};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto end = std::upper_bound(values.begin(), values.end(), ratio * values[i]);
+    const double share =
+        static_cast<double>(end - values.begin() - static_cast<std::ptrdiff_t>(i)) /
+        static_cast<double>(values.size());
+    if (share > best.second) best = {{values[i], std::floor(ratio * values[i])}, share};
+  }
+  return best;
+}
+
+}  // namespace
+
+ViewsNeeded views_needed(const ViewKnowledge& known,
+                         const std::string& what,
+                         double at_m,
+                         double target_sd,
+                         const ViewPlanOptions& options) {
+  if (!(target_sd > 0)) throw Error("target", "is not a number above 0", "give one");
+  std::vector<double> numbers;
+  for_sequences(known, what, at_m, options, [&](Sequence& sequence) {
+    numbers.push_back(sequence.first_within(target_sd, options.most_views));
+  });
+  ViewsNeeded needed;
+  needed.views = static_cast<int>(quantile(numbers, 0.5, QuantileKind::lower));
+  needed.interval = middle_of(numbers, options.confidence);
+  needed.confidence = options.confidence;
+  if (needed.interval.high > options.widest * needed.interval.low) {
+    std::tie(needed.interval, needed.confidence) = fullest_interval(numbers, options.widest);
+  }
+  needed.is_reached = needed.interval.high < options.most_views;
+  return needed;
+}
+
+std::vector<SdAfter> sd_after(const ViewKnowledge& known,
+                              const std::string& what,
+                              double at_m,
+                              const std::vector<int>& numbers,
+                              const ViewPlanOptions& options) {
+  std::vector<std::vector<double>> sds(numbers.size());
+  for_sequences(known, what, at_m, options, [&](Sequence& sequence) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) sds[i].push_back(sequence.sd_at(numbers[i]));
+  });
+  std::vector<SdAfter> after;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    after.push_back({numbers[i], quantile(sds[i], 0.5, QuantileKind::lower),
+                     middle_of(sds[i], options.confidence)});
+  }
+  return after;
+}
+
+}  // namespace vernier::internal

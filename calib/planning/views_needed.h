@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/board_target.h"
+#include "calib/interval.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/simulated_board.h"
+
+namespace vernier::internal {
+
+/// Views that could be taken, one guess of the rig and of how the board is held.
+struct ViewPool {
+  Rig rig;
+  Eigen::MatrixXd free;  ///< directions that are estimated: parameters x free
+  std::vector<Eigen::MatrixXd>
+      taken;  ///< information S_f of the views so far, at 1 px; free x free
+  std::vector<Eigen::MatrixXd> views;  ///< the same of views that could follow
+};
+
+/// What is known before more views are taken. The standard deviation of a quantity with gradient g
+/// after views f is
+///
+///     sd² = (σ φ)² g (Σ_f S_f)⁻¹ gᵀ
+///
+/// with S_f the information of a view at 1 px (calib/solver/normal_equations.h), σ the noise of a
+/// coordinate, and φ² the inflation of the bound by noise that is correlated within a view.
+struct ViewKnowledge {
+  std::vector<ViewPool> pools;
+  int taken = 0;            ///< number of views so far
+  double noise_px = 0;      ///< σ φ
+  double inflation = 1;     ///< φ²
+  double noise_log_sd = 0;  ///< standard deviation of the logarithm of σ φ
+};
+
+/// From a calibration, by its evidence: σ φ is the noise of its residuals that varies smoothly over
+/// the board (calib/planning/smooth_noise.h). Each pool has views of the calibration's pose
+/// population, redrawn (calib/planning/view_population.h). Throws Error(`place`) if the estimate
+/// has no evidence of board views, or of fewer than five.
+ViewKnowledge knowledge_of(const RigEstimate& calibration,
+                           std::uint64_t seed,
+                           const std::string& place);
+
+/// From a rig's datasheet and a board, without any view: each pool is of another rig, drawn from
+/// the covariance, if it has one, with simulated views (calib/simulated_board.h: distance and tilt
+/// as in `views`, whose number of frames and set of poses are ignored). The noise is that of
+/// `views`, known to a fifth. Throws Error(`place`) if no rig that is drawn sees the board.
+ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
+                                     const Chessboard& board,
+                                     const SimulatedBoardOptions& views,
+                                     const std::string& place);
+
+struct ViewPlanOptions {
+  double confidence = 0.95;  ///< of intervals
+  double widest = 2;         ///< upper over lower end of an interval of views, at most
+  int most_views = 2000;
+  int sequences = 400;  ///< of views, shared among the pools
+  std::uint64_t seed = 1;
+};
+
+/// The number of views in all, those taken included, after which a standard deviation is at its
+/// target for the first time, as views are added one by one.
+struct ViewsNeeded {
+  int views = 0;           ///< the median; most_views if not reached
+  Interval interval;       ///< `confidence` of the sequences lie within
+  double confidence = 0;   ///< that of the options, or less where the interval would be too wide
+  bool is_reached = true;  ///< whether the upper end lies below most_views
+};
+
+/// The standard deviation of a quantity (target_quantity) after `views` views.
+struct SdAfter {
+  int views = 0;
+  double sd = 0;      ///< the median
+  Interval interval;  ///< `confidence` of the sequences lie within
+};
+
+/// Simulated: each sequence draws a pool, the noise, and views of the pool, by (seed, sequence).
+/// `what` and `at_m` are those of target_quantity, which throws Error.
+ViewsNeeded views_needed(const ViewKnowledge& known,
+                         const std::string& what,
+                         double at_m,
+                         double target_sd,
+                         const ViewPlanOptions& options = {});
+
+/// After each of the numbers of views, ascending, those taken included.
+std::vector<SdAfter> sd_after(const ViewKnowledge& known,
+                              const std::string& what,
+                              double at_m,
+                              const std::vector<int>& numbers,
+                              const ViewPlanOptions& options = {});
+
+}  // namespace vernier::internal

@@ -1,0 +1,360 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/decompositions.h"
+#include "calib/base/error_place.h"
+#include "calib/base/shown_text.h"
+#include "calib/board_target.h"
+#include "calib/covariance.h"
+#include "calib/error.h"
+#include "calib/planning/views_needed.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_file.h"
+#include "calib/simulated_board.h"
+#include "calib/triangulation.h"
+#include "calib/triangulation_uncertainty.h"
+#include "calib/uncertainty/target_quantity.h"
+#include "cli/program/limited_grid.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "cli/simulation/plan_result.h"
+#include "sim/experiment.h"
+#include "sim/study/success_curve.h"
+#include "sim/visibility.h"
+#include "sim/world.h"
+#include "sim/world_file.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr int most_plan_corners = 10'000;  ///< of a board
+constexpr double unsure_below = 0.8;       ///< confidence of an interval of a factor of two
+
+struct PlanArguments {
+  std::string rig, depth, projection, board, world = "workshop", protocol = "path",
+                                             method = "lines";
+  double success = 0, at_m = 5, square_m = 0.025, pixel_sigma_px = 0.2, pair_sigma_px = 0;
+  double board_distance_m = 1, board_tilt_deg = 34;
+  int trials = 300, threads = 0;
+  std::uint64_t seed = 1;
+};
+
+/// "0.02", or "0.02@5m": the number, and the distance if there is one.
+double number_at(const std::string& text, const std::string& option, double& at_m) {
+  const std::size_t at = text.find('@');
+  std::string range = at == std::string::npos ? "" : text.substr(at + 1);
+  if (range.ends_with("m")) range.pop_back();
+  const double value = parse_numbers(text.substr(0, at), 1, option)[0];
+  if (at != std::string::npos) at_m = parse_numbers(range, 1, option)[0];
+  if (!(value > 0) || !(at_m > 0)) {
+    throw Error(option, in_quotes(text) + " is not above 0", "give such as 0.02@5m");
+  }
+  return value;
+}
+
+PlanTarget target_of(const PlanArguments& o) {
+  const int given = !o.depth.empty() + !o.projection.empty() + (o.success > 0);
+  if (given != 1) {
+    throw Error("plan", given == 0 ? "no target given" : "more than one target given",
+                "give one of --depth-error, --projection-error and --success");
+  }
+  PlanTarget target;
+  target.at_m = o.at_m;
+  if (!o.depth.empty()) {
+    target.quantity = "depth";
+    target.unit = "m";
+    target.value = number_at(o.depth, "--depth-error", target.at_m);
+  } else if (!o.projection.empty()) {
+    target.quantity = "projection";
+    target.unit = "px";
+    target.value = number_at(o.projection, "--projection-error", target.at_m);
+  } else {
+    target.quantity = "success";
+    target.value = o.success;
+  }
+  return target;
+}
+
+/// What is known of the rig: by its board views, or by a datasheet and a board.
+void know(const PlanArguments& o,
+          const RigEstimate& rig,
+          const std::string& name,
+          PlanResult& plan) {
+  const bool has_views = rig.evidence && !rig.evidence->observations.views.empty();
+  plan.from_calibration = has_views && o.board.empty();
+  if (plan.from_calibration) {
+    plan.known = with_errors_of(name, [&] { return knowledge_of(rig, o.seed, name); });
+    plan.basis = fmt::format("the calibration {} and further views of the same kind", name);
+    return;
+  }
+  const std::string words = o.board.empty() ? "9x6" : o.board;
+  const auto [columns, rows] = parse_limited_grid(words, "--board", most_plan_corners);
+  const SimulatedBoardOptions views{.seed = o.seed,
+                                    .pixel_sigma_px = o.pixel_sigma_px,
+                                    .distance_m = o.board_distance_m,
+                                    .tilt_rad = o.board_tilt_deg * 0.017453292519943295};
+  plan.known = knowledge_of_datasheet(rig, {columns, rows, o.square_m}, views, name);
+  plan.basis = fmt::format(
+      "the datasheet {} and a {} board, squares of {:g} m, at {:g} m, tilted up to {:g} degrees",
+      name, words, o.square_m, o.board_distance_m, o.board_tilt_deg);
+}
+
+/// Standard deviation of the depth of one match by pixel noise alone; not a number if the rig is no
+/// pair that sees such a point.
+double pixel_noise_sd(const Rig& rig, double at_m, double pair_sigma_px) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (rig.cameras.size() != 2) return nan;
+  const auto pair = pixel_pair(rig, {0, 0, at_m});
+  if (!pair) return nan;
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(parameter_count(rig), parameter_count(rig));
+  const auto point = TriangulationUncertainty(rig, none).at(*pair, pair_sigma_px);
+  return point ? std::sqrt(point->observation(2, 2)) : nan;
+}
+
+/// The part of the target that the calibration may have.
+void allow_for_pixel_noise(const PlanArguments& o, PlanResult& plan) {
+  const PlanTarget& target = plan.target;
+  const Rig& rig = plan.known.pools[0].rig;
+  plan.pair_sigma_px = target.quantity == "depth" ? o.pair_sigma_px : 0;
+  const double noise_px = plan.pair_sigma_px > 0 ? plan.pair_sigma_px : plan.known.noise_px;
+  plan.pixel_noise_sd = pixel_noise_sd(rig, target.at_m, noise_px);
+  if (!(plan.pair_sigma_px > 0)) {
+    plan.sd_allowed = target.value;
+    return;
+  }
+  const double noise = plan.pixel_noise_sd;
+  if (target.value > noise) {
+    plan.sd_allowed = std::sqrt(target.value * target.value - noise * noise);
+    return;
+  }
+  plan.limit = fmt::format(
+      "pixel noise of {:g} px alone gives {:.3g} m; what limits is the match and the geometry, not "
+      "the calibration: a baseline, or a focal length in pixels, {:.2g} times as large, or noise "
+      "as "
+      "much smaller, would bring it to the target",
+      plan.pair_sigma_px, noise, noise / target.value);
+}
+
+/// The covariance after the views so far, or after ten of a datasheet's.
+Covariance reference_covariance(const ViewKnowledge& known) {
+  const ViewPool& pool = known.pools[0];
+  const std::vector<Eigen::MatrixXd>& views = pool.taken.empty() ? pool.views : pool.taken;
+  constexpr std::size_t enough = 10;
+  const std::size_t count = pool.taken.empty() ? std::min(enough, views.size()) : views.size();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(pool.free.cols(), pool.free.cols());
+  for (std::size_t i = 0; i < count; ++i) S += views[i];
+  const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
+  const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
+  if (!factor.is_positive_definite()) {
+    throw Error("plan", "the views so far do not determine the rig", "take more views");
+  }
+  const Eigen::MatrixXd C = known.noise_px * known.noise_px *
+                            (scale.asDiagonal() * factor.inverse() * scale.asDiagonal());
+  const Eigen::MatrixXd full = pool.free * C * pool.free.transpose();
+  return {CovarianceKind::mvb, parameter_names(pool.rig), 0.5 * (full + full.transpose())};
+}
+
+/// The cause without which success rises by more than its interval's half width, if there is one.
+std::string causes_in_words(const PlanResult& plan) {
+  const SuccessAt& now = plan.successes[0];
+  const double noise = 0.5 * (now.interval_95.high - now.interval_95.low);
+  if (!plan.causes.empty() && plan.causes[0].success > now.success + noise) {
+    return fmt::format("first {} (without it {:.1f} %)", plan.causes[0].name,
+                       100 * plan.causes[0].success);
+  }
+  return "no single source of error, but the localiser, its map or places that look alike (vernier "
+         "study gives the world's ceiling)";
+}
+
+/// Success against the calibration's error, and from it the depth error that is allowed.
+void allow_for_success(const PlanArguments& o, PlanResult& plan, Session& session) {
+  const std::filesystem::path file = find_world(o.world);
+  const World world = build_world(read_world(file));
+  const Visibility visibility(world);
+  ExperimentSettings settings;
+  settings.protocol = query_protocol(o.protocol);
+  settings.method = o.method;
+  settings.seed = o.seed;
+  const Rig& rig = plan.known.pools[0].rig;
+  const Covariance covariance = reference_covariance(plan.known);
+  std::optional<Progress> progress;
+  SuccessCurveOptions how{
+      .trials = o.trials, .threads = o.threads, .progress = [&](int done, int total) {
+        if (!progress) progress.emplace(session, "plan: trials");
+        progress->update(done, total);
+      }};
+  const TargetQuantity depth = target_quantity(rig, "depth", plan.target.at_m);
+  const double reference_sd = sd_of(depth, ScaledDecomposition(covariance).factor());
+  with_errors_of(o.world, [&] {
+    plan.successes = success_curve(visibility, rig, covariance, settings, how);
+    plan.scale = scale_needed(plan.successes, plan.target.value);
+    if (plan.successes[0].interval_95.high < plan.target.value) {
+      plan.causes = limiting_causes(visibility, rig, covariance, settings, how);
+    }
+    return 0;
+  });
+  if (!plan.causes.empty()) {
+    plan.limit = fmt::format(
+        "without any calibration error success is {:.1f} % [{:.1f}, {:.1f}]; what limits is {}",
+        100 * plan.successes[0].success, 100 * plan.successes[0].interval_95.low,
+        100 * plan.successes[0].interval_95.high, causes_in_words(plan));
+    return;
+  }
+  if (plan.scale->psi_c > 0) plan.sd_allowed = plan.scale->psi_c * reference_sd;
+}
+
+/// For a success rate the uncertainty of the scale comes on top of that of the views.
+void widen_by_scale(const PlanResult& plan, const ViewPlanOptions& how, ViewsNeeded& needed) {
+  const double per_scale = *plan.sd_allowed / plan.scale->psi_c;
+  const double loose = std::max(plan.scale->high, plan.scale->psi_c) * per_scale;
+  needed.interval.low =
+      views_needed(plan.known, "depth", plan.target.at_m, loose, how).interval.low;
+  if (plan.scale->low > 0) {
+    const ViewsNeeded most =
+        views_needed(plan.known, "depth", plan.target.at_m, plan.scale->low * per_scale, how);
+    needed.interval.high = most.interval.high;
+    needed.is_reached = most.is_reached;
+  } else {
+    needed.interval.high = std::numeric_limits<double>::infinity();
+  }
+}
+
+void judge(const PlanResult& plan, Session& session) {
+  constexpr double correlated = 1.5;
+  constexpr int few = 13;
+  if (plan.from_calibration && plan.known.taken < few && plan.known.inflation > correlated) {
+    session.warn(fmt::format(
+        "the residuals are correlated over the board, and {} views understate that: on real images "
+        "intervals held less often than stated, and more views were needed (docs/plan.md)",
+        plan.known.taken));
+  }
+  if (!plan.limit.empty()) {
+    session.add_trust_warning("no number of views reaches the target: " + plan.limit);
+    return;
+  }
+  if (!plan.needed) {
+    session.add_trust_warning(
+        "whether the target can be reached at all is not clear from so few trials; give more "
+        "--trials");
+    return;
+  }
+  const ViewsNeeded& needed = *plan.needed;
+  if (needed.interval.high > 2 * needed.interval.low + 1) {
+    session.add_trust_warning(
+        fmt::format("the number of views is known to {:.0f} to {:.0f} only: give more --trials",
+                    needed.interval.low, needed.interval.high));
+  } else if (needed.confidence < unsure_below) {
+    session.add_trust_warning(fmt::format(
+        "the number of views is known to a factor of two with {:.0f} % confidence only: "
+        "take some more views and plan again",
+        100 * needed.confidence));
+  }
+}
+
+void run(const PlanArguments& o, Session& session) {
+  PlanResult plan;
+  plan.target = target_of(o);
+  const std::string name = o.rig.empty() ? "nominal" : o.rig;
+  const RigFile file = read_rig(find_rig(name));
+  for (const std::string& warning : file.warnings) session.warn(warning);
+  know(o, file.estimate, name, plan);
+  if (plan.target.quantity == "success") {
+    allow_for_success(o, plan, session);
+  } else {
+    allow_for_pixel_noise(o, plan);
+  }
+  const std::string what = plan.target.quantity == "projection" ? "projection" : "depth";
+  const ViewPlanOptions how{.seed = o.seed};
+  with_errors_of(name, [&] {
+    if (plan.sd_allowed) {
+      plan.needed = views_needed(plan.known, what, plan.target.at_m, *plan.sd_allowed, how);
+      if (plan.scale) widen_by_scale(plan, how, *plan.needed);
+      if (plan.limit.empty() && !plan.needed->is_reached && !plan.scale) {
+        plan.limit = fmt::format(
+            "it takes more than {} views of this kind; what limits is each "
+            "view: more corners, larger tilts, a closer board or less noise",
+            how.most_views);
+      }
+    }
+    std::vector<int> numbers;
+    for (const int n : {5, 8, 10, 15, 20, 30, 50, 100}) {
+      if (n > plan.known.taken) numbers.push_back(n);
+    }
+    if (plan.known.taken > 0) numbers.insert(numbers.begin(), plan.known.taken);
+    plan.curve = sd_after(plan.known, what, plan.target.at_m, numbers, how);
+    return 0;
+  });
+  judge(plan, session);
+  session.result(plan_json(plan), plan_text(plan));
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Session& session) {
+  auto o = std::make_shared<PlanArguments>();
+  CLI::App* verb = add_verb(
+      app, session, "plan",
+      "how many board views a wanted accuracy takes, from a calibration so far or a datasheet",
+      "vernier plan rig.json --depth-error 0.02@5m\n"
+      "  vernier plan datasheet.json --board 9x6 --square-m 0.025 --projection-error 0.5@2m\n"
+      "  vernier plan rig.json --success 0.95 --world workshop --trials 300");
+  verb->add_option("rig,--rig", o->rig,
+                   "calibration with its board views, or a datasheet (default: nominal)");
+  verb->add_option("--depth-error,--target-depth-sigma-m", o->depth,
+                   "wanted standard deviation of the depth, metres, as 0.02 or 0.02@5m");
+  verb->add_option("--projection-error,--target-projection-sigma-px", o->projection,
+                   "wanted standard deviation of the projection, pixels, as 0.5 or 0.5@2m");
+  verb->add_option("--success,--target-success", o->success, "wanted success rate of localisation")
+      ->check(CLI::Range(1e-3, 0.9999));
+  verb->add_option("--at-m", o->at_m, "distance, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--pair-sigma-px", o->pair_sigma_px,
+                   "noise of a match in each image, part of the wanted depth error (0: it is that "
+                   "of the calibration alone)")
+      ->check(finite_and_not_negative)
+      ->capture_default_str();
+  verb->add_option("--board", o->board,
+                   "plan from a datasheet: inner corners of the board, such as 9x6");
+  verb->add_option("--square-m", o->square_m, "its squares, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--board-distance-m", o->board_distance_m,
+                   "its distance, varied by a third either way, metres")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--board-tilt-deg", o->board_tilt_deg, "its largest tilt about x and y")
+      ->check(CLI::Range(1.0, 80.0))
+      ->capture_default_str();
+  verb->add_option("--pixel-sigma", o->pixel_sigma_px, "noise of its corners, pixels")
+      ->check(finite_and_positive)
+      ->capture_default_str();
+  verb->add_option("--world", o->world, "world of --success, a shipped name or a file")
+      ->capture_default_str();
+  verb->add_option("--protocol", o->protocol, "near_path, path, anywhere or free")
+      ->capture_default_str();
+  verb->add_option("--method", o->method, "localiser of --success")->capture_default_str();
+  verb->add_option("--trials", o->trials, "trials at each of six scales of the calibration's error")
+      ->check(CLI::Range(12, 100'000))
+      ->capture_default_str();
+  verb->add_option("--threads", o->threads, "number of threads (0: all)")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  verb->add_option("--seed", o->seed, "seed of all draws")->capture_default_str();
+  verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
+}
+
+}  // namespace vernier::cli

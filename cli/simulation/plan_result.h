@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/planning/views_needed.h"
+#include "cli/program/session.h"
+#include "sim/study/success_curve.h"
+
+namespace vernier::cli {
+
+/// What a plan aims at.
+struct PlanTarget {
+  std::string quantity;  ///< depth, projection or success
+  double value = 0, at_m = 5;
+  std::string unit;  ///< m, px or none
+};
+
+/// What `plan` found.
+struct PlanResult {
+  PlanTarget target;
+  std::string basis;  ///< in words: the calibration or datasheet
+  bool from_calibration = false;
+  ViewKnowledge known;
+  /// Part of the target that calibration may have, of a standard deviation; for success that of
+  /// the depth at which the rate is met. Empty if the rest alone exceeds the target.
+  std::optional<double> sd_allowed;
+  double pixel_noise_sd = 0;  ///< of the depth of one match, without any error of the calibration
+  double pair_sigma_px = 0;   ///< included in the target if above 0
+  std::optional<ViewsNeeded> needed;
+  std::vector<SdAfter> curve;
+  std::vector<SuccessAt> successes;  ///< of a success rate
+  std::optional<ScaleNeeded> scale;
+  std::vector<LimitingCause> causes;  ///< if no calibration is good enough
+  std::string limit;                  ///< why it cannot be reached, and what limits; else empty
+};
+
+Json plan_json(const PlanResult& plan);
+std::string plan_text(const PlanResult& plan);
+
+}  // namespace vernier::cli

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/study_inputs.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <tuple>
+#include <vector>
+
+#include "calib/base/atomic_file.h"
+#include "calib/base/fingerprint.h"
+#include "calib/board_observations.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/observations_file.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_file.h"
+#include "cli/program/session.h"
+#include "cli/program/share_folder.h"
+#include "sim/experiment.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/told_settings.h"
+#include "sim/world.h"
+#include "sim/world_file.h"
+
+namespace vernier::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* sources_name = "sources.toml";
+
+enum class InputRole { world, rig, told, corners };
+
+/// A file that a study names, and the name of its copy in the folder of results.
+struct StudyInput {
+  InputRole role;
+  std::string named, copy;
+};
+
+std::string numbered(const std::string& stem, std::size_t i, const std::string& ending) {
+  return stem + (i == 0 ? "" : "-" + std::to_string(i + 1)) + ending;
+}
+
+std::string observations_of(const StudyFile& study) {
+  return study.cells[0].told.observations;  // not swept
+}
+
+std::vector<StudyInput> named_files(const StudyFile& study) {
+  std::vector<StudyInput> inputs;
+  const std::vector<std::string> worlds = worlds_of(study), told = told_rigs_of(study);
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    inputs.push_back({InputRole::world, worlds[i], numbered("world", i, ".world.toml")});
+  }
+  inputs.push_back({InputRole::rig, study.rig, "rig.json"});
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    inputs.push_back({InputRole::told, told[i], numbered("told", i, ".json")});
+  }
+  if (const std::string corners = observations_of(study); !corners.empty()) {
+    const bool in_rig = corners.ends_with(".json");
+    inputs.push_back({InputRole::corners, corners, in_rig ? "corners.json" : "corners.vnl"});
+  }
+  return inputs;
+}
+
+/// The file itself, beside the study file.
+fs::path file_of(const StudyInput& input, const fs::path& beside) {
+  if (input.role == InputRole::world) return find_world(input.named, beside);
+  if (input.role != InputRole::corners) return find_rig(input.named, beside);
+  const fs::path file = beside / input.named;
+  std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) {
+    throw Error(input.named, "no such file of corners",
+                "give calibration.observations relative to the study file");
+  }
+  return file;
+}
+
+/// Throws Error for a route without or with too many views, before anything is written.
+void check_maps(const Study& study) {
+  std::set<std::tuple<std::string, double, int>> checked;
+  for (const StudyCell& cell : study.file.cells) {
+    const ExperimentSettings& settings = cell.experiment;
+    if (!checked.emplace(cell.world, settings.map_spacing_m, settings.map_headings).second) {
+      continue;
+    }
+    map_poses(world_of(study, cell).route, settings.map_spacing_m, settings.map_headings);
+  }
+}
+
+/// The corners of a rig file's evidence, or of a corners file of the study's board.
+BoardObservations read_real_corners(const fs::path& file,
+                                    const std::string& named,
+                                    const Study& study) {
+  if (named.ends_with(".json")) {
+    RigFile calibrated = read_rig(file);
+    if (!calibrated.estimate.evidence || calibrated.estimate.evidence->observations.views.empty()) {
+      throw Error(named, "the file has no board views",
+                  "give one written by vernier calibrate, with its evidence, or a corners file");
+    }
+    return std::move(calibrated.estimate.evidence->observations);
+  }
+  std::vector<Eigen::Vector2i> sizes;
+  for (const Camera& camera : study.rig.rig.cameras) sizes.push_back(camera.size_px);
+  BoardObservations corners =
+      read_corners(file, study.file.cells[0].told.calibration->board, sizes);
+  check_and_sort(corners);
+  return corners;
+}
+
+StudyRig load_rig(const fs::path& file, Session& session) {
+  const std::string text = read_whole(file);
+  RigFile rig = parse_rig(text, file.string());
+  for (const std::string& warning : rig.warnings) session.warn(warning);
+  return {std::move(rig.estimate), fingerprint(text)};
+}
+
+void load(const StudyInput& input, const fs::path& file, Study& study, Session& session) {
+  if (input.role == InputRole::world) {
+    const std::string text = read_whole(file);
+    World world = build_world(parse_world(text, file.string()));
+    if (input.named == study.file.world) {
+      study.world = std::move(world);
+      study.world_fingerprint = fingerprint(text);
+    } else {
+      study.other_worlds[input.named] = {std::move(world), fingerprint(text)};
+    }
+  } else if (input.role == InputRole::rig) {
+    StudyRig rig = load_rig(file, session);
+    study.rig = std::move(rig.estimate);
+    study.rig_fingerprint = std::move(rig.fingerprint);
+  } else if (input.role == InputRole::told) {
+    study.told_rigs[input.named] = load_rig(file, session);
+  } else {
+    study.corners_fingerprint = fingerprint(read_whole(file));
+    study.corners =
+        std::make_shared<const BoardObservations>(read_real_corners(file, input.named, study));
+  }
+}
+
+void check_covariances(const Study& study, const fs::path& rig) {
+  for (const StudyCell& cell : study.file.cells) {
+    if (!(cell.experiment.sources.calibration > 0) || cell.told.calibration) continue;
+    if (cell.told.truth.empty()) {
+      required_covariance(study.rig, rig.string());
+    } else if (cell.told.error == ToldSettings::Error::drawn) {
+      required_covariance(study.told_rigs.at(cell.told.file).estimate, cell.told.file);
+    }
+  }
+}
+
+template <class FileOf>
+Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
+  Study study;
+  study.file = std::move(file);
+  fs::path rig;
+  for (const StudyInput& input : named_files(study.file)) {
+    const fs::path path = file_of_input(input);
+    if (input.role == InputRole::rig) rig = path;
+    load(input, path, study, session);
+  }
+  check_maps(study);
+  check_covariances(study, rig);
+  return study;
+}
+
+}  // namespace
+
+StudyInputs inputs_of_study(const fs::path& study_file) {
+  const StudyFile study = read_study(study_file);
+  StudyInputs inputs;
+  for (const StudyInput& input : named_files(study)) {
+    inputs.emplace_back(input.copy, read_whole(file_of(input, study_file.parent_path())));
+  }
+  if (!study.sources.empty()) inputs.emplace_back(sources_name, read_whole(study.sources));
+  inputs.emplace_back(study_copy, read_whole(study_file));  // last: it makes the folder a study's
+  return inputs;
+}
+
+std::vector<fs::path> input_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const StudyInput& input :
+       named_files(read_study(folder / study_copy, folder / sources_name))) {
+    files.push_back(folder / input.copy);
+  }
+  std::error_code unknown;
+  if (fs::exists(folder / sources_name, unknown)) files.push_back(folder / sources_name);
+  files.push_back(folder / study_copy);
+  return files;
+}
+
+StudyInputs inputs_of_folder(const fs::path& folder) {
+  StudyInputs inputs;
+  for (const fs::path& file : input_files(folder)) {
+    inputs.emplace_back(file.filename().string(), read_whole(file));
+  }
+  return inputs;
+}
+
+Study load_study(const fs::path& file, Session& session) {
+  return assemble(read_study(file), session,
+                  [&](const StudyInput& input) { return file_of(input, file.parent_path()); });
+}
+
+Study open_folder(const fs::path& folder, Session& session) {
+  if (!fs::is_regular_file(folder / study_copy)) {
+    throw Error(folder.string(), "is not a study folder",
+                "give a folder written by vernier study -o");
+  }
+  return assemble(read_study(folder / study_copy, folder / sources_name), session,
+                  [&](const StudyInput& input) { return folder / input.copy; });
+}
+
+}  // namespace vernier::cli

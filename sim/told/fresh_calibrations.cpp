@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/told/fresh_calibrations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "calib/board_observations.h"
+#include "calib/calibrate.h"
+#include "calib/camera.h"
+#include "calib/camera/model_nesting.h"
+#include "calib/error.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/simulated_board.h"
+#include "calib/statistics/draw_sources.h"
+#include "calib/statistics/random.h"
+#include "calib/triangulation.h"
+#include "calib/uncertainty/target_quantity.h"
+#include "sim/told/scaled_error.h"
+#include "sim/told_rigs.h"
+
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
+namespace {
+
+constexpr auto views_source = static_cast<std::uint32_t>(DrawSource::calibration_views);
+
+/// The first `count` of all numbers below `of` in a random order (Fisher and Yates), ascending.
+std::vector<int> drawn_numbers(int count, int of, const RandomCounter& place) {
+  RandomStream draws(place);
+  std::vector<int> order(static_cast<std::size_t>(of));
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = 0; i < count; ++i) {
+    const auto other = i + static_cast<int>(draws.below(static_cast<std::uint32_t>(of - i)));
+    std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(other)]);
+  }
+  order.resize(static_cast<std::size_t>(count));
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+class CalibratedRigs : public ToldRigs {
+ public:
+  CalibratedRigs(std::shared_ptr<const FreshCalibrations> calibrations, double psi_c)
+      : calibrations_(std::move(calibrations)), psi_c_(psi_c) {}
+
+  ToldRig told(std::uint32_t draw) const override {
+    if (psi_c_ == 0) return {calibrations_->truth(), {}};
+    const auto calibration = calibrations_->of(draw);
+    if (!calibration->failure.empty()) return {{}, calibration->failure};
+    return {with_scaled_error(calibrations_->truth(), calibration->rig, psi_c_), {}};
+  }
+
+ private:
+  std::shared_ptr<const FreshCalibrations> calibrations_;
+  double psi_c_;
+};
+
+}  // namespace
+
+FreshCalibrations::FreshCalibrations(Rig truth,
+                                     const FreshCalibrationOptions& options,
+                                     std::uint64_t seed)
+    : FreshCalibrations(std::move(truth), options, seed, nullptr) {}
+
+FreshCalibrations::FreshCalibrations(Rig truth,
+                                     const FreshCalibrationOptions& options,
+                                     std::uint64_t seed,
+                                     std::shared_ptr<const BoardObservations> corners)
+    : truth_(std::move(truth)), options_(options), seed_(seed), corners_(std::move(corners)) {
+  if (!corners_) return;
+  const auto frames = static_cast<int>(frames_of(*corners_).size());
+  if (frames < options_.views) {
+    throw Error(fmt::format("calibration.views = {}", options_.views),
+                fmt::format("the corners are of {} frames", frames), "take fewer views");
+  }
+  if (corners_->size_px.size() != truth_.cameras.size()) {
+    throw Error("calibration.observations",
+                fmt::format("the corners are of {} cameras and the true rig has {}",
+                            corners_->size_px.size(), truth_.cameras.size()),
+                "give the corners that the rig was calibrated from");
+  }
+  for (std::size_t c = 0; c < truth_.cameras.size(); ++c) {
+    if (corners_->size_px[c] == truth_.cameras[c].size_px) continue;
+    throw Error("calibration.observations",
+                fmt::format("the images of camera {} have another size than the true rig's", c),
+                "give the corners that the rig was calibrated from");
+  }
+}
+
+BoardObservations FreshCalibrations::views_of(std::uint32_t draw) const {
+  if (!corners_) {
+    return simulate_board(truth_, options_.board,
+                          {.seed = seed_,
+                           .trial = draw,
+                           .poses = draw,
+                           .frames = options_.views,
+                           .pixel_sigma_px = options_.pixel_sigma_px,
+                           .distance_m = options_.distance_m,
+                           .tilt_rad = options_.tilt_rad})
+        .observations;
+  }
+  const std::vector<int> all = frames_of(*corners_);
+  std::vector<int> frames;
+  for (const int i : drawn_numbers(options_.views, static_cast<int>(all.size()),
+                                   {.seed = seed_, .trial = draw, .source = views_source})) {
+    frames.push_back(all[static_cast<std::size_t>(i)]);
+  }
+  return at_frames(*corners_, frames);
+}
+
+FreshCalibration FreshCalibrations::compute(std::uint32_t draw) const {
+  CalibrationOptions how;
+  how.models = models_of(truth_);
+  if (options_.model) how.models.assign(truth_.cameras.size(), *options_.model);
+  try {
+    RigEstimate estimate = calibrate(views_of(draw), how);
+    const auto& doubts = estimate.calibration->trust_warnings;
+    return {std::move(estimate.rig),
+            std::move(estimate.covariance->matrix),
+            {},
+            doubts.empty() ? std::string() : doubts.front()};
+  } catch (const Error& error) {
+    return {{}, {}, error.place() + ": " + error.fault(), {}};
+  }
+}
+
+std::shared_ptr<const FreshCalibration> FreshCalibrations::of(std::uint32_t draw) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = known_.find(draw); found != known_.end()) return found->second;
+  }
+  auto computed = std::make_shared<const FreshCalibration>(compute(draw));
+  const std::lock_guard lock(mutex_);
+  return known_.emplace(draw, std::move(computed)).first->second;
+}
+
+std::shared_ptr<const ToldRigs> calibrated_rigs(
+    std::shared_ptr<const FreshCalibrations> calibrations, double psi_c) {
+  if (const auto& model = calibrations->options().model) {
+    Rig like = calibrations->truth();
+    for (Camera& camera : like.cameras) camera.model = *model;
+    check_scale(calibrations->truth(), like, psi_c, "calibration.model");
+  }
+  return std::make_shared<const CalibratedRigs>(std::move(calibrations), psi_c);
+}
+
+CalibrationRecord record_of(const FreshCalibrations& calibrations, int count) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  CalibrationRecord record;
+  record.calibrations = count;
+  const std::optional<PixelPair> pair =
+      calibrations.truth().cameras.size() == 2
+          ? pixel_pair(calibrations.truth(), {0, 0, record.range_m})
+          : std::nullopt;
+  double errors = 0, variances = 0;
+  int measured = 0;
+  for (int draw = 0; draw < count; ++draw) {
+    const auto c = calibrations.of(static_cast<std::uint32_t>(draw));
+    if (!c->failure.empty()) {
+      if (record.failed++ == 0) record.why_failed = c->failure;
+      continue;
+    }
+    if (!c->doubt.empty() && record.doubtful++ == 0) record.why_doubtful = c->doubt;
+    const std::optional<double> depth_m = pair ? try_triangulated_depth_m(c->rig, *pair) : nan;
+    if (!depth_m || !pair) continue;
+    const Eigen::RowVectorXd g = target_quantity(c->rig, "depth", record.range_m).gradient.row(0);
+    errors += (*depth_m - record.range_m) * (*depth_m - record.range_m);
+    variances += g * c->covariance * g.transpose();
+    ++measured;
+  }
+  record.depth_error_m = measured > 0 ? std::sqrt(errors / measured) : nan;
+  record.depth_sd_m = measured > 0 ? std::sqrt(variances / measured) : nan;
+  return record;
+}
+
+}  // namespace vernier::sim::internal

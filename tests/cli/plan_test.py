@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Vernier authors
+# SPDX-License-Identifier: Apache-2.0
+"""The verb plan, and studies of a told rig, from outside.
+
+    plan_test.py PROGRAM [unittest's options]
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = None
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATASHEET = ROOT / 'docs/examples/datasheet.json'
+
+
+class Base(unittest.TestCase):
+    def setUp(self):
+        keeper = tempfile.TemporaryDirectory()
+        self.addCleanup(keeper.cleanup)
+        self.folder = pathlib.Path(keeper.name)
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True,
+                              cwd=self.folder, timeout=300)
+
+    def json(self, *words, code=0):
+        done = self.call(*words, '--json', '-q')
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout)
+
+    def refused(self, *words, about):
+        done = self.call(*words)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertEqual(done.stderr.count('\n'), 1, done.stderr)
+        self.assertIn(about, done.stderr)
+
+
+class Plan(Base):
+    def test_calibration_so_far(self):
+        now = self.json('plan', 'nominal', '--depth-error', '0.01@5m')
+        self.assertEqual(now['from'], 'calibration')
+        self.assertEqual(now['views_so_far'], 20)
+        self.assertTrue(now['reachable'])
+        low, high = now['views_interval']
+        self.assertLessEqual(low, now['views'])
+        self.assertLessEqual(now['views'], high)
+        self.assertLessEqual(high, 2 * low)
+        self.assertGreater(now['confidence'], 0.5)
+        sds = [row['sd'] for row in now['curve']]
+        self.assertEqual(sds, sorted(sds, reverse=True))
+        # As the old names of options; the same numbers at every call.
+        self.assertEqual(now, self.json('plan', '--target-depth-sigma-m', '0.01', '--at-m', '5',
+                                        '--rig', 'nominal'))
+
+    def test_more_is_needed_for_less(self):
+        views = [self.json('plan', 'nominal', '--projection-error', f'{px}@5m')['views']
+                 for px in (0.5, 0.3, 0.2)]
+        self.assertEqual(views, sorted(views))
+        self.assertLess(views[0], views[2])
+
+    def test_datasheet(self):
+        sheet = self.json('plan', DATASHEET, '--board', '9x6', '--depth-error', '0.1@5m')
+        self.assertEqual((sheet['from'], sheet['views_so_far']), ('datasheet', 0))
+        finer = self.json('plan', DATASHEET, '--board', '9x6', '--depth-error', '0.1@5m',
+                          '--pixel-sigma', '0.4')
+        self.assertGreater(finer['views'], sheet['views'])
+
+    def test_what_calibration_does_not_limit(self):
+        done = self.call('plan', 'nominal', '--depth-error', '0.02@5m', '--pair-sigma-px', '0.2')
+        self.assertEqual(done.returncode, 3)
+        self.assertIn('cannot be reached: pixel noise of 0.2 px alone gives', done.stdout)
+        self.assertIn('not trustworthy: no number of views', done.stderr)
+        # Included noise leaves less to the calibration.
+        free = self.json('plan', 'nominal', '--depth-error', '0.07@5m')
+        shared = self.json('plan', 'nominal', '--depth-error', '0.07@5m', '--pair-sigma-px', '0.2')
+        self.assertLess(shared['sd_allowed'], free['sd_allowed'])
+        far = self.json('plan', 'nominal', '--depth-error', '1e-05@5m', code=3)
+        self.assertFalse(far['reachable'])
+        self.assertIn('more than 2000 views', far['limit'])
+
+    def test_success(self):
+        self.call('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', 'w.world.toml')
+        words = ['plan', 'nominal', '--world', 'w.world.toml', '--trials', '18']
+        plan = self.json(*words, '--success', '0.2')
+        self.assertEqual([row['calibration'] for row in plan['success']], [0, 0.25, 0.5, 1, 2, 4])
+        impossible = self.json(*words, '--success', '0.9999', '--protocol', 'free', code=3)
+        self.assertEqual(plan['target']['quantity'], 'success')
+        self.assertIn(impossible['reachable'], (True, False))
+
+    def test_bad_input(self):
+        self.refused('plan', 'nominal', about='no target given')
+        self.refused('plan', 'nominal', '--depth-error', '1', '--success', '0.9',
+                     about='more than one target')
+        self.refused('plan', 'nominal', '--depth-error', '0.02@x', about='--depth-error')
+        self.refused('plan', 'nominal', '--depth-error', '0', about='not above 0')
+        self.refused('plan', 'none.json', '--depth-error', '1', about='none.json')
+        self.refused('plan', DATASHEET, '--board', '9by6', '--depth-error', '1', about='--board')
+        self.refused('plan', 'nominal', '--success', '0.5', '--world', 'nowhere', about='nowhere')
+        self.refused('plan', 'nominal', '--success', '0.5', '--protocol', 'far', about='far')
+
+
+STUDY = '''[study]
+trials = 12
+protocol = "near_path"
+[world]
+file = "w.world.toml"
+[map]
+spacing_m = 3
+'''
+
+
+class ToldRigs(Base):
+    def setUp(self):
+        super().setUp()
+        self.call('world', 'make', '--seed', '5', '--size-m', '8,8,2.5', '-o', 'w.world.toml')
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        del rig['evidence']
+        (self.folder / 'told.json').write_text(json.dumps(rig))
+        for key in ('covariance', 'covariance_mvb', 'parameters', 'parameter_names', 'calibration'):
+            rig.pop(key, None)
+        (self.folder / 'bare.json').write_text(json.dumps(rig))
+
+    def study(self, text, code=0, name='out'):
+        (self.folder / 's.toml').write_text(STUDY + text)
+        return self.json('study', 's.toml', '-o', name, code=code)
+
+    @staticmethod
+    def untimed(result):
+        return [{k: v for k, v in cell.items() if '_ms_' not in k} for cell in result['cells']]
+
+    def test_folder_holds_all_inputs_and_can_be_moved(self):
+        text = '[rig]\ntruth = "nominal"\n[sweep]\n"rig.file" = ["told.json", "nominal"]\n'
+        ran = self.study(text)
+        self.assertEqual(len(ran['cells']), 2)
+        self.assertEqual([rig['file'] for rig in ran['rig']['told']], ['told.json', 'nominal'])
+        self.assertLessEqual({'rig.json', 'told.json', 'told-2.json', 'study.toml'},
+                             {path.name for path in (self.folder / 'out').iterdir()})
+        for name in ('told.json', 'w.world.toml', 's.toml'):
+            (self.folder / name).unlink()
+        (self.folder / 'out').rename(self.folder / 'moved')
+        again = self.json('study', 'status', 'moved')
+        self.assertEqual(self.untimed(ran), self.untimed(again))
+
+    def test_swept_worlds(self):
+        self.call('world', 'make', '--seed', '6', '--size-m', '8,8,2.5', '-o', 'v.world.toml')
+        ran = self.study('[sweep]\n"world.file" = ["w.world.toml", "v.world.toml"]\n')
+        self.assertEqual([cell['settings']['world.file'] for cell in ran['cells']],
+                         ['w.world.toml', 'v.world.toml'])
+        self.assertEqual(ran['comparisons'], [])  # other queries
+        self.assertTrue((self.folder / 'out/world-2.world.toml').is_file())
+
+    def test_real_views_by_subsets(self):
+        nominal = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        (self.folder / 'all.json').write_text(json.dumps(nominal))
+        ran = self.study('[rig]\nfile = "all.json"\n[calibration]\nobservations = "all.json"\n'
+                         '[sweep]\n"calibration.views" = [4, 20]\n')
+        few, whole = (cell['calibration'] for cell in ran['cells'])
+        self.assertEqual(whole['calibrations'], 100)
+        self.assertGreater(few['depth_error_m'], 10 * whole['depth_error_m'])  # all views: the truth
+        self.assertTrue((self.folder / 'out/corners.json').is_file())
+
+    def test_bad_input(self):
+        def refused(text, about):
+            (self.folder / 's.toml').write_text(STUDY + text)
+            self.refused('study', 's.toml', '-o', 'bad', '-q', about=about)
+            self.assertFalse((self.folder / 'bad').exists())
+        refused('[sweep]\n"rig.file" = ["nominal", "told.json"]\n', 'name the true rig as rig.truth')
+        refused('[rig]\ntruth = "nominal"\nfile = "none.json"\n', 'none.json')
+        refused('[rig]\ntruth = "nominal"\nfile = "bare.json"\n', 'bare.json')
+        refused('[sweep]\n"calibration.views" = [2, 5]\n', 'calibration.views = 2 is out of range')
+        refused('[calibration]\nobservations = "none.json"\n', 'none.json')
+        refused('[calibration]\nobservations = "told.json"\n', 'has no board views')
+        refused('[calibration]\nobservations = "bare.json"\n', 'has no board views')
+        refused('[sweep]\n"world.file" = ["w.world.toml", "none.world.toml"]\n', 'none.world.toml')
+
+
+if __name__ == '__main__':
+    PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

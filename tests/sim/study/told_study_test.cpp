@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/camera/model_nesting.h"
+#include "calib/rig.h"
+#include "calib/rig_estimate.h"
+#include "calib/sampler.h"
+#include "localise/localiser.h"
+#include "sim/experiment.h"
+#include "sim/sense.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
+#include "tests/support/error_message.h"
+#include "tests/support/small_office.h"
+
+namespace vernier {
+
+using namespace vernier::sim;
+using namespace vernier::sim::internal;
+
+namespace {
+
+const std::string head = "[study]\ntrials = 12\nprotocol = \"near_path\"\n[map]\nspacing_m = 2\n";
+
+std::string complaint_of(const std::string& text) {
+  return test::error_message([&] { parse_study(text, "s.toml"); });
+}
+
+bool complains(const std::string& text, const std::string& about) {
+  const std::string complaint = complaint_of(text);
+  return complaint.find(about) != std::string::npos || (ADD_FAILURE() << complaint, false);
+}
+
+/// The rig with its covariance scaled: another calibration of the same rig.
+RigEstimate looser(double factor) {
+  RigEstimate rig = test::nominal_rig();
+  rig.covariance->matrix *= factor;
+  return rig;
+}
+
+Study study_of(const std::string& text) {
+  Study study;
+  study.file = parse_study(head + text, "s.toml");
+  study.world = test::small_office();
+  study.world_fingerprint = "office";
+  study.rig = test::nominal_rig();
+  study.rig_fingerprint = "nominal";
+  RigEstimate richer = test::nominal_rig();
+  richer.rig = vernier::internal::in_models(richer.rig, {OpenCv4{}, OpenCv4{}});
+  richer.covariance.reset();
+  study.told_rigs["truth.json"] = {test::nominal_rig(), "nominal"};
+  study.told_rigs["loose.json"] = {looser(9), "loose"};
+  study.told_rigs["richer.json"] = {richer, "richer"};
+  OfficeOptions options;
+  options.size_m = {8, 9, 2.5};
+  study.other_worlds["other"] = {build_world(make_office(32, options)), "other"};
+  return study;
+}
+
+class ToldStudies : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("vernier_told_" + std::to_string(getpid()));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<CellResult> run(const Study& study, int threads = 1) {
+    const std::filesystem::path folder = folder_ / std::to_string(++runs_);
+    run_study(study, {folder, threads, {}, {}, {}});
+    return study_results(study, folder).cells;
+  }
+
+  /// Everything but the timings.
+  static std::string words(const CellResult& cell) {
+    std::string text = std::to_string(cell.ceiling ? cell.ceiling->success : -1) + "\n";
+    for (const TrialResult& t : cell.trials) {
+      char line[400];
+      std::snprintf(line, sizeof line, "%u %d %a %a %a %a %a %a %d\n", t.trial,
+                    static_cast<int>(t.status), t.truth.x_m, t.truth.heading_rad, t.answer.x_m,
+                    t.answer.heading_rad, t.error_m, t.score, t.lines);
+      text += line;
+    }
+    return text;
+  }
+
+  std::filesystem::path folder_;
+  int runs_ = 0;
+};
+
+TEST_F(ToldStudies, ARigThatIsItsOwnTruthIsADrawAboutThatTruth) {
+  const auto before = run(study_of("[rig]\nfile = \"truth.json\"\n"));
+  const auto told = run(study_of("[rig]\ntruth = \"truth.json\"\nfile = \"truth.json\"\n"));
+  EXPECT_EQ(words(before[0]), words(told[0]));
+}
+
+TEST_F(ToldStudies, TheTruthToldIsNoCalibrationError) {
+  const auto none = run(study_of("[sources]\ncalibration = 0\n"));
+  const auto given =
+      run(study_of("[rig]\ntruth = \"truth.json\"\nfile = \"truth.json\"\nerror = \"given\"\n"));
+  const auto unscaled = run(study_of(
+      "[rig]\ntruth = \"truth.json\"\nfile = \"loose.json\"\n[sources]\ncalibration = 0\n"));
+  EXPECT_EQ(words(none[0]), words(given[0]));
+  EXPECT_EQ(words(none[0]), words(unscaled[0]));
+}
+
+TEST_F(ToldStudies, CellsOfASweepAreTheStudiesOfTheirValuesToTheBit) {
+  const auto rigs =
+      run(study_of("[rig]\ntruth = \"truth.json\"\n[sweep]\n"
+                   "\"rig.file\" = [\"truth.json\", \"loose.json\"]\n"
+                   "\"rig.error\" = [\"drawn\", \"given\"]\n"));
+  ASSERT_EQ(rigs.size(), 4u);
+  const auto alone = run(study_of("[rig]\ntruth = \"truth.json\"\nfile = \"loose.json\"\n"), 2);
+  EXPECT_EQ(words(rigs[2]), words(alone[0]));
+  EXPECT_EQ(words(rigs[1]), words(rigs[3]));  // the same rig, whatever its covariance
+  EXPECT_NE(words(rigs[0]), words(rigs[2]));
+  for (const CellResult& cell : rigs) {
+    for (std::size_t i = 0; i < cell.trials.size(); ++i) {
+      EXPECT_EQ(cell.trials[i].truth.x_m, rigs[0].trials[i].truth.x_m);
+    }
+  }
+}
+
+TEST_F(ToldStudies, SweptWorldsAreTheStudiesOfEachWorld) {
+  const auto both =
+      run(study_of("[sweep]\n\"world.file\" = [\"workshop\", \"other\"]\n"
+                   "\"sources.calibration\" = [0, 1]\n"));
+  ASSERT_EQ(both.size(), 4u);
+  const auto first = run(study_of("[sweep]\n\"sources.calibration\" = [0, 1]\n"));
+  EXPECT_EQ(words(both[0]), words(first[0]));
+  EXPECT_EQ(words(both[1]), words(first[1]));
+  Study other = study_of("[world]\nfile = \"other\"\n[sweep]\n\"sources.calibration\" = [0, 1]\n");
+  other.world = other.other_worlds.at("other").world;
+  other.world_fingerprint = "other";
+  other.other_worlds.clear();
+  const auto second = run(other);
+  EXPECT_EQ(words(both[2]), words(second[0]));
+  EXPECT_EQ(words(both[3]), words(second[1]));
+  EXPECT_NE(words(both[1]), words(both[3]));
+}
+
+TEST_F(ToldStudies, EachTrialAndEachMapIsToldACalibrationOfItsOwn) {
+  const Study study =
+      study_of("[calibration]\nviews = 4\n[sweep]\n\"sources.calibration\" = [0, 1]\n");
+  const auto cells = run(study, 2);
+  ASSERT_TRUE(cells[1].calibrations);
+  EXPECT_EQ(cells[1].calibrations->calibrations, 100);
+  EXPECT_EQ(words(cells[0]), words(run(study_of("[sources]\ncalibration = 0\n"))[0]));
+  EXPECT_NE(words(cells[0]), words(cells[1]));
+  EXPECT_EQ(words(cells[1]), words(run(study_of("[calibration]\nviews = 4\n"))[0]));
+}
+
+TEST_F(ToldStudies, ATrialWhoseCalibrationFailsHasFailed) {
+  const auto cells = run(study_of("[calibration]\nviews = 3\ntilt_deg = 0.01\n"));
+  ASSERT_TRUE(cells[0].calibrations);
+  EXPECT_EQ(cells[0].calibrations->failed, 100);
+  for (const TrialResult& trial : cells[0].trials) {
+    EXPECT_EQ(trial.status, localise::LocalisationStatus::failed);
+    EXPECT_FALSE(trial.success());
+  }
+}
+
+TEST_F(ToldStudies, AToldLensModelMayDifferFromTheTrueOne) {
+  // The richer model with the same coefficients is the same camera.
+  const auto none = run(study_of("[sources]\ncalibration = 0\n"));
+  const auto richer =
+      run(study_of("[rig]\ntruth = \"truth.json\"\nfile = \"richer.json\"\nerror = \"given\"\n"));
+  for (std::size_t i = 0; i < none[0].trials.size(); ++i) {
+    const TrialResult &a = none[0].trials[i], &b = richer[0].trials[i];
+    EXPECT_EQ(a.status, b.status);
+    if (a.answered()) {
+      EXPECT_NEAR(a.error_m, b.error_m, 1e-6);
+    }
+  }
+  const auto pinhole = run(study_of("[calibration]\nviews = 20\nmodel = \"pinhole\"\n"));
+  EXPECT_EQ(pinhole[0].trials.size(), 12u);
+  EXPECT_GT(pinhole[0].calibrations->depth_error_m, 0.01);  // k1 is -0.05
+}
+
+TEST_F(ToldStudies, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
+  const auto message = [&](const std::string& text) {
+    return test::error_message([&] { run(study_of(text)); });
+  };
+  const std::string rig = "[rig]\ntruth = \"truth.json\"\nfile = \"richer.json\"\n";
+  EXPECT_NE(message(rig).find("richer.json"), std::string::npos);
+  EXPECT_NE(message(rig + "error = \"given\"\n[sources]\ncalibration = 2\n")
+                .find("cannot scale the difference of lens models"),
+            std::string::npos);
+  EXPECT_NE(message("[calibration]\nmodel = \"pinhole\"\n[sources]\ncalibration = 2\n")
+                .find("cannot scale the difference of lens models"),
+            std::string::npos);
+  EXPECT_TRUE(!std::filesystem::exists(folder_) || std::filesystem::is_empty(folder_));
+}
+
+TEST(ToldStudy, KeysHoldTheContentOfFilesAndNotTheirNames) {
+  const auto key = [](const Study& study) { return cell_key(study, study.file.cells[0]); };
+  const std::string text = "[rig]\ntruth = \"truth.json\"\nfile = \"loose.json\"\n";
+  Study study = study_of(text);
+  const std::string loose = key(study);
+  study.told_rigs["loose.json"].fingerprint = "changed";
+  EXPECT_NE(key(study), loose);
+  Study renamed = study_of("[rig]\ntruth = \"t.json\"\nfile = \"l.json\"\n");
+  renamed.told_rigs["l.json"] = {looser(9), "loose"};
+  EXPECT_EQ(key(renamed), loose);
+  std::set<std::string> keys{loose};
+  for (const char* other :
+       {"[rig]\ntruth = \"truth.json\"\nfile = \"loose.json\"\nerror = \"given\"\n",
+        "[rig]\ntruth = \"truth.json\"\nfile = \"truth.json\"\n", "", "[calibration]\n",
+        "[calibration]\nviews = 5\n", "[calibration]\nmodel = \"opencv4\"\n",
+        "[calibration]\npixel_sigma_px = 0.3\n", "[calibration]\nboard = \"8x6\"\n"}) {
+    EXPECT_TRUE(keys.insert(key(study_of(other))).second) << other;
+  }
+  EXPECT_EQ(key(study_of("")).find("told"), std::string::npos);  // as stores of before have it
+}
+
+TEST(ToldStudy, BadInputNamesTheLineAndTheRemedy) {
+  const std::string s = "[study]\n";
+  EXPECT_TRUE(complains(s + "[rig]\nfile = \"a\"\n[sweep]\n\"rig.file\" = [\"a\", \"b\"]\n",
+                        "s.toml:5: a rig is its own truth unless rig.truth is given"));
+  EXPECT_TRUE(complains(s + "[rig]\ntruth = \"a\"\n", "s.toml:3: rig.truth is given, and nothing"));
+  EXPECT_TRUE(
+      complains(s + "[rig]\nerror = \"given\"\nfile = \"a\"\n", "rig.error needs rig.truth"));
+  EXPECT_TRUE(
+      complains(s + "[rig]\ntruth = \"a\"\nfile = \"b\"\nerror = \"mine\"\n", "s.toml:5: "));
+  EXPECT_TRUE(complains(s + "[rig]\ntruth = \"a\"\nfile = \"b\"\n[calibration]\n",
+                        "s.toml:4: rig.file has no effect"));
+  EXPECT_TRUE(complains(s + "[sweep]\n\"calibration.views\" = [2, 5]\n",
+                        "s.toml:3: calibration.views = 2 is out of range"));
+  EXPECT_TRUE(complains(s + "[calibration]\nviews = 5.5\n", "s.toml:3: "));
+  EXPECT_TRUE(complains(s + "[calibration]\nboard = \"9 x 6\"\n", "s.toml:3: calibration.board"));
+  EXPECT_TRUE(complains(s + "[calibration]\nmodel = \"fish\"\n", "s.toml:3: calibration.model"));
+  EXPECT_TRUE(complains(s + "[calibration]\nview = 5\n", "views"));
+  EXPECT_TRUE(complains(s + "[calibration]\nobservations = \"c.vnl\"\ntilt_deg = 3\n",
+                        "s.toml:4: calibration.tilt_deg is of simulated views"));
+  EXPECT_TRUE(
+      complains(s + "[rig]\ntruth = \"a\"\nfile = \"b\"\n[sweep]\n\"rig.truth\" = [\"a\"]\n",
+                "cannot be swept"));
+  EXPECT_EQ(complaint_of(s + "[rig]\ntruth = \"a\"\n[sweep]\n\"rig.file\" = [\"b\", \"c\"]\n"), "");
+}
+
+// The images of a truth do not know what is told of it.
+TEST(ToldExperiment, TheSameIsSensedWhateverIsTold) {
+  ExperimentSettings s;
+  s.seed = 5;
+  const auto& visibility = test::small_office_visibility();
+  const RigEstimate& rig = test::nominal_rig();
+  const auto views = std::make_shared<MapViews>(map_views(visibility, rig.rig, s));
+  const Rig wrong = RigSampler(rig).sample(20, 3, 0);
+  const LocalisationExperiment drawn(visibility, rig, views, s);
+  const LocalisationExperiment given(visibility, rig, views, s, nullptr, nullptr,
+                                     given_rig(rig.rig, wrong, 1, "wrong"));
+  EXPECT_EQ(parameters(given.estimator_rig(3)), parameters(wrong));
+  EXPECT_EQ(parameters(given.map_estimator_rig(0)), parameters(wrong));
+  // Both record with the same rig: then they are the same map, line by line.
+  const auto a = drawn.record_map(2, wrong), b = given.record_map(2, wrong);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    const auto &lines = a.nodes[i].view.lines, &others = b.nodes[i].view.lines;
+    ASSERT_EQ(lines.size(), others.size());
+    for (std::size_t j = 0; j < lines.size(); ++j) EXPECT_EQ(lines[j].a_m, others[j].a_m);
+  }
+}
+
+}  // namespace
+}  // namespace vernier

@@ -233,6 +233,14 @@ void widen_by_scale(const PlanResult& plan, const ViewPlanOptions& how, ViewsNee
 }
 
 void judge(const PlanResult& plan, Session& session) {
+  constexpr double correlated = 1.5;
+  constexpr int few = 13;
+  if (plan.from_calibration && plan.known.taken < few && plan.known.inflation > correlated) {
+    session.warn(fmt::format(
+        "the residuals are correlated over the board, and {} views understate that: on real images "
+        "intervals held less often than stated, and more views were needed (docs/plan.md)",
+        plan.known.taken));
+  }
   if (!plan.limit.empty()) {
     session.add_trust_warning("no number of views reaches the target: " + plan.limit);
     return;

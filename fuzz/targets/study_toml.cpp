@@ -45,7 +45,14 @@ std::vector<std::string> study_toml_seeds() {
       "rig = \"recalibrated\"\n[localiser]\nmethod = \"pgh\"\nlooks = 1\n"
       "[sweep]\n\"sources.calibration\" = [0.1, 1, 10]\n\"map.headings\" = [\"path\", 8]\n",
       "[study]\ntrials = 12\n[sources]\nlateral_shift_mode = \"independent\"\n"
-      "[localiser]\nknows_endpoint_sigma = true\n"};
+      "[localiser]\nknows_endpoint_sigma = true\n",
+      "[study]\n[rig]\ntruth = \"true.json\"\nerror = \"given\"\n[sweep]\n\"rig.file\" = [\"a\", "
+      "\"b\"]\n"
+      "\"world.file\" = [\"c\", \"d\"]\n",
+      "[study]\n[calibration]\nmodel = \"opencv4\"\nboard = \"9x6\"\nsquare_m = 0.025\n"
+      "pixel_sigma_px = 0.2\ndistance_m = 1\ntilt_deg = 30\n[sweep]\n\"calibration.views\" = [3, "
+      "20]\n",
+      "[study]\n[calibration]\nviews = 5\nobservations = \"corners.vnl\"\n"};
 }
 
 std::vector<std::string> sources_toml_seeds() {

@@ -58,7 +58,7 @@ void check_corridors(const Vector3d& size) {
     throw Error("corridors", fault, remedy);
   };
   if (!size.allFinite()) refuse("a size is not finite", "use finite lengths in metres");
-  if (size.maxCoeff() > 500) refuse("the floor is larger than 500 m", "use at most 500 m");
+  if (size.maxCoeff() > 500) refuse("a length is above 500 m", "use at most 500 m");
   if (size.z() < 2.3) refuse("the height is below 2.3 m", "use at least 2.3 m, for the doors");
   if (size.head<2>().minCoeff() < 4) refuse("no corridor fits", "use at least 4 m each way");
 }

@@ -55,7 +55,7 @@ void check_hall(const Vector3d& size) {
     throw Error("hall", fault, remedy);
   };
   if (!size.allFinite()) refuse("a size is not finite", "use finite lengths in metres");
-  if (size.maxCoeff() > 500) refuse("the floor is larger than 500 m", "use at most 500 m");
+  if (size.maxCoeff() > 500) refuse("a length is above 500 m", "use at most 500 m");
   if (size.z() < 4.5) refuse("the height is below 4.5 m", "use at least 4.5 m, for the racks");
   if (size.head<2>().minCoeff() < 8) {
     refuse("neither racks nor a way around them fit", "use at least 8 m each way");

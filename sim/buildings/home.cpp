@@ -258,7 +258,7 @@ void check_home(const Vector3d& size) {
     throw Error("home", fault, remedy);
   };
   if (!size.allFinite()) refuse("a size is not finite", "use finite lengths in metres");
-  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "use at most 200 m");
+  if (size.maxCoeff() > 200) refuse("a length is above 200 m", "use at most 200 m");
   if (size.z() < 2.3)
     refuse("the height is below 2.3 m", "use at least 2.3 m, for the door frames");
   if (size.head<2>().minCoeff() < 3) refuse("no room fits", "use at least 3 m each way");

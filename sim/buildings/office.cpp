@@ -58,7 +58,7 @@ void check_options(const OfficeOptions& options) {
       !std::isfinite(options.room_width_m)) {
     refuse("a size is not finite", "use finite lengths in metres");
   }
-  if (size.maxCoeff() > 200) refuse("the floor is larger than 200 m", "use at most 200 m");
+  if (size.maxCoeff() > 200) refuse("a length is above 200 m", "use at most 200 m");
   if (size.z() < 2.3)
     refuse("the height is below 2.3 m", "use at least 2.3 m, for the door frames");
   if (options.corridor_width_m < 1.2)

@@ -15,6 +15,7 @@
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_merge.h"
+#include "cli/simulation/study_table.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/study_folder.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -21,7 +18,6 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
-#include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "sim/experiment.h"
@@ -30,6 +26,7 @@
 #include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/world_summary.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
 
@@ -93,6 +90,21 @@ Json thresholds_json(const std::vector<TrialResult>& trials) {
                     {"coverage", at.coverage},
                     {"answered", at.answered},
                     {"wrong", at.wrong}});
+  }
+  return json;
+}
+
+/// Success over swept worlds; empty if there are none.
+Json over_worlds_json(const StudyResults& results) {
+  Json json = Json::array();
+  for (const WorldSummary& s : summarise_over_worlds(results.cells)) {
+    const std::optional<Interval>& interval = s.success_interval_95;
+    json.push_back(
+        {{"label", s.label},
+         {"worlds", s.worlds},
+         {"success", s.worlds > 0 ? Json(s.success) : Json()},
+         {"success_interval_95", interval ? Json{interval->low, interval->high} : Json()},
+         {"success_interval_95_missing", interval ? Json() : Json(s.why_no_interval)}});
   }
   return json;
 }
@@ -175,19 +187,10 @@ Json cell_json(const CellResult& cell) {
 
 Json comparisons_json(const StudyResults& results) {
   Json comparisons = Json::array();
-  const std::vector<std::pair<std::size_t, std::size_t>> pairs = comparable_pairs(results.cells);
-  std::vector<PairedComparison> compared;
-  std::vector<double> p_values;
-  for (const auto& [a, b] : pairs) {
-    compared.push_back(compare(results.cells[a], results.cells[b]));
-    p_values.push_back(compared.back().p_value);
-  }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto& [a, b] = pairs[i];
-    const PairedComparison& c = compared[i];
-    comparisons.push_back({{"a", short_label(results.cells[a].cell)},
-                           {"b", short_label(results.cells[b].cell)},
+  for (const AdjustedComparison& pair : compare_all(results.cells)) {
+    const PairedComparison& c = pair.paired;
+    comparisons.push_back({{"a", short_label(results.cells[pair.a].cell)},
+                           {"b", short_label(results.cells[pair.b].cell)},
                            {"both", c.both},
                            {"only_a", c.only_a},
                            {"only_b", c.only_b},
@@ -195,7 +198,7 @@ Json comparisons_json(const StudyResults& results) {
                            {"maps", c.maps},
                            {"test", "paired t over maps"},
                            {"p_value", json_number(c.p_value)},
-                           {"p_value_holm", json_number(adjusted[i])},
+                           {"p_value_holm", json_number(pair.p_holm)},
                            {"mcnemar_p", json_number(c.mcnemar_p)}});
   }
   return comparisons;
@@ -208,66 +211,9 @@ Json study_json(const Study& study, const StudyResults& results) {
             {"blocks_total", results.blocks_total},
             {"cells", Json::array()}};
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
+  json["over_worlds"] = over_worlds_json(results);
   json["comparisons"] = comparisons_json(results);
   return json;
-}
-
-namespace {
-
-std::string interval_text(const std::optional<Interval>& interval) {
-  if (!interval) return "none";
-  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * interval->low, 100 * interval->high);
-}
-
-/// A number with its unit, a dash where there is none: shards have a part of a ceiling's queries
-/// each, and a cell without trials or answers has no times or errors.
-std::string figure(double value, int digits, const char* unit = "") {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}{}", value, digits, unit);
-}
-
-}  // namespace
-
-std::string study_table(const Study& study, const StudyResults& results) {
-  const bool swept = !study.file.sweep_keys.empty();
-  std::string text =
-      fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-                  swept ? "cell" : "", "trials", "success", "95 % interval", "answered", "of these",
-                  "ceiling", "95 % interval", "unaliased", "median m", "cpu ms", "p95 ms");
-  std::set<std::string> missing;
-  for (const CellResult& cell : results.cells) {
-    const CellSummary s = summarise(cell);
-    if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    const double of_trials = s.trials > 0 ? 1 : nan;
-    text += fmt::format(
-        "{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        figure(of_trials * 100 * s.success, 2, " %"), interval_text(s.success_interval_95),
-        figure(of_trials * 100 * s.coverage, 1, " %"),
-        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
-        figure(cell.ceiling ? 100 * cell.ceiling->success : nan, 1, " %"),
-        cell.ceiling ? interval_text(cell.ceiling->success_interval_95) : "-",
-        figure(cell.ceiling ? 100 * cell.ceiling->unaliased : nan, 1, " %"),
-        figure(s.median_error_m, 3), figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
-  }
-  const auto& keys = study.file.sweep_keys;
-  const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
-  const auto protocol = name(study.file.cells[0].experiment.protocol);
-  const std::string covariance =
-      study.rig.covariance
-          ? fmt::format("covariance (scaled by psi_c) of kind {}", name(study.rig.covariance->kind))
-          : "no covariance";
-  text += fmt::format("rig {}: {}\n", study.file.rig, covariance);
-  text +=
-      fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
-                  swept_protocol ? "" : fmt::format("protocol {}, ", protocol), study.world.name);
-  for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
-  if (results.blocks_done == 0) text += "no trials are stored yet\n";
-  if (results.blocks_done < results.blocks_total) {
-    text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
-                        results.blocks_done, results.blocks_total);
-  }
-  return text;
 }
 
 }  // namespace vernier::cli

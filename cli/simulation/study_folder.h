@@ -23,7 +23,6 @@ Json cell_json(const CellResult& cell);
 /// and adjusted by Holm's method.
 Json comparisons_json(const StudyResults& results);
 Json study_json(const Study& study, const StudyResults& results);
-std::string study_table(const Study& study, const StudyResults& results);
 
 /// "ψ_c = 1" for a sweep of the calibration error, otherwise the cell's label.
 std::string short_label(const StudyCell& cell);

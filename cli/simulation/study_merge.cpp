@@ -9,6 +9,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_table.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"

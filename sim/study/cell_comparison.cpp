@@ -92,4 +92,16 @@ std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
   return pairs;
 }
 
+std::vector<AdjustedComparison> compare_all(const std::vector<CellResult>& cells) {
+  std::vector<AdjustedComparison> all;
+  std::vector<double> p_values;
+  for (const auto& [a, b] : comparable_pairs(cells)) {
+    all.push_back({a, b, compare(cells[a], cells[b])});
+    p_values.push_back(all.back().paired.p_value);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
+  return all;
+}
+
 }  // namespace vernier::sim::internal

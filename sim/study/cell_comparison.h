@@ -32,4 +32,15 @@ PairedComparison compare(const CellResult& a, const CellResult& b);
 std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const std::vector<CellResult>& cells);
 
+/// Two of a study's cells, by index, and their p-value adjusted for the number of comparisons that
+/// have one, by Holm's method (Scandinavian Journal of Statistics 6, 1979); NaN without one.
+struct AdjustedComparison {
+  std::size_t a = 0, b = 0;
+  PairedComparison paired;
+  double p_holm = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The comparisons of comparable_pairs().
+std::vector<AdjustedComparison> compare_all(const std::vector<CellResult>& cells);
+
 }  // namespace vernier::sim::internal

@@ -194,6 +194,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   for (std::size_t cell = 0; cell < count; ++cell) {
     toml::table changed = root;
     changed.erase("sweep");
+    StudyCell result;
     std::string label;
     std::size_t rest = cell, block = count;
     for (std::size_t k = 0; k < study.sweep_keys.size(); ++k) {
@@ -203,8 +204,8 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       const std::string& key = study.sweep_keys[k];
       set(changed, key, *sweep->get(key)->as_array()->get(i));
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
+      result.swept.emplace_back(key, study.sweep_values[k][i]);
     }
-    StudyCell result;
     result.experiment = read_settings(changed, sources_);
     result.settings = settings_of(result.experiment);
     result.label = label.empty() ? "as set" : label;

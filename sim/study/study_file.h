@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/experiment.h"
@@ -15,7 +16,8 @@ namespace vernier::sim::internal {
 /// One combination of the swept settings.
 struct StudyCell {
   std::string label;  ///< swept keys and values, such as "sources.calibration = 10"
-  std::map<std::string, std::string> settings;  ///< every setting in effect, by dotted key
+  std::vector<std::pair<std::string, std::string>> swept;  ///< these keys and values, in order
+  std::map<std::string, std::string> settings;             ///< all in effect, by dotted key
   ExperimentSettings experiment;
 };
 

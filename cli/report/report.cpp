@@ -21,7 +21,6 @@
 #include "cli/report/report_evaluation.h"
 #include "cli/simulation/study_folder.h"
 #include "sim/study/study.h"
-#include "sim/study/study_store.h"
 
 namespace vernier::cli {
 namespace {
@@ -88,10 +87,7 @@ struct NamedRig {
 std::vector<fs::path> files_read(const Inputs& inputs) {
   std::vector<fs::path> files;
   if (!inputs.study.empty()) {
-    files = store_files(inputs.study);
-    for (const char* name : {"study.toml", "world.world.toml", "rig.json", "sources.toml"}) {
-      files.push_back(fs::path(inputs.study) / name);
-    }
+    files = study_folder_files(inputs.study);
   }
   if (!inputs.evaluation.empty()) {
     const std::vector<fs::path> more = evaluation_files(inputs.evaluation);

@@ -26,6 +26,7 @@
 #include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
 #include "sim/study/world_summary.h"
 #include "sim/world.h"
 #include "sim/world_file.h"
@@ -130,6 +131,14 @@ Study open_folder(const fs::path& folder, Session& session) {
   }
   return assemble(read_study(folder / "study.toml", folder / "sources.toml"),
                   folder / "world.world.toml", folder / "rig.json", session);
+}
+
+std::vector<fs::path> study_folder_files(const fs::path& folder) {
+  std::vector<fs::path> files = store_files(folder);
+  for (const char* name : {"study.toml", "world.world.toml", "rig.json", "sources.toml"}) {
+    files.push_back(folder / name);
+  }
+  return files;
 }
 
 std::string short_label(const StudyCell& cell) {

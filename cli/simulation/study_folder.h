@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "cli/program/session.h"
 #include "sim/study/study.h"
@@ -16,6 +17,9 @@ Study load_study(const std::filesystem::path& file, Session& session);
 
 /// The study of a results folder, by its own copies of the inputs, so that it can be moved.
 Study open_folder(const std::filesystem::path& folder, Session& session);
+
+/// The files of such a folder that are read, which no output may replace.
+std::vector<std::filesystem::path> study_folder_files(const std::filesystem::path& folder);
 
 /// A cell's settings and statistics.
 Json cell_json(const CellResult& cell);

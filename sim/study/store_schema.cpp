@@ -148,13 +148,38 @@ void make_store(const Database& database) {
   whole.commit();
 }
 
+void check_store(const Database& database) {
+  if (store_version(database) == 0) return;
+  Statement verdict(database, "PRAGMA quick_check(1)");
+  if (!verdict.step() || verdict.text(0) != "ok")
+    database.fail_damaged("its pages do not fit together");
+}
+
+int stored_trials(const Database& database, const std::string& cell, int block) {
+  const int version = database.number("PRAGMA user_version");
+  Statement row(database, version == newest_version
+                              ? "SELECT trials FROM trial_block WHERE cell = ? AND block = ?"
+                              : "SELECT trials FROM block WHERE cell = ? AND block = ?");
+  row.bind(1, cell).bind(2, block);
+  return row.step() ? row.whole(0) : 0;
+}
+
+StoredBlock stored_block(const Database& database, const std::string& cell, int block) {
+  const bool with_checksum = database.number("PRAGMA user_version") == newest_version;
+  Statement row(database, with_checksum
+                              ? "SELECT cell, block, trials, answered, successes, results,"
+                                " checksum FROM trial_block WHERE cell = ? AND block = ?"
+                              : "SELECT cell, block, trials, answered, successes, results"
+                                " FROM block WHERE cell = ? AND block = ?");
+  row.bind(1, cell).bind(2, block);
+  return row.step() ? block_of(database, row, with_checksum) : StoredBlock{cell, block, {}};
+}
+
 StoreContent stored_content(const Database& database) {
   const int version = store_version(database);
   StoreContent content;
   if (version == 0) return content;
-  Statement verdict(database, "PRAGMA quick_check(1)");
-  if (!verdict.step() || verdict.text(0) != "ok")
-    database.fail_damaged("its pages do not fit together");
+  check_store(database);
   read_blocks(database, version, content);
   read_notes(database, version, content);
   return content;

@@ -19,6 +19,14 @@ void make_store(const Database& database);
 /// Everything in the tables, every row checked. Throws Error at the first that is damaged.
 StoreContent stored_content(const Database& database);
 
+/// Checks the pages and the tables, not the rows. Throws Error as stored_content() does.
+void check_store(const Database& database);
+
+/// Number of trials in a block, 0 if there is none; and the block, checked, without trials if there
+/// is none.
+int stored_trials(const Database& database, const std::string& cell, int block);
+StoredBlock stored_block(const Database& database, const std::string& cell, int block);
+
 void store_block(const Database& database, const StoredBlock& block);
 void store_note(const Database& database, const std::string& key, const std::string& value);
 

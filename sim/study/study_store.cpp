@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -189,6 +190,53 @@ StoreContent read_store(const fs::path& file) {
     std::this_thread::sleep_for(50ms);
   }
 }
+
+struct StoreReader::Open {
+  fs::path file;
+  std::array<FileState, 2> before;
+  std::string options;
+  std::optional<Database> database;  // none for an empty file
+};
+
+StoreReader::StoreReader(const fs::path& file) : open_(new Open{file, {}, {}, {}}) {
+  check_regular(file);
+  open_->before = state_of_store(file);
+  if (open_->before[0].exists && open_->before[0].size == 0) return;
+  const bool no_index = open_->before[1].size > 0 && !state_of(beside(file, "-shm")).exists;
+  open_->options = no_index ? "" : reading_options(file);
+  if (!no_index) open_->database.emplace(Database::to_read(file, open_->options));
+  try {
+    if (!no_index) {
+      open_->database->run("BEGIN");
+      check_store(*open_->database);
+      return;
+    }
+  } catch (const Error&) {
+    if (!needs_a_writer(open_->database->code())) throw;
+  }
+  throw Error(file.string(), "was interrupted while it was written",
+              "run its part of the study again, which completes it");
+}
+
+StoreReader::~StoreReader() = default;
+StoreReader::StoreReader(StoreReader&&) noexcept = default;
+
+int StoreReader::trials(const std::string& cell, int block) const {
+  return open_->database ? stored_trials(*open_->database, cell, block) : 0;
+}
+
+StoredBlock StoreReader::block(const std::string& cell, int block) const {
+  if (!open_->database) return {cell, block, {}};
+  return stored_block(*open_->database, cell, block);
+}
+
+void StoreReader::check_unchanged() const {
+  if (open_->options != unlocked || state_of(open_->file) == open_->before[0]) return;
+  throw Error(open_->file.string(), "is being changed by another process",
+              "run the same command again when that has ended");
+}
+
+const fs::path& StoreReader::file() const { return open_->file; }
 
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place) {
   const auto untimed = [](TrialResult trial) {

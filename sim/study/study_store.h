@@ -70,6 +70,28 @@ class StudyStore {
 /// a store that this process is writing: POSIX locks would be lost; use content().
 StoreContent read_store(const std::filesystem::path& file);
 
+/// A store from which blocks are read one by one, as read_store() reads all of them: while this
+/// exists, what it holds does not change.
+class StoreReader {
+ public:
+  /// Throws Error as read_store() does, and if a store was interrupted while it was written.
+  explicit StoreReader(const std::filesystem::path& file);
+  ~StoreReader();
+  StoreReader(StoreReader&&) noexcept;
+
+  /// Number of trials in a block; 0 if it is not stored.
+  int trials(const std::string& cell, int block) const;
+  /// Without trials if it is not stored. Throws Error if it is damaged.
+  StoredBlock block(const std::string& cell, int block) const;
+  /// Throws Error if another process changed the file meanwhile.
+  void check_unchanged() const;
+  const std::filesystem::path& file() const;
+
+ private:
+  struct Open;
+  std::unique_ptr<Open> open_;
+};
+
 /// The longer of two versions of a block. Throws Error(`place`) if their common trials differ in
 /// more than the timings.
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place);

@@ -13,11 +13,11 @@
 #include "calib/base/file_in_progress.h"
 #include "calib/base/output_files.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/simulation/export_tables.h"
 #include "cli/simulation/study_folder.h"
-#include "sim/study/block_stream.h"
 #include "sim/study/study.h"
 
 namespace vernier::cli {
@@ -37,22 +37,20 @@ void run(const ExportArguments& options, Session& session) {
   check_output_is_not_input(study_folder_files(options.folder), options.output);
   OutputFiles outputs;
   FileInProgress& file = outputs.add(options.output);
+  const StudyResults results = options.trials
+                                   ? export_trials(study, options.folder, options.output, file)
+                                   : study_results(study, options.folder);
   std::size_t rows = 0;
   if (options.trials) {
-    const BlockStream stored(study, options.folder);
-    rows = stored.trials();
-    if (rows < stored.wanted()) {
-      session.add_trust_warning(
-          fmt::format("the study is not finished: {} of {} trials", rows, stored.wanted()));
+    for (const CellResult& cell : results.cells) {
+      for (const ClusterCount& map : cell.maps) rows += static_cast<std::size_t>(map.trials);
     }
-    export_trials(study, stored, options.output, file);
   } else {
-    const StudyResults results = study_results(study, options.folder);
-    if (results.blocks_done < results.blocks_total) {
-      session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
-                                            results.blocks_done, results.blocks_total));
-    }
     rows = export_cells(study, results, options.settings, options.output, file);
+  }
+  if (results.blocks_done < results.blocks_total) {
+    session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
+                                          results.blocks_done, results.blocks_total));
   }
   outputs.commit();
   const char* what = options.trials ? "trials" : "cells";

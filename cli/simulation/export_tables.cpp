@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -17,12 +19,12 @@
 #include "calib/base/column_file.h"
 #include "calib/base/file_in_progress.h"
 #include "calib/base/text_lines.h"
+#include "calib/error.h"
 #include "calib/interval.h"
 #include "cli/program/text_table.h"
 #include "localise/localiser.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
-#include "sim/study/block_stream.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -205,16 +207,33 @@ std::size_t export_cells(const Study& study,
   return rows.size();
 }
 
-void export_trials(const Study& study,
-                   const BlockStream& stored,
-                   const std::string& name,
-                   FileInProgress& file) {
+StudyResults export_trials(const Study& study,
+                           const std::filesystem::path& folder,
+                           const std::string& name,
+                           FileInProgress& file) {
+  const ColumnFile::Format format = ColumnFile::format_of(name);
+  std::size_t rows = 0;
+  if (format == ColumnFile::Format::npy) {  // its head has the number of rows
+    visit_results(study, folder, [&](std::size_t, const std::vector<TrialResult>& trials) {
+      rows += trials.size();
+    });
+  }
   const SettingColumns settings(study, false);
-  ColumnFile table(file, ColumnFile::format_of(name), trial_row(settings, 0, 0, {}).columns,
-                   stored.trials());
-  stored.for_each([&](std::size_t cell, int block, const std::vector<TrialResult>& trials) {
-    for (const TrialResult& t : trials) table.add(trial_row(settings, cell, block, t).values);
-  });
+  ColumnFile table(file, format, trial_row(settings, 0, 0, {}).columns, rows);
+  std::size_t written = 0;
+  StudyResults results =
+      visit_results(study, folder, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
+        for (const TrialResult& t : trials) {
+          const int block = static_cast<int>(t.trial) / study.file.trials_per_block;
+          table.add(trial_row(settings, cell, block, t).values);
+        }
+        written += trials.size();
+      });
+  if (format == ColumnFile::Format::npy && written != rows) {
+    throw Error(folder.string(), "is being changed by another process",
+                "run the same command again when that has ended");
+  }
+  return results;
 }
 
 }  // namespace vernier::cli

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 #include "calib/base/file_in_progress.h"
 #include "cli/program/namespaces.h"
-#include "sim/study/block_stream.h"
 #include "sim/study/study.h"
 
 namespace vernier::cli {
@@ -20,10 +20,11 @@ std::size_t export_cells(const Study& study,
                          const std::string& name,
                          FileInProgress& file);
 
-/// The same of the stored trials, block by block: memory does not grow with their number.
-void export_trials(const Study& study,
-                   const BlockStream& stored,
-                   const std::string& name,
-                   FileInProgress& file);
+/// The same of the stored trials, block by block: memory does not grow with their number. Returns
+/// the study's results without trials.
+StudyResults export_trials(const Study& study,
+                           const std::filesystem::path& folder,
+                           const std::string& name,
+                           FileInProgress& file);
 
 }  // namespace vernier::cli

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/study_folder.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numbers>
 #include <optional>
@@ -141,6 +142,15 @@ std::vector<fs::path> study_folder_files(const fs::path& folder) {
   return files;
 }
 
+std::string shard_options(const std::vector<Shard>& shards) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, shards.size()); ++i) {
+    text += fmt::format("{}--shard {}/{}", i > 0 ? ", " : "", shards[i].index, shards[i].count);
+  }
+  return shards.size() > most ? text + fmt::format(" and {} more", shards.size() - most) : text;
+}
+
 std::string short_label(const StudyCell& cell) {
   std::string label = cell.label;
   const std::string key = "sources.calibration";
@@ -218,7 +228,12 @@ Json study_json(const Study& study, const StudyResults& results) {
             {"rig", {{"file", study.file.rig}, {"covariance_kind", covariance_json(study)}}},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
+            {"instruction_sets", results.instruction_sets},
+            {"missing_shards", Json::array()},
             {"cells", Json::array()}};
+  for (const Shard& shard : results.missing_shards) {
+    json["missing_shards"].push_back(fmt::format("{}/{}", shard.index, shard.count));
+  }
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
   json["over_worlds"] = over_worlds_json(results);
   json["comparisons"] = comparisons_json(results);

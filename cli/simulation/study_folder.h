@@ -28,6 +28,9 @@ Json cell_json(const CellResult& cell);
 Json comparisons_json(const StudyResults& results);
 Json study_json(const Study& study, const StudyResults& results);
 
+/// "--shard 1/4, --shard 3/4", of many the first ten.
+std::string shard_options(const std::vector<Shard>& shards);
+
 /// "ψ_c = 1" for a sweep of the calibration error, otherwise the cell's label.
 std::string short_label(const StudyCell& cell);
 

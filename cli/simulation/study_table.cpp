@@ -17,9 +17,11 @@
 #include "calib/covariance.h"
 #include "calib/interval.h"
 #include "cli/program/text_table.h"
+#include "cli/simulation/study_folder.h"
 #include "sim/experiment.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/instruction_sets.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 #include "sim/study/world_summary.h"
@@ -214,10 +216,16 @@ std::string study_table(const Study& study, const StudyResults& results) {
                      comparisons_table(results) + "\n" + ceiling_line(figures) +
                      conditions(study, results);
   for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
+  if (is_mixture(results.instruction_sets)) {
+    text += fmt::format("computed with instruction sets {}: not comparable to the bit\n",
+                        results.instruction_sets);
+  }
   if (results.blocks_done == 0) text += "no trials are stored yet\n";
   if (results.blocks_done < results.blocks_total) {
-    text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
-                        results.blocks_done, results.blocks_total);
+    text += fmt::format(
+        "{} of {} blocks done: run the study again to finish it{}\n", results.blocks_done,
+        results.blocks_total,
+        results.missing_shards.empty() ? "" : ", with " + shard_options(results.missing_shards));
   }
   return text;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -12,10 +13,13 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/study/instruction_sets.h"
 #include "sim/study/study_file.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
+
+class Communicator;
 
 /// A study with all files that it refers to loaded.
 struct Study {
@@ -44,6 +48,11 @@ struct StudyRun {
   std::function<void()> on_start = {};
   /// Once it asks to stop, no further block or query is begun; those done are stored.
   std::stop_token stop = {};
+  /// Whether results of another kind of processor may be in the folder, or come from other ranks.
+  OtherInstructionSets other_instruction_sets = OtherInstructionSets::refused;
+  /// The other processes that compute for this one, which is their rank 0 (study_ranks.h); null:
+  /// none. The caller tells them the end.
+  Communicator* ranks = nullptr;
 };
 
 /// Runs the missing blocks of this shard. Writes its own store only, and nothing if no block and no
@@ -77,6 +86,8 @@ struct StudyResults {
   std::vector<CellResult> cells;
   int blocks_done = 0, blocks_total = 0;
   std::vector<std::string> commands;  ///< that produced them, ascending; none for old results
+  std::string instruction_sets;       ///< "AVX2", or "AVX2, AVX3" where a mixture was allowed
+  std::vector<Shard> missing_shards;  ///< that lack something, if stores of shards are there
 };
 
 /// The store that a shard writes.
@@ -87,5 +98,14 @@ std::string command_key(const std::string& command);
 
 /// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
+
+/// Called with each block that is done, cell by cell, its trials ascending; `cell` is the place in
+/// StudyFile::cells.
+using BlockVisitor = std::function<void(std::size_t cell, std::vector<TrialResult> trials)>;
+
+/// The same without the trials, which are given to `visit` instead: memory does not grow with them.
+StudyResults visit_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           const BlockVisitor& visit);
 
 }  // namespace vernier::sim::internal

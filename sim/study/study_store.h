@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "sim/experiment.h"
+#include "sim/study/instruction_sets.h"
+#include "sim/study/store_rows.h"
 
 namespace vernier::sim::internal {
 
@@ -32,6 +35,22 @@ struct StoreContent {
   bool interrupted = false;
 };
 
+/// Which blocks a store holds, without their trials.
+struct StoreIndex {
+  std::map<std::string, std::map<int, int>> blocks;  ///< number of trials by cell and block
+  StoreNotes notes;
+  bool interrupted = false;  ///< as StoreContent's
+};
+
+/// Whether it has a block, or a part of a ceiling.
+bool holds_results(const StoreIndex& index);
+
+/// Blocks first to end - 1 of a cell.
+struct BlockRange {
+  std::string cell;
+  int first = 0, end = 0;
+};
+
 /// How SQLite keeps changes that are not complete.
 enum class Journal {
   write_ahead,  ///< WAL: readers and the writer never wait; needs a local disk
@@ -47,18 +66,25 @@ class StudyStore {
  public:
   /// Opens or creates the file. Throws Error if another process writes it, if it is not a store or
   /// damaged, or was written on a processor with another instruction set (results would not be
-  /// comparable to the bit). A store of version 1, which has no checksums, becomes one of
-  /// version 2.
-  explicit StudyStore(const std::filesystem::path& file);
-  StudyStore(const std::filesystem::path& file, Journal journal);
+  /// comparable to the bit) unless that is allowed, which it then notes. A store of version 1,
+  /// which has no checksums, becomes one of version 2.
+  explicit StudyStore(const std::filesystem::path& file,
+                      OtherInstructionSets others = OtherInstructionSets::refused);
+  StudyStore(const std::filesystem::path& file,
+             Journal journal,
+             OtherInstructionSets others = OtherInstructionSets::refused);
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
 
   /// Adds or replaces a block; committed on return.
   void put(const StoredBlock& block);
+  void put(const BlockRow& row);
+  /// The same for several, committed together.
+  void put(const std::vector<BlockRow>& rows);
   void set_note(const std::string& key, const std::string& value);
   /// Reads and checks everything. Throws Error if anything is damaged.
   StoreContent content() const;
+  StoreIndex index() const;
 
  private:
   struct Open;
@@ -70,27 +96,13 @@ class StudyStore {
 /// a store that this process is writing: POSIX locks would be lost; use content().
 StoreContent read_store(const std::filesystem::path& file);
 
-/// A store from which blocks are read one by one, as read_store() reads all of them: while this
-/// exists, what it holds does not change.
-class StoreReader {
- public:
-  /// Throws Error as read_store() does, and if a store was interrupted while it was written.
-  explicit StoreReader(const std::filesystem::path& file);
-  ~StoreReader();
-  StoreReader(StoreReader&&) noexcept;
-
-  /// Number of trials in a block; 0 if it is not stored.
-  int trials(const std::string& cell, int block) const;
-  /// Without trials if it is not stored. Throws Error if it is damaged.
-  StoredBlock block(const std::string& cell, int block) const;
-  /// Throws Error if another process changed the file meanwhile.
-  void check_unchanged() const;
-  const std::filesystem::path& file() const;
-
- private:
-  struct Open;
-  std::unique_ptr<Open> open_;
-};
+/// The same for which blocks it holds, for some of them, and for every row: what is read is not
+/// kept. Where another process changes the file meanwhile they may begin again, so that `visit`
+/// sees rows twice.
+StoreIndex read_index(const std::filesystem::path& file);
+std::vector<StoredBlock> read_blocks(const std::filesystem::path& file, const BlockRange& range);
+void visit_store(const std::filesystem::path& file,
+                 const std::function<void(const BlockRow&)>& visit);
 
 /// The longer of two versions of a block. Throws Error(`place`) if their common trials differ in
 /// more than the timings.

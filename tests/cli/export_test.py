@@ -177,10 +177,10 @@ class Export(WithStudy):
 
     def test_an_unfinished_study_says_so(self):
         self.works('study', 'study.toml', '-o', 'half', '--shard', '0/2', '-q')
-        for words, what in (([], '12 of 24 blocks'), (['--trials'], '24 of 48 trials')):
+        for words in ([], ['--trials']):
             done = self.call('export', 'half', *words, '-o', 'half.csv')
             self.assertEqual(done.returncode, 3, done.stderr)
-            self.assertIn(what, done.stderr)
+            self.assertIn('12 of 24 blocks', done.stderr)
 
     def test_bad_input_is_told(self):
         self.complains('export', 'results', '-o', 'x.xlsx', of='neither of the endings .csv and .npy')

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/study_work.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calib/base/fingerprint.h"
+#include "sim/experiment.h"
+#include "sim/study/stored_results.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
+
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
+StudyWork study_work(const Study& study) {
+  StudyWork work;
+  std::map<std::string, const ExperimentSettings*> ceilings;
+  const int trials = study.file.trials, size = study.file.trials_per_block;
+  for (const StudyCell& cell : study.file.cells) {
+    const int number = static_cast<int>(work.cell_keys.size());
+    work.cell_keys.push_back(cell_key(study, cell));
+    for (int first = 0, block = 0; first < trials; first += size, ++block) {
+      work.blocks.push_back({number, block, first, std::min(size, trials - first)});
+    }
+    ceilings.emplace(ceiling_key(study, cell.experiment), &cell.experiment);
+  }
+  for (const auto& [key, settings] : ceilings) {
+    work.ceilings.push_back({key, settings, ceiling_queries(study, key)});
+  }
+  return work;
+}
+
+std::string work_fingerprint(const StudyWork& work) {
+  std::string all;
+  for (const std::string& key : work.cell_keys) all += key + "\n";
+  for (const CeilingJob& ceiling : work.ceilings) {
+    all += fmt::format("{} {}\n", ceiling.key, ceiling.queries);
+  }
+  for (const BlockJob& job : work.blocks) {
+    all += fmt::format("{} {} {} {}\n", job.cell, job.block, job.first, job.count);
+  }
+  return fingerprint(all);
+}
+
+bool MissingWork::empty() const {
+  return blocks.empty() && std::all_of(queries.begin(), queries.end(),
+                                       [](const std::vector<int>& of) { return of.empty(); });
+}
+
+MissingWork missing_work(const Study& study,
+                         const StudyWork& work,
+                         const Shard& shard,
+                         const StoredResults& stored) {
+  MissingWork missing;
+  const int count = static_cast<int>(work.blocks.size());
+  for (int i = shard.index; i < count; i += shard.count) {
+    const BlockJob& job = work.blocks[static_cast<std::size_t>(i)];
+    if (stored.trials(work.cell_keys[job.cell], job.block) < job.count) missing.blocks.push_back(i);
+  }
+  for (const CeilingJob& ceiling : work.ceilings) {
+    const std::vector<int> known = noted_queries(study, stored.notes(), ceiling.key);
+    std::vector<int>& queries = missing.queries.emplace_back();
+    for (int i = shard.index; i < ceiling.queries; i += shard.count) {
+      if (known[static_cast<std::size_t>(i)] == not_known) queries.push_back(i);
+    }
+  }
+  return missing;
+}
+
+Shard shard_of_store(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  Shard shard;
+  if (std::sscanf(name.c_str(), "results-%9d-of-%9d.sqlite", &shard.index, &shard.count) != 2 ||
+      shard.index < 0 || shard.index >= shard.count || store_file("", shard) != name) {
+    return {};
+  }
+  return shard;
+}
+
+std::vector<Shard> missing_shards(const Study& study,
+                                  const StudyWork& work,
+                                  const StoredResults& stored) {
+  std::set<int> counts;
+  for (const auto& file : stored.files()) {
+    if (const Shard shard = shard_of_store(file); shard.count > 1) counts.insert(shard.count);
+  }
+  if (counts.empty()) return {};
+  const MissingWork missing = missing_work(study, work, {}, stored);
+  std::vector<Shard> shards;
+  for (const int count : counts) {
+    std::set<int> lacking;
+    for (const int block : missing.blocks) lacking.insert(block % count);
+    for (const std::vector<int>& queries : missing.queries) {
+      for (const int query : queries) lacking.insert(query % count);
+    }
+    for (const int index : lacking) shards.push_back({index, count});
+  }
+  return shards;
+}
+
+}  // namespace vernier::sim::internal

@@ -8,14 +8,18 @@
 //
 // prints, for every kind of map, correlation between the trials of a map and success rate, the
 // coverage in % and the mean width for 6 to 100 maps of 50 trials; then the same of intervals over
-// worlds. The constants of the interval were chosen by other draws (docs/simulation.md).
+// worlds, and of studies that stop by the width. The constants of the interval were chosen by other
+// draws (docs/simulation.md).
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "calib/interval.h"
+#include "sim/study/budget.h"
 #include "sim/study/success_interval.h"
 #include "tests/support/made_maps.h"
 
@@ -83,6 +87,37 @@ void worlds_table(std::uint32_t studies, std::uint64_t seed) {
   }
 }
 
+/// Studies that stop by the width of the interval, and how often it ever leaves the truth out.
+void stopping_table(std::uint32_t studies, std::uint64_t seed) {
+  constexpr int most = 200;
+  std::printf(
+      "stopped by width, at most %d maps of 50; truth held at the stop, at every look, maps\n",
+      most);
+  for (const double success : {0.5, 0.9, 0.99}) {
+    for (const double width : {0.2, 0.1, 0.05}) {
+      const MapMaker maker({MapKind::beta, success, 0.05, 50, seed + 2});
+      int held = 0, always = 0;
+      double maps_used = 0;
+      for (std::uint32_t study = 0; study < studies; ++study) {
+        const std::vector<ClusterCount> maps = maker.maps(study, most);
+        const std::span<const ClusterCount> all(maps);
+        bool ever_out = false;
+        for (int looked = 1; looked <= most; ++looked) {
+          const Interval i = anytime_interval_95(all.first(static_cast<std::size_t>(looked)));
+          ever_out = ever_out || success < i.low || i.high < success;
+        }
+        always += !ever_out;
+        const BudgetDecision stop = budget_decision(all, most, width);
+        const Interval i = anytime_interval_95(all.first(static_cast<std::size_t>(stop.wanted)));
+        held += i.low <= success && success <= i.high;
+        maps_used += stop.wanted;
+      }
+      std::printf("  success %-5g width %-5g %6.1f %6.1f %7.1f\n", success, width,
+                  100.0 * held / studies, 100.0 * always / studies, maps_used / studies);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -90,4 +125,5 @@ int main(int argc, char** argv) {
   const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoi(argv[2]) : 501);
   maps_table(studies, seed);
   worlds_table(studies, seed);
+  stopping_table(studies, seed);
 }

@@ -22,6 +22,7 @@
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/reliability.h"
@@ -176,6 +177,8 @@ Json cell_json(const CellResult& cell) {
           {"maps", s.maps},
           {"success_interval_95", clustered},
           {"success_interval_95_missing", missing},
+          {"interval_width_wanted", cell.interval_width ? Json(*cell.interval_width) : Json()},
+          {"stopped", cell.interval_width ? Json(name(cell.budget.state)) : Json()},
           {"success_interval_binomial_95",
            s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
           {"coverage", of_trials(s.coverage)},

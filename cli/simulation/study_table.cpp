@@ -19,6 +19,7 @@
 #include "cli/program/text_table.h"
 #include "cli/simulation/study_folder.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/instruction_sets.h"
@@ -136,6 +137,12 @@ std::string cells_table(const StudyResults& results, const CellFigures& figures)
   add("median m", [](S s, double) { return figure(s.median_error_m, 3); });
   add("cpu ms", [](S s, double of) { return figure(of * s.cpu_ms_mean, 1); });
   add("p95 ms", [](S s, double) { return figure(s.cpu_ms_p95, 1); });
+  if (results.cells[0].interval_width) {
+    add_column(columns, "maps", results.cells.size(),
+               [&](std::size_t i) { return fmt::format("{}", results.cells[i].maps.size()); });
+    add_column(columns, "stopped", results.cells.size(),
+               [&](std::size_t i) { return std::string(name(results.cells[i].budget.state)); });
+  }
   if (!is_shared(figures.ceilings)) {
     using C = const WorldCeiling&;
     add_ceiling("ceiling %", [](C c) { return figure(100 * c.success, 1); });
@@ -198,7 +205,10 @@ std::string conditions(const Study& study, const StudyResults& results) {
          fmt::format("{}world {}; success: answered, within 1 m\n",
                      swept_protocol ? "" : fmt::format("protocol {}, ", protocol),
                      study.world.name) +
-         "interval: Wilson's with Student's t, clustered by recorded map\n";
+         (study.file.interval_width
+              ? fmt::format("interval: confidence sequence over recorded maps, to {} wide\n",
+                            *study.file.interval_width)
+              : "interval: Wilson's with Student's t, clustered by recorded map\n");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "calib/statistics/distributions.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
 
@@ -83,7 +84,9 @@ std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const std::vector<CellResult>& cells) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t b = 1; b < cells.size(); ++b) {
+    const bool designed = has_design(cells[b].cell);
     for (std::size_t a = b; a-- > 0;) {
+      if (designed && !is_reference_of(cells[a].cell, cells[b].cell)) continue;
       if (!share_queries(cells[a], cells[b])) continue;
       pairs.emplace_back(a, b);
       break;

@@ -28,7 +28,8 @@ struct PairedComparison {
 /// Throws Error if the cells do not share their queries.
 PairedComparison compare(const CellResult& a, const CellResult& b);
 
-/// Pairs of cells to compare: each with the nearest earlier one that shares its queries.
+/// Pairs of cells to compare: each with the nearest earlier one that shares its queries; of the
+/// designs of one_at_a_time.h, with its reference.
 std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const std::vector<CellResult>& cells);
 

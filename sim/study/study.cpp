@@ -165,12 +165,22 @@ void run_study(const Study& study, const StudyRun& run) {
     store.set_note(command_key(run.command), run.command);
   }
 
-  const std::vector<WorkUnit> queries = query_units(missing), blocks = block_units(missing);
+  const std::vector<WorkUnit> queries = query_units(missing);
+  std::vector<WorkUnit> blocks = block_units(missing);
   ResultRecorder recorder(work, missing, run, store);
   if (ranks) ranks->welcome(!blocks.empty());
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
+  /// What is wanted next, where the width of an interval decides how far a cell goes.
+  const auto next_blocks = [&] {
+    if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
+    stored.add(store.index(), file);
+    blocks = block_units(missing_work(study, work, run.shard, stored));
+    recorder.expect_blocks(blocks.size());
+    return !blocks.empty();
+  };
   if (ranks) {
     compute_on_ranks(queries, blocks, computer, run, *ranks, recorder);
+    while (next_blocks()) compute_on_ranks({}, blocks, computer, run, *ranks, recorder);
     return;
   }
   const RaisedThreadLimit raised(run.threads);
@@ -180,7 +190,9 @@ void run_study(const Study& study, const StudyRun& run) {
     compute_here(queries, computer, run, arena, recorder);
   }
   recorder.begin_blocks();
-  compute_here(blocks, computer, run, arena, recorder);
+  do {
+    compute_here(blocks, computer, run, arena, recorder);
+  } while (next_blocks());
 }
 
 }  // namespace vernier::sim::internal

@@ -13,6 +13,7 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study_file.h"
 #include "sim/world.h"
@@ -75,10 +76,12 @@ struct WorldCeiling {
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;      ///< ascending
-  std::vector<ClusterCount> maps;       ///< one entry per block
-  int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
-  std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
+  std::vector<TrialResult> trials;            ///< ascending
+  std::vector<ClusterCount> maps;             ///< one entry per block
+  int trials_per_block = 50;                  ///< trial t belongs to block t / trials_per_block
+  std::optional<WorldCeiling> ceiling;        ///< none until all of its queries are stored
+  std::optional<double> interval_width = {};  ///< at which the study stops the cell
+  BudgetDecision budget = {};
 };
 
 /// The part of a study that is stored in the folder.

@@ -16,6 +16,7 @@
 #include "calib/error.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/one_at_a_time.h"
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
@@ -54,6 +55,7 @@ class StudyReader : private SettingsReader {
   void read_sweep(const toml::table& root, StudyFile& study) const;
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
+  void add_designs(const toml::table& root, StudyFile& study) const;
 
   SourceSettings sources_;  // initial values of the study's [sources]
 };
@@ -70,6 +72,9 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
     }
   }
   study.trials_per_block = block_size(study.trials);
+  if (const auto* width = section.get("interval_width")) {
+    study.interval_width = number_in(*width, "study.interval_width", 0.001, 1);
+  }
 }
 
 void StudyReader::read_files(const toml::table& root, StudyFile& study) const {
@@ -134,7 +139,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
     const Keys sections{"study", "sources", "corners", "camera", "map", "localiser"};
     if (key.find('.') != std::string::npos &&
         (std::find(sections.begin(), sections.end(), head) == sections.end() ||
-         key == "study.trials" || key == "sources.file")) {
+         key == "study.trials" || key == "study.interval_width" || key == "sources.file")) {
       fail(node, "'" + shortened(key) + "' cannot be swept",
            "sweep a key of [sources], [corners], [camera], [map] or [localiser], study.protocol or "
            "study.seed");
@@ -213,9 +218,27 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   }
 }
 
+/// Replaces each cell by those of [one_at_a_time].
+void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
+  const auto* node = section(root, "one_at_a_time");
+  if (!node) return;
+  const OneAtATime designs = read_one_at_a_time(*node, place());
+  std::vector<StudyCell> cells;
+  for (const StudyCell& cell : study.cells) {
+    for (StudyCell& one : one_at_a_time(cell, designs, place())) cells.push_back(std::move(one));
+    const auto trials = static_cast<std::int64_t>(cells.size()) * study.trials;
+    if (cells.size() <= most_cells && trials <= most_trials) continue;
+    fail(*node,
+         fmt::format("the study has more than {} cells or {} trials", most_cells, most_trials),
+         "name fewer one_at_a_time.sources or factors, or reduce study.trials");
+  }
+  study.cells = std::move(cells);
+}
+
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
-             {"study", "world", "rig", "sources", "corners", "camera", "map", "localiser", "sweep"},
+             {"study", "world", "rig", "sources", "corners", "camera", "map", "localiser", "sweep",
+              "one_at_a_time"},
              "");
   StudyFile study;
   read_study_section(root, study);
@@ -225,6 +248,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   read_sweep(root, study);
   check_sweep_size(root, study);
   add_cells(root, study);
+  add_designs(root, study);
   for (const StudyCell& cell : study.cells) {
     if (study.visibility == VisibilityMethod::exact || cell.experiment.sources.moved == 0) continue;
     throw Error(place(), "sources.moved moves what the view sets of the world name",

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,8 +28,9 @@ int block_size(int trials);
 
 /// Content of a study file (docs/file-formats.md).
 struct StudyFile {
-  int trials = 900;           ///< per cell
-  int trials_per_block = 50;  ///< block_size(trials)
+  int trials = 900;                      ///< per cell; at most, with an interval_width
+  int trials_per_block = 50;             ///< block_size(trials)
+  std::optional<double> interval_width;  ///< at which a cell stops (budget.h); none: never before
   std::string world = "workshop";
   VisibilityMethod visibility = VisibilityMethod::exact;
   std::string rig = "nominal";

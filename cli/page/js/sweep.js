@@ -3,7 +3,7 @@
 import { element, paragraph, section } from "./elements.js";
 import { count, metres, percent, plot_text, range_percent, setting } from "./format.js";
 import { bars_in_percent, in_percent, is_number } from "./numbers.js";
-import { COLOUR, SERIES, axis, figure, log_axis } from "./plot.js";
+import { COLOUR, axis, figure, log_axis } from "./plot.js";
 import { PSI_MEANING, ceiling_of, cell_key } from "./study.js";
 
 const SOURCE_MEANING = {
@@ -100,7 +100,7 @@ function success_plot(study) {
   const data = all.map(({ name, cells }, i) => ({
     type: "scatter", mode: study.sweep ? "lines+markers" : "markers", name: plot_text(name),
     x: cells.map(across.at), y: cells.map((cell) => in_percent(cell.success)),
-    error_y: interval_bars(cells), line: { color: SERIES[i % SERIES.length], width: 1.5 },
+    error_y: interval_bars(cells), line: { color: series_colour(i), width: 1.5 },
     marker: { size: 8, symbol: i }, showlegend: all.length > 1,
     customdata: cells.map((cell) => [plot_text(cell.label),
       range_percent(cell.success_interval_95),
@@ -145,7 +145,7 @@ function error_plot(study) {
   const data = all.map(({ name, cells }, i) => ({
     type: "scatter", mode: study.sweep ? "lines+markers" : "markers", name: plot_text(name),
     x: cells.map(across.at), y: cells.map((cell) => cell.median_error_m),
-    line: { color: SERIES[i % SERIES.length], width: 1.5 }, marker: { size: 8, symbol: i },
+    line: { color: series_colour(i), width: 1.5 }, marker: { size: 8, symbol: i },
     showlegend: all.length > 1, text: cells.map((cell) => plot_text(cell.label)),
     hovertemplate: "%{text}<br>median error %{y:.3g} m<extra></extra>",
   }));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
@@ -45,6 +47,19 @@ Json trial_json(const TrialResult& t) {
   return row;
 }
 
+/// Swept keys in their order, as they are called in plots.
+Json swept_keys_json(const StudyResults& results) {
+  Json keys = Json::array();
+  std::set<std::string> known;
+  for (const CellResult& cell : results.cells) {
+    for (const auto& [key, value] : cell.cell.swept) {
+      if (!known.insert(key).second) continue;
+      keys.push_back({{"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : key}});
+    }
+  }
+  return keys;
+}
+
 }  // namespace
 
 Json report_study(const Study& study, const StudyResults& results) {
@@ -57,7 +72,9 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"world_ceiling",
              results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr)},
             {"commands", results.commands},
+            {"machines", results.machines},
             {"sweep", nullptr},
+            {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
   for (std::size_t i = 0; i < results.cells.size(); ++i) {

@@ -170,8 +170,11 @@ Json cell_json(const CellResult& cell) {
   const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
   const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
   const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
+  Json swept = Json::object();
+  for (const auto& [key, value] : cell.cell.swept) swept[key] = value_json(value);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
+          {"swept", swept},
           {"trials", s.trials},
           {"success", of_trials(s.success)},
           {"maps", s.maps},

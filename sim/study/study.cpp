@@ -164,6 +164,9 @@ void run_study(const Study& study, const StudyRun& run) {
   if (!run.command.empty() && !missing.blocks.empty()) {
     store.set_note(command_key(run.command), run.command);
   }
+  if (!run.machine.empty() && !missing.blocks.empty()) {
+    store.set_note(machine_key(run.machine), run.machine);
+  }
 
   const std::vector<WorkUnit> queries = query_units(missing);
   std::vector<WorkUnit> blocks = block_units(missing);

@@ -32,11 +32,13 @@ StudyResults without_trials(const Study& study,
                             const StoredResults& stored) {
   StudyResults results;
   const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
-  std::set<std::string> commands;
+  std::set<std::string> commands, machines;
   for (const auto& [key, value] : stored.notes()) {
     if (key == command_key(value)) commands.insert(value);
+    if (key == machine_key(value)) machines.insert(value);
   }
   results.commands.assign(commands.begin(), commands.end());
+  results.machines.assign(machines.begin(), machines.end());
   results.instruction_sets = stored.instruction_sets();
   results.missing_shards = missing_shards(study, work, stored);
   for (const StudyCell& cell : study.file.cells) {

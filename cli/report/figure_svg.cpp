@@ -44,6 +44,13 @@ std::string svg_text(const std::string& text) {
         out += c;
     }
   }
+  const std::string index = "ψ_c";
+  for (std::size_t at = out.find(index); at != std::string::npos; at = out.find(index, at)) {
+    const std::string lowered =
+        "ψ<tspan dy=\"1.8\" font-size=\"6\">c</tspan><tspan dy=\"-1.8\"> </tspan>";
+    out.replace(at, index.size(), lowered);
+    at += lowered.size();
+  }
   return out;
 }
 
@@ -86,7 +93,7 @@ class FigureScale {
     }
     std::vector<double> all;
     for (double k = std::ceil(low_ / step - 1e-9); k * step <= high_ + 1e-9 * step; ++k) {
-      all.push_back(k * step);
+      all.push_back(k == 0 ? 0.0 : k * step);
     }
     return all;
   }
@@ -239,9 +246,11 @@ std::string as_rows(const PaperFigure& figure,
 }
 
 std::string panel_title(const FigurePanel& panel, const Frame& f) {
-  return panel.title.empty()
-             ? ""
-             : svg_label(f.left, f.top - 4, "start", panel.title, " font-weight=\"bold\"");
+  if (panel.title.empty()) return {};
+  constexpr double character_pt = 5.2;
+  const auto room = static_cast<std::size_t>(std::max(8.0, (f.right - f.left) / character_pt));
+  return svg_label(f.left, f.top - 4, "start", middle_cut(panel.title, room),
+                   " font-weight=\"bold\"");
 }
 
 /// Names of the lines of the first panel, in a line above all.

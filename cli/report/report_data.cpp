@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
@@ -16,6 +16,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_table.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/mount_error.h"
@@ -50,12 +51,10 @@ Json trial_json(const TrialResult& t) {
 /// Swept keys in their order, as they are called in plots.
 Json swept_keys_json(const StudyResults& results) {
   Json keys = Json::array();
-  std::set<std::string> known;
-  for (const CellResult& cell : results.cells) {
-    for (const auto& [key, value] : cell.cell.swept) {
-      if (!known.insert(key).second) continue;
-      keys.push_back({{"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : key}});
-    }
+  const std::vector<std::string> swept = swept_keys(results);
+  for (const std::string& key : swept) {
+    keys.push_back(
+        {{"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : short_key(key, swept)}});
   }
   return keys;
 }

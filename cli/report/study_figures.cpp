@@ -16,7 +16,9 @@
 #include "calib/base/text_lines.h"
 #include "cli/report/figure_svg.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_table.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
 
@@ -45,7 +47,9 @@ struct SweepLayout {
   std::vector<std::string> panels;
 };
 
-std::string shown_key(const std::string& key) { return key == "sources.calibration" ? "ψ_c" : key; }
+std::string shown_key(const std::string& key) {
+  return key == "sources.calibration" ? "ψ_c" : short_key(key, {key});
+}
 
 SweepLayout layout_of(const std::vector<CellResult>& cells) {
   std::vector<std::string> keys;
@@ -68,7 +72,6 @@ SweepLayout layout_of(const std::vector<CellResult>& cells) {
     if (layout.x.empty() || of.size() > values[layout.x].size()) layout.x = key;
   }
   if (layout.x.empty()) {
-    if (designed) layout.panels = {"design"};
     return layout;
   }
   std::erase(keys, layout.x);
@@ -94,8 +97,7 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> grouped(
     std::string title;
     for (const std::string& key : keys) {
       const std::string value = swept_text(cells[i].cell, key);
-      title +=
-          (title.empty() ? "" : ", ") + (key == "design" ? value : shown_key(key) + " = " + value);
+      title += (title.empty() ? "" : ", ") + shown_key(key) + " = " + value;
     }
     const auto found = std::find_if(groups.begin(), groups.end(),
                                     [&](const auto& group) { return group.first == title; });
@@ -121,7 +123,8 @@ class FigureMaker {
     figure.y_title = quantity.title;
     std::vector<std::size_t> all(cells_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    const auto groups = grouped(cells_, all, layout_.panels);
+    const Groups groups =
+        has_design(cells_[0].cell) ? designs() : grouped(cells_, all, layout_.panels);
     for (const auto& [title, cells] : groups) {
       FigurePanel panel;
       panel.title = title;
@@ -165,6 +168,14 @@ class FigureMaker {
     }
   }
 
+  /// The name of a cell's row, by its design if it is of one.
+  static std::string row_name(const StudyCell& cell) {
+    const std::string design = swept_text(cell, "design"), source = swept_text(cell, "source");
+    if (design.empty()) return short_label(cell);
+    if (source.empty()) return design == "as set" ? "all sources as set" : design;
+    return design == "all but" ? "without " + source : source + " = " + swept_text(cell, "value");
+  }
+
   void add_rows(FigurePanel& panel,
                 const std::vector<std::size_t>& cells,
                 const CellQuantity& quantity) const {
@@ -173,12 +184,30 @@ class FigureMaker {
       FigurePoint point = quantity.of(summaries_[i]);
       point.x = static_cast<double>(panel.rows.size());
       line.points.push_back(point);
-      const std::string source = swept_text(cells_[i].cell, "source");
-      std::string name = short_label(cells_[i].cell);
-      if (!source.empty()) name = source + " = " + swept_text(cells_[i].cell, "value");
-      panel.rows.push_back(name);
+      panel.rows.push_back(row_name(cells_[i].cell));
     }
     panel.lines.push_back(std::move(line));
+  }
+
+  /// Each design a group, its reference first.
+  Groups designs() const {
+    Groups groups;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const auto reference = std::find_if(
+          cells_.begin(), cells_.end(),
+          [&](const CellResult& cell) { return is_reference_of(cell.cell, cells_[i].cell); });
+      if (reference == cells_.end()) continue;
+      std::string title = swept_text(cells_[i].cell, "design");
+      if (title != "swept") title += " this source";
+      for (const auto& [key, value] : cells_[i].cell.swept) {
+        if (key != "design" && key != "source" && key != "value") title = value + ": " + title;
+      }
+      if (groups.empty() || groups.back().first != title) {
+        groups.push_back({title, {static_cast<std::size_t>(reference - cells_.begin())}});
+      }
+      groups.back().second.push_back(i);
+    }
+    return groups;
   }
 
   static void set_x_axis(PaperFigure& figure) {

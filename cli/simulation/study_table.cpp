@@ -48,26 +48,6 @@ std::string p_text(double p) {
   return p < 0.0001 ? "<0.0001" : fmt::format("{:.4f}", p);
 }
 
-/// The part of a key behind its dots, unless another key has the same.
-std::string short_key(const std::string& key, const std::vector<std::string>& keys) {
-  const auto last = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
-  const bool single = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
-                        return last(other) == last(key);
-                      }) == 1;
-  return single ? last(key) : key;
-}
-
-/// Keys that are swept in any of the cells, in their order.
-std::vector<std::string> swept_keys(const StudyResults& results) {
-  std::vector<std::string> keys;
-  for (const CellResult& cell : results.cells) {
-    for (const auto& [key, value] : cell.cell.swept) {
-      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-    }
-  }
-  return keys;
-}
-
 /// Names of the rows: the number of a cell, by which comparisons refer to it, and its swept values.
 std::vector<TextColumn> key_columns(const StudyResults& results) {
   std::vector<TextColumn> columns;
@@ -212,6 +192,24 @@ std::string conditions(const Study& study, const StudyResults& results) {
 }
 
 }  // namespace
+
+std::vector<std::string> swept_keys(const StudyResults& results) {
+  std::vector<std::string> keys;
+  for (const CellResult& cell : results.cells) {
+    for (const auto& [key, value] : cell.cell.swept) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+std::string short_key(const std::string& key, const std::vector<std::string>& keys) {
+  const auto last = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
+  const bool single = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
+                        return last(other) == last(key);
+                      }) == 1;
+  return single ? last(key) : key;
+}
 
 std::string study_table(const Study& study, const StudyResults& results) {
   CellFigures figures;

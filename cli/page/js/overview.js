@@ -38,7 +38,7 @@ function joined(studies) {
     swept_keys(study).some((one) => one.key === key)));
   const same = shared.length === keys.size;
   const cells = studies.flatMap(({ name, study }) => study.cells.map((cell) => ({ ...cell,
-    label: `${name}: ${cell.label}`, swept: { ...cell.swept, study: name } })));
+    swept: { ...cell.swept, study: name } })));
   if (!same) return { cells, swept_keys: [] };
   return { cells, swept_keys: [...keys.values(), { key: "study", label: "study" }] };
 }

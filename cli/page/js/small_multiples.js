@@ -7,7 +7,8 @@ import { row_name, sweep_layout, swept_value } from "./sweep_layout.js";
 
 const PANEL_PX = 270;  // a panel is not narrower
 
-const ROW_PX = 26;
+const TOP_PX = 56, BELOW_PX = 52;  // margins: titles and the bar of buttons; the axis
+const GAP_PX = 62;  // between panels: an axis, its title, the next one's title
 
 /** Number of panels beside each other. */
 function columns_for(panels, room) {
@@ -21,11 +22,18 @@ const room_of = (panels) => panels > 1 ? room_px() : half_room_px();
 /** Height of the plot in the room there is. */
 export function multiples_height(study) {
   const { x, panels } = sweep_layout(study);
-  if (!x) return panels.reduce((sum, { cells }) => sum + 64 + ROW_PX * cells.length, 46);
+  if (!x) {
+    const rows = panels.reduce((sum, { cells }) => sum + cells.length, 0);
+    return TOP_PX + BELOW_PX + GAP_PX * (panels.length - 1) + row_px(panels) * rows;
+  }
   if (panels.length === 1) return 400;
   const rows = Math.ceil(panels.length / columns_for(panels.length, room_of(panels.length)));
-  return 70 + 250 * rows;
+  return TOP_PX + BELOW_PX + 210 * rows + GAP_PX * (rows - 1);
 }
+
+/** Height of a row, for the longest of the names. */
+const row_px = (panels) => 8 + 16 * Math.max(...panels.flatMap(({ cells }) =>
+  cells.map((cell) => in_lines(row_name(cell)).split("<br>").length)));
 
 /**
  * A quantity of the cells against what is swept, in small multiples, or as rows. The quantity:
@@ -42,7 +50,7 @@ function against_axis(study, x, lines, panels, quantity) {
   const columns = columns_for(panels.length, room_of(panels.length));
   const rows = Math.ceil(panels.length / columns);
   const gap_x = columns > 1 ? 0.06 : 0;
-  const gap_y = rows > 1 ? 80 / multiples_height(study) : 0;
+  const gap_y = rows > 1 ? GAP_PX / (multiples_height(study) - TOP_PX - BELOW_PX) : 0;
   const wide = (1 - gap_x * (columns - 1)) / columns, high = (1 - gap_y * (rows - 1)) / rows;
   const data = [], layout = { annotations: [], shapes: [] };
   panels.forEach((panel, i) => {
@@ -52,7 +60,7 @@ function against_axis(study, x, lines, panels, quantity) {
     const below = i + columns >= panels.length;
     layout[`xaxis${name}`] = { ...across.axis, domain: [left, left + wide], anchor: `y${name}`,
       ...(below ? {} : { title: { text: "" } }), ...(panels.length > 1 ? { nticks: 6 } : {}) };
-    layout[`yaxis${name}`] = { ...y_axis(study, quantity), domain: [top - high, top],
+    layout[`yaxis${name}`] = { ...quantity_axis(quantity, study.cells), domain: [top - high, top],
       anchor: `x${name}`, ...(column ? { title: { text: "" } } : {}) };
     const on = { xaxis: `x${name}`, yaxis: `y${name}` };
     for (const cells of panel.behind) {
@@ -71,9 +79,12 @@ function against_axis(study, x, lines, panels, quantity) {
         text: `<b>${plot_text(panel.title)}</b>`, font: { size: 13 } });
     }
   });
-  layout.margin = { l: 62, r: 14, t: lines ? 52 : 30, b: 52 };
-  if (panels.length > 1) layout.legend = { orientation: "h", x: 0, xanchor: "left", y: 1,
-    yanchor: "bottom", yref: "container" };
+  const several = panels.length > 1;
+  layout.margin = { l: 62, r: 14, t: several ? TOP_PX : 24, b: BELOW_PX };
+  if (several) {  // above the titles of the panels
+    layout.legend = { orientation: "h", x: 0, xanchor: "left", yanchor: "bottom",
+      y: 1 + 20 / (multiples_height(study) - TOP_PX - BELOW_PX) };
+  }
   return { data, layout };
 }
 
@@ -103,9 +114,14 @@ function add_marks(layout, cells, quantity, name) {
   }
 }
 
-function y_axis(study, { title, range, log, of }) {
-  if (!log) return axis(title, range ? { range } : { rangemode: "tozero" });
-  return log_axis(`${title} (logarithmic)`, study.cells.map(of));
+/** The axis of a quantity, the same in all panels. */
+function quantity_axis({ title, range, log, of }, cells) {
+  const values = cells.map(of).filter(is_number);
+  if (range || !values.length) return axis(title, { range: range ?? [0, 1] });
+  const high = Math.max(...values);
+  if (!log) return axis(title, { range: [0, high > 0 ? 1.08 * high : 1] });
+  return log_axis(`${title} (logarithmic)`, values,
+    { range: [Math.log10(Math.min(...values)) - 0.12, Math.log10(high) + 0.12] });
 }
 
 /** The x axis and the position of cells on it: {axis, at: cell => x}. */
@@ -127,15 +143,16 @@ function x_axis(study, { key, label }) {
 function as_rows(panels, quantity) {
   const data = [], layout = { annotations: [], shapes: [] };
   const rows = panels.reduce((sum, { cells }) => sum + cells.length, 0);
-  const gap = panels.length > 1 ? 0.5 * Math.min(0.14, 1 / panels.length) : 0;
+  const inner_px = GAP_PX * (panels.length - 1) + row_px(panels) * rows;
+  const gap = GAP_PX / inner_px;
   let top = 1;
   panels.forEach((panel, i) => {
     const name = i ? String(i + 1) : "";
-    const high = (1 - gap * (panels.length - 1)) * panel.cells.length / rows;
+    const high = row_px(panels) * panel.cells.length / inner_px;
     const last = i + 1 === panels.length;
     layout[`yaxis${name}`] = axis("", { type: "category", autorange: "reversed", ticks: "",
       domain: [Math.max(0, top - high), top], anchor: `x${name}` });
-    layout[`xaxis${name}`] = { ...row_axis(quantity, panels), anchor: `y${name}`,
+    layout[`xaxis${name}`] = { ...quantity_axis(quantity, panels.flatMap(({ cells }) => cells)), anchor: `y${name}`,
       ...(last ? {} : { title: { text: "" } }) };
     const names = unique_names(panel.cells.map((cell) => in_lines(row_name(cell))));
     data.push({ type: "scatter", mode: "markers", xaxis: `x${name}`, yaxis: `y${name}`,
@@ -149,14 +166,8 @@ function as_rows(panels, quantity) {
     }
     top -= high + gap;
   });
-  layout.margin = { l: 62, r: 14, t: 30, b: 52 };
+  layout.margin = { l: 62, r: 14, t: TOP_PX, b: BELOW_PX };
   return { data, layout };
-}
-
-function row_axis({ title, range, log, of }, panels) {
-  const values = panels.flatMap(({ cells }) => cells.map(of)).filter(is_number);
-  if (log) return log_axis(`${title} (logarithmic)`, values);
-  return axis(title, range ? { range } : { rangemode: "tozero" });
 }
 
 /** Breaks long names: a row's label takes at most a third of a phone. */

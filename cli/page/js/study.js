@@ -41,13 +41,15 @@ export function headline(report) {
   const id = part_id("headline");
   const box = element("section", { id, class: "headline", "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` },
-      study.cells.length > 1 ? `Localisation success at ${cell.label}` : "Localisation success"),
+      study.cells.length > 1 ? `Localisation success at ${at_words(cell)}` : "Localisation success"),
     element("div", {}, element("div", { class: "figure" }, percent(cell.success)),
       paragraph("of queries localised within 1 m of the true position")),
     element("div", { class: "words" }, headline_words(study, cell)),
     element("dl", { class: "tiles" }, headline_tiles(report, cell)));
   document.getElementById("report").append(box);
 }
+
+const at_words = (cell) => cell.label === "as set" ? "the settings of the study" : cell.label;
 
 function headline_words(study, cell) {
   const range = cell.success_interval_95;

@@ -62,7 +62,8 @@ const DESIGNS = { only: "only this source", "all but": "all but this source",
 /** Rows: one panel of all cells; for designs, one for each of them, below its reference. */
 function row_panels(study, keys) {
   if (!keys.some(({ key }) => key === "design")) {
-    return [{ title: "", cells: study.cells, behind: [] }];
+    const of_studies = study.cells.filter((cell) => cell.swept?.study);
+    return groups(study.cells, of_studies.length ? [{ key: "study" }] : []);
   }
   const others = keys.filter(({ key }) => !["design", "source", "value"].includes(key));
   return groups(study.cells, others).flatMap(({ title, cells }) => {

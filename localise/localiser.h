@@ -68,7 +68,9 @@ struct LocaliserStages {
   bool align = true;    ///< votes of vertical lines give each candidate's pose; else its node's
   bool refine = true;   ///< the candidate's lines are compared in the image, and its pose improved
   bool compare = true;  ///< the best are compared with the lines of neighbouring nodes merged
-  bool deepen = true;   ///< where that leaves doubts, more candidates are tried
+  /// Where that leaves doubts, more candidates are tried; where it leaves none, the places that
+  /// look like the answer in the map.
+  bool deepen = true;
 };
 
 /// The stages in words: "align+refine+compare+deepen", or a part of it; "none" without any.
@@ -78,7 +80,7 @@ LocaliserStages localiser_stages(std::string_view words);
 
 struct LocaliserOptions {
   std::string ranker = "view";  ///< of `lines`: view, pgh or pgh_aggregate
-  int candidates = 64;          ///< of the best-ranked poses; `lines` tries 16 of them first
+  int candidates = 256;         ///< of the best-ranked poses; `lines` tries 16 of them first
   int min_lines = 3;            ///< minimum number of lines in space for an answer
   /// `lines` abstains (unsure) where an error is more probable than this; 1: it always answers.
   double max_error_rate = 0.01;

@@ -40,6 +40,7 @@ enum class DrawSource : std::uint32_t {
   surface_appearance = 36,  // reflectances, textures and painted lines of rendered worlds
   sensor_noise = 37,        // photons and read noise of rendered images
   unseen_edges = 38,        // edges that no image shows
+  split_halves = 39,        // which frames make the halves of a split
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

@@ -17,8 +17,8 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/draw_sources.h"
-#include "calib/statistics/random.h"
 #include "calib/triangulation.h"
+#include "calib/validation/shuffled_frames.h"
 
 namespace vernier::internal {
 namespace {
@@ -166,22 +166,6 @@ void evaluate_board(const RigEstimate& estimate,
   scale.add(mean.value - 1, mean.variance(honest, sigma), mean.variance(mvb, sigma));
 }
 
-/// The training frames of a split: the first of a random order.
-std::vector<int> training_frames(std::vector<int> frames,
-                                 int count,
-                                 std::uint64_t seed,
-                                 int split) {
-  RandomStream draws({.seed = seed,
-                      .trial = static_cast<std::uint32_t>(split),
-                      .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
-  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {  // Fisher and Yates
-    std::swap(frames[i], frames[i + draws.below(static_cast<std::uint32_t>(frames.size() - i))]);
-  }
-  frames.resize(static_cast<std::size_t>(count));
-  std::sort(frames.begin(), frames.end());
-  return frames;
-}
-
 }  // namespace
 
 HeldOutBoardsResult evaluate_held_out_boards(
@@ -205,7 +189,10 @@ HeldOutBoardsResult evaluate_held_out_boards(
   HeldOutBoardsResult result;
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
-    const std::vector<int> kept = training_frames(frames, training, options.seed, split);
+    std::vector<int> kept =
+        shuffled_frames(frames, options.seed, split, DrawSource::left_out_boards);
+    kept.resize(static_cast<std::size_t>(training));
+    std::sort(kept.begin(), kept.end());
     try {
       const RigEstimate estimate = calibrate(at_frames(observations, kept), options.calibration);
       ++result.splits;

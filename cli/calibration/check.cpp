@@ -23,6 +23,7 @@
 #include "calib/solver/initial_rig.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/check_file.h"
+#include "cli/calibration/check_halves.h"
 #include "cli/calibration/check_held_out.h"
 #include "cli/calibration/check_mrcal.h"
 #include "cli/calibration/check_section.h"
@@ -39,7 +40,7 @@ struct CheckArguments {
   BoardInput board;
   SolverInput solver;
   MonteCarloResult copies;
-  bool no_mrcal = false, holdout = false;
+  bool no_mrcal = false, holdout = false, halves = false;
   int splits = 100, training_frames = 0;
 };
 
@@ -52,16 +53,24 @@ void refuse_unused_options(const CheckArguments& options) {
     refuse_options(app, solver_options, "the rig file contains the solver settings", remedy);
   }
   if (!options.holdout) {
-    refuse_options(app, std::array{"--splits", "--training-frames"}, "only valid with --holdout",
+    refuse_options(app, std::array{"--training-frames"}, "only valid with --holdout",
                    "add --holdout or leave it out");
+  }
+  if (!options.holdout && !options.halves) {
+    refuse_options(app, std::array{"--splits"}, "only valid with --holdout or --halves",
+                   "add one of them or leave it out");
   }
 }
 
-/// Checked before solving: held-out boards need a pair of cameras and some frames.
-void check_holdout(const CheckArguments& options, const BoardObservations& observations) {
+/// Checked before solving: held-out boards need a pair of cameras, and splits some frames.
+void check_splits(const CheckArguments& options, const BoardObservations& observations) {
   constexpr int fewest_frames = 6, fewest_to_calibrate = 3;
-  if (!options.holdout) return;
   const auto frames = static_cast<int>(frames_of(observations).size());
+  if (options.halves && frames < fewest_frames) {
+    throw Error("--halves", fmt::format("needs at least six frames; got {}", frames),
+                "give more views, or leave it out");
+  }
+  if (!options.holdout) return;
   if (observations.size_px.size() < 2 || frames < fewest_frames) {
     throw Error(
         "--holdout",
@@ -106,7 +115,7 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
   const BoardObservations& observations = solved.from_file->evidence->observations;
-  check_holdout(options, observations);
+  check_splits(options, observations);
   solved.estimate =
       with_errors_of(options.rig, [&] { return calibrate(observations, solved.how); });
   return solved;
@@ -117,7 +126,7 @@ Solved solve(const CheckArguments& options, Session& session) {
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
   BoardObservations observations = load(options.board, session);
-  check_holdout(options, observations);
+  check_splits(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
   for (const std::string& warning : solved.estimate.calibration->trust_warnings)
     session.add_trust_warning(warning);
@@ -168,10 +177,18 @@ void run(const CheckArguments& options, Session& session) {
     add("mrcal", check_by_mrcal(problem, session));
   }
   add("monte_carlo", check_by_monte_carlo(problem, options.copies));
+  CalibrationOptions how = solved.how;
+  how.reject_outliers = false;  // already removed
+  how.check_input = false;      // already checked
+  if (options.halves) {
+    add("halves", check_halves(problem.observations,
+                               {.splits = options.splits,
+                                .seed = options.copies.seed,
+                                .threads = options.copies.threads,
+                                .calibration = how},
+                               session));
+  }
   if (options.holdout) {
-    CalibrationOptions how = solved.how;
-    how.reject_outliers = false;  // already removed
-    how.check_input = false;      // already checked
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
                                           .splits = options.splits,
@@ -205,7 +222,10 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_flag("--no-mrcal", o->no_mrcal, "skip the comparison with mrcal");
   verb->add_flag("--holdout", o->holdout,
                  "cross-validate: measure lengths on held-out boards, over random splits");
-  verb->add_option("--splits", o->splits, "number of splits for --holdout")
+  verb->add_flag("--halves", o->halves,
+                 "calibrate random halves of the views, and test whether they differ as their "
+                 "covariances state");
+  verb->add_option("--splits", o->splits, "number of splits for --holdout and --halves")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   verb->add_option("--training-frames", o->training_frames,

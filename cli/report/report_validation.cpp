@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
+#include "calib/statistics/distributions.h"
 #include "calib/validation/held_out_boards.h"
 #include "calib/validation/model_comparison.h"
+#include "calib/validation/split_halves.h"
 #include "cli/calibration/check_file.h"
+#include "cli/calibration/check_halves.h"
 #include "cli/calibration/check_held_out.h"
 #include "cli/program/session.h"
 #include "cli/report/report_calibration.h"
@@ -93,6 +97,36 @@ void add_left_out(const RigEstimate& estimate,
   }
 }
 
+/// Distances in ascending order beside the quantiles that they should be.
+Json distances_json(const SplitHalvesResult& result) {
+  std::vector<double> honest, mvb, expected;
+  for (const HalvesDistance& d : result.distances) {
+    honest.push_back(d.honest);
+    mvb.push_back(d.mvb);
+    const auto rank = static_cast<double>(expected.size()) + 0.5;
+    expected.push_back(chi_squared_quantile(rank / result.splits, result.dof));
+  }
+  std::sort(honest.begin(), honest.end());
+  std::sort(mvb.begin(), mvb.end());
+  return {{"honest", honest}, {"mvb", mvb}, {"expected", expected}};
+}
+
+void add_halves(const RigEstimate& estimate,
+                const CalibrationOptions& options,
+                const std::string& file,
+                const Session& session,
+                Json& json) {
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  const BoardObservations observations =
+      at_frames(evidence.observations, evenly_spaced(evidence.frames, max_frames));
+  session.info(fmt::format("{}: calibrating halves of the views {} times", file, splits));
+  const SplitHalvesResult result =
+      compare_split_halves(observations, {.splits = splits, .calibration = options});
+  json["halves"] = halves_json(result);
+  json["halves"]["distances"] = distances_json(result);
+  for (const std::string& doubt : halves_doubts(result)) json["warnings"].push_back(doubt);
+}
+
 }  // namespace
 
 Json report_validation(const RigEstimate& estimate,
@@ -114,6 +148,11 @@ Json report_validation(const RigEstimate& estimate,
     add_models(estimate, options_of_file(estimate), json);
   } catch (const Error& error) {
     note(fmt::format("Lens models were not compared: {}.", error.what()));
+  }
+  try {
+    add_halves(estimate, options_of_file(with_default_names(estimate)), file, session, json);
+  } catch (const Error& error) {
+    note(fmt::format("Halves of the views were not compared: {}.", error.what()));
   }
   try {
     add_left_out(estimate, options_of_file(with_default_names(estimate)), file, session, json);

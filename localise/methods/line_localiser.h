@@ -51,6 +51,7 @@ class LineLocaliser : public Localiser {
   void wide_candidates(const Seen& seen,
                        std::span<const RankedNode> ranked_before,
                        Query& query) const;
+  void compare_rivals(const Pose2D& pose, Query& query) const;
   void near_pose(const Pose2D& pose, const Seen& look, Query& query) const;
   const SpaceLines& lines_around(int node, Query& query) const;
   const std::vector<PlanUpright>& uprights_around(int node, Query& query) const;

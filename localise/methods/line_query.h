@@ -46,6 +46,7 @@ struct LineLocaliser::Query {
   std::map<int, SpaceLines> merged;                     // of nodes, as they are needed
   std::map<int, std::vector<PlanUpright>> uprights;     // of these
   TriedPoses started{0.12, 0.05}, finals{0.15, 0.1};    // from which poses were refined, compared
+  TriedPoses doubted{0.5, 0.2};                         // whose rivals were compared
   float leader = std::numeric_limits<float>::lowest();  // of the scores there
   PredictedLines room;
 };

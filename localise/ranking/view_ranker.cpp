@@ -59,7 +59,9 @@ std::vector<RankedNode> ViewRanker::rank(const PlaceView& query, int most) const
   for (const auto& [pose, likeness] : found) {
     if (static_cast<int>(ranked.size()) == most) break;
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&, &pose = pose](const Pose2D& k) {
-      return distance_m(k, pose) < apart_m && std::abs(heading_difference_rad(k, pose)) < apart_rad;
+      const double dx = k.x_m - pose.x_m, dy = k.y_m - pose.y_m;
+      return dx * dx + dy * dy < apart_m * apart_m &&
+             std::abs(heading_difference_rad(k, pose)) < apart_rad;
     });
     if (!is_new) continue;
     const int node = grid_.nearest(pose);

@@ -192,7 +192,7 @@ void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings
   if (const auto* candidates = table.get("candidates")) {
     const std::int64_t count = integer(*candidates, "localiser.candidates");
     if (count < 1 || count > 10'000) {
-      fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 64");
+      fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 256");
     }
     settings.localiser.candidates = static_cast<int>(count);
   }

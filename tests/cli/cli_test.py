@@ -392,9 +392,12 @@ class IdleOptions(Case):
                            of=option + ': the rig file contains the solver settings; leave it out')
 
     def test_of_the_holdout(self):
-        for option in ('--splits', '--training-frames'):
-            self.complains('check', 'nominal', option, '9',
-                           of=option + ': only valid with --holdout; add --holdout or leave it out')
+        self.complains('check', 'nominal', '--training-frames', '9',
+                       of='--training-frames: only valid with --holdout; add --holdout or leave it '
+                          'out')
+        self.complains('check', 'nominal', '--splits', '9',
+                       of='--splits: only valid with --holdout or --halves; add one of them or '
+                          'leave it out')
 
     def test_beside_images(self):
         self.complains(*self.images(), '--board', '9x6', '--square-m', '1', '--size', '640x480',
@@ -759,6 +762,20 @@ class Check(Case):
         self.assertGreater(found['boards'], 0)
         self.assertEqual(found['boards_left_out'], 0)
         self.assertEqual(found['corners_left_out'], 0)
+
+    def test_halves_of_the_views(self):
+        words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--halves', '--splits', '8',
+                 '--json', '--threads')
+        one = json.loads(self.works(*words, '1').stdout)['halves']
+        self.assertEqual(one, json.loads(self.works(*words, '3').stdout)['halves'])
+        self.assertEqual((one['splits'], one['failed'], one['frames']), (8, 0, 20))
+        self.assertGreater(one['dof'], 10)
+        for kind in ('honest', 'mvb'):  # white noise: both are right
+            self.assertLess(one['dof'] / 2, one['nees_mean_' + kind])
+            self.assertLess(one['nees_mean_' + kind], 2 * one['dof'])
+        text = self.works('check', 'nominal', '--trials', '40', '--no-mrcal', '--halves',
+                          '--splits', '2').stdout
+        self.assertIn('halves of the 20 frames, calibrated apart: 2 splits, ', text)
 
     def test_noisy_copies_without_mrcal(self):
         words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--json', '--threads')

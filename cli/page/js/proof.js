@@ -4,7 +4,7 @@ import { element, table } from "./elements.js";
 import { DASH, count, counted, fixed, percent, significant } from "./format.js";
 import { in_percent, is_number, times } from "./numbers.js";
 import { is_bound } from "./parameters.js";
-import { COLOUR, axis, figure } from "./plot.js";
+import { COLOUR, axis, figure, log_axis } from "./plot.js";
 
 /** Cross-validation of lens model and covariance on held-out views. */
 export function proof_content(rig) {
@@ -12,6 +12,7 @@ export function proof_content(rig) {
   return [
     ...(proof.notes ?? []).map((words) => element("p", { class: "notice" }, words)),
     proof.models && models_table(proof.models),
+    ...(proof.halves ? halves_content(proof.halves, covariances(rig)) : []),
     ...(proof.left_out ? left_out_content(proof.left_out, covariances(rig)) : []),
   ];
 }
@@ -43,12 +44,49 @@ const COVARIANCES = [
 /** The covariances of a rig: only one if its covariance is the bound. */
 const covariances = (rig) => is_bound(rig) ? COVARIANCES.slice(1) : COVARIANCES;
 
+/** Halves of the views, calibrated apart. */
+function halves_content(halves, by) {
+  const failed = halves.failed ? ` ${counted(halves.failed, "split")} could not be calibrated.` : "";
+  return [
+    element("h3", {}, "Is the covariance correct?"),
+    element("p", {}, `The ${count(halves.frames)} frames were divided at random into halves, which`
+      + ` were calibrated apart, ${count(halves.splits)} times. With a correct covariance the squared`
+      + ` distance between two halves is ${count(halves.dof)} on average, the number of parameters.`
+      + " It is " + by.map(({ name, suffix }) =>
+        `${significant(halves[`nees_mean_${suffix}`], 3)} by the ${name}`).join(", ")
+      + `.${failed}`),
+    distances_figure(halves, by),
+    element("p", { class: "reading" }, "This tests the scatter from view to view. What all views"
+      + " share (board, square size, lens model, corner detector) is equally wrong in both halves"
+      + " and cannot be seen. Splits share frames, so the mean of one set scatters more than that"
+      + " of independent ones."),
+  ];
+}
+
+function distances_figure({ distances, dof, splits }, by) {
+  const below = distances.expected.map((_, i) => 100 * (i + 0.5) / splits);
+  const line = (name, x, color, dash) => ({ type: "scatter", mode: "lines", name, x, y: below,
+    line: { color, width: 2, shape: "linear", dash },
+    hovertemplate: `${name}: %{y:.0f} % below %{x:.3g}<extra></extra>` });
+  return figure("", "Fraction of splits below a squared distance. A covariance whose line follows"
+    + ` the dotted one (χ², ${dof} degrees of freedom) states the errors correctly; one to the right`
+    + " of it states errors that are too small.", "Distances between halves of the views.", 300,
+    () => ({
+      data: [line("correct", distances.expected, COLOUR.ink, "dot"),
+        ...by.map(({ name, suffix, color }) => line(name, distances[suffix], color, "solid"))],
+      layout: {
+        xaxis: log_axis("squared Mahalanobis distance", [...distances.expected,
+          ...by.flatMap(({ suffix }) => distances[suffix])]),
+        yaxis: axis("splits below, %", { range: [0, 100], dtick: 20 }) },
+    }));
+}
+
 function left_out_content(left_out, by) {
   const [edges] = left_out.rows;
   const failed = left_out.failed ? ` ${counted(left_out.failed, "split")} could not be calibrated.`
     : "";
   return [
-    element("h3", {}, "Are the intervals correct?"),
+    element("h3", {}, "Are its intervals correct on held-out boards?"),
     element("p", {}, `The rig was calibrated ${count(left_out.splits)} times with`
       + ` ${count(left_out.training_frames)} of ${count(left_out.frames)} frames, and the boards in`
       + " the other frames were measured by triangulation: rows, columns and diagonals, compared"

@@ -223,7 +223,8 @@ function inspect() {
     empty: plots.filter((place) => !place.data || !drawn(place))
       .map((place) => place.getAttribute("aria-label")),
     unnamed: plots.filter((place) => !place.getAttribute("aria-label")).length,
-    turned: [...document.querySelectorAll(".xtick text, .ytick text, .xaxislayer-above text")]
+    turned: [...document.querySelectorAll("[id^=sweep] .xtick text, [id^=sweep] .ytick text,"
+      + " #studies .xtick text, #studies .ytick text")]
       .filter((text) => /rotate\((?!0)/.test(text.getAttribute("transform") ?? "")).length,
     text: [document.title, document.body.innerText, ...svg_text].join("\n"),
     too_wide: document.documentElement.scrollWidth - window.innerWidth,

@@ -56,15 +56,16 @@ function base_layout() {
 export function axis(title, more = {}) {
   return { title: { text: plot_text(title), standoff: 8 }, gridcolor: COLOUR.grid, zeroline: false,
     linecolor: COLOUR.grey, showline: true, ticks: "outside", tickcolor: COLOUR.grey,
-    automargin: true, ...more };
+    automargin: true, tickangle: 0, ...more };
 }
 
-/** A logarithmic axis over `values` with labelled ticks at 1, 2 and 5 times powers of ten. */
-export function log_axis(title, values, more = {}) {
+/** A logarithmic axis over `values` with labelled ticks at 1, 2 and 5 times powers of ten; `sparse`:
+ * at these powers if there are several. */
+export function log_axis(title, values, { sparse = false, ...more } = {}) {
   const positive = values.filter((x) => is_number(x) && x > 0);
   const low = Math.floor(Math.log10(Math.min(...positive)));
   const high = Math.ceil(Math.log10(Math.max(...positive)));
-  const steps = high - low > 3 ? [1] : [1, 2, 5];
+  const steps = high - low > 3 || (sparse && high > low + 1) ? [1] : [1, 2, 5];
   const ticks = [];
   for (let power = low; power <= high; ++power) {
     ticks.push(...steps.map((step) => step * 10 ** power));

@@ -46,7 +46,7 @@ export function multiples_plot(study, quantity) {
 }
 
 function against_axis(study, x, lines, panels, quantity) {
-  const across = x_axis(study, x);
+  const across = x_axis(study, x, panels.length > 1);
   const columns = columns_for(panels.length, room_of(panels.length));
   const rows = Math.ceil(panels.length / columns);
   const gap_x = columns > 1 ? 0.06 : 0;
@@ -125,7 +125,7 @@ function quantity_axis({ title, range, log, of }, cells) {
 }
 
 /** The x axis and the position of cells on it: {axis, at: cell => x}. */
-function x_axis(study, { key, label }) {
+function x_axis(study, { key, label }, sparse) {
   const title = label ?? key;
   const at = (cell) => swept_value(cell, key);
   const values = study.cells.map(at);
@@ -136,7 +136,7 @@ function x_axis(study, { key, label }) {
     return { axis: axis(title, { type: "category" }), at: (cell) => setting(at(cell)) };
   }
   if (!wide) return { axis: axis(title), at };
-  return { axis: log_axis(`${title} (logarithmic)`, values), at };
+  return { axis: log_axis(`${title} (logarithmic)`, values, { sparse }), at };
 }
 
 /** Every cell a row with its name to the left, so that no label is turned. */

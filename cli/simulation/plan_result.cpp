@@ -30,8 +30,9 @@ std::string successes_text(const PlanResult& plan) {
   std::string text =
       fmt::format("\n{:>22} {:>9} {:>17}\n", "calibration error", "success", "95 % interval");
   for (const SuccessAt& at : plan.successes) {
-    text += fmt::format("{:>15} times {:>9} [{:>6.1f}, {:>6.1f}]\n", at.psi_c, in_percent(at.success),
-                        100 * at.interval_95.low, 100 * at.interval_95.high);
+    text +=
+        fmt::format("{:>15} times {:>9} [{:>6.1f}, {:>6.1f}]\n", at.psi_c, in_percent(at.success),
+                    100 * at.interval_95.low, 100 * at.interval_95.high);
   }
   return text;
 }

@@ -79,18 +79,20 @@ void run_in(const FolderClaim& claim, const Study& study, StudyRun job, Session&
     blocks->update(done, total);
     blocks_done = done;
   };
+  const auto end = [&] {
+    blocks.reset();
+    claim.withdraw(job.shard);
+    stop.end(fmt::format("after {} blocks, which are stored; go on with: {}", blocks_done,
+                         session.command));
+  };
+  job.on_stop = end;
   try {
     run_study(study, job);
   } catch (...) {
     claim.withdraw(job.shard);
     throw;
   }
-  if (stop.came()) {
-    blocks.reset();
-    claim.withdraw(job.shard);
-    stop.end(fmt::format("after {} blocks, which are stored; go on with: {}", blocks_done,
-                         session.command));
-  }
+  if (stop.came()) end();
 }
 
 void run(const StudyArguments& options, Session& session) {

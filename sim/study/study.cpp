@@ -129,13 +129,14 @@ void compute_here(const std::vector<WorkUnit>& units,
   recorder.flush();
 }
 
-/// The same on all ranks.
+/// The same on all ranks. Closes the store if it is asked to stop.
 void compute_on_ranks(const std::vector<WorkUnit>& queries,
                       const std::vector<WorkUnit>& blocks,
                       const UnitComputer& computer,
                       const StudyRun& run,
                       RankZero& ranks,
-                      ResultRecorder& recorder) {
+                      ResultRecorder& recorder,
+                      std::optional<StudyStore>& store) {
   const tbb::task_arena usual(tbb::task_arena::automatic);
   WorkerThreads own(computer, run.threads > 0 ? run.threads : usual.max_concurrency(), run.stop);
   if (!queries.empty()) {
@@ -144,6 +145,10 @@ void compute_on_ranks(const std::vector<WorkUnit>& queries,
   }
   recorder.begin_blocks();
   ranks.compute(blocks, own, recorder);
+  if (run.stop.stop_requested()) {
+    store.reset();
+    if (run.on_stop) run.on_stop();
+  }
 }
 
 }  // namespace
@@ -186,16 +191,16 @@ void run_study(const Study& study, const StudyRun& run) {
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);
-  StudyStore store(file, run.other_instruction_sets);
+  std::optional<StudyStore> store(std::in_place, file, run.other_instruction_sets);
   if (run.on_start) run.on_start();
-  stored.add(store.index(), file);  // it may have been written meanwhile
+  stored.add(store->index(), file);  // it may have been written meanwhile
   const MissingWork missing = missing_work(study, work, run.shard, stored);
   if (is_mixture(sets) || run.other_instruction_sets == OtherInstructionSets::allowed) {
     sets = all_instruction_sets(sets, stored.instruction_sets());
-    if (is_mixture(sets)) store.set_note(instruction_set_note, sets);
+    if (is_mixture(sets)) store->set_note(instruction_set_note, sets);
   }
   if (!run.command.empty() && !missing.blocks.empty()) {
-    store.set_note(command_key(run.command), run.command);
+    store->set_note(command_key(run.command), run.command);
   }
   if (!run.machine.empty() && !missing.blocks.empty()) {
     store.set_note(machine_key(run.machine), run.machine);
@@ -203,25 +208,25 @@ void run_study(const Study& study, const StudyRun& run) {
 
   const std::vector<WorkUnit> queries = query_units(missing);
   std::vector<WorkUnit> blocks = block_units(missing);
-  ResultRecorder recorder(work, missing, run, store);
+  ResultRecorder recorder(work, missing, run, *store);
   if (ranks) ranks->welcome(!blocks.empty());
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
   /// What is wanted next, where the width of an interval decides how far a cell goes.
   const auto next_blocks = [&] {
     if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
-    stored.add(store.index(), file);
+    stored.add(store->index(), file);
     blocks = block_units(missing_work(study, work, run.shard, stored));
     recorder.expect_blocks(blocks.size());
     return !blocks.empty();
   };
   if (ranks) {
-    compute_on_ranks(queries, blocks, computer, run, *ranks, recorder);
-    while (next_blocks()) compute_on_ranks({}, blocks, computer, run, *ranks, recorder);
+    compute_on_ranks(queries, blocks, computer, run, *ranks, recorder, store);
+    while (next_blocks()) compute_on_ranks({}, blocks, computer, run, *ranks, recorder, store);
     return;
   }
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  record_calibrations(study, computer.scenes(), stored, run, store);
+  record_calibrations(study, computer.scenes(), stored, run, *store);
   if (!queries.empty()) {
     recorder.begin_queries();
     compute_here(queries, computer, run, arena, recorder);

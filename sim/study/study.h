@@ -76,6 +76,9 @@ struct StudyRun {
   /// The other processes that compute for this one, which is their rank 0 (study_ranks.h); null:
   /// none. The caller tells them the end.
   Communicator* ranks = nullptr;
+  /// Called with `ranks`, once it was asked to stop and all results that have come are stored. It
+  /// may end the process; if it does not, the units that run here are waited for.
+  std::function<void()> on_stop = {};
 };
 
 /// Runs the missing blocks of this shard. Writes its own store only, and nothing if no block and no

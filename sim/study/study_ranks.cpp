@@ -58,6 +58,20 @@ class Patience {
   microseconds wait_ = shortest;
 };
 
+/// Once asked to stop, running units have so long: mpirun kills its processes a second after it
+/// asks them to end.
+class Grace {
+ public:
+  bool is_over(bool stop_requested) {
+    const auto now = std::chrono::steady_clock::now();
+    if (stop_requested && !end_) end_ = now + std::chrono::milliseconds(300);
+    return end_ && now >= *end_;
+  }
+
+ private:
+  std::optional<std::chrono::steady_clock::time_point> end_;
+};
+
 Message wait_for_message(Communicator& ranks) {
   Patience patience;
   for (;;) {
@@ -209,11 +223,12 @@ void RankZero::compute(std::vector<WorkUnit> units, WorkerThreads& own, ResultRe
   phase.waiting.assign(std::make_move_iterator(units.begin()),
                        std::make_move_iterator(units.end()));
   Patience patience;
+  Grace grace;
   bool had_news = true;
   for (;;) {
     hand_out(phase, own);
     const bool may_end = phase.waiting.empty() || failure_ || stop_.stop_requested();
-    if (may_end && phase.running.empty()) break;
+    if ((may_end && phase.running.empty()) || grace.is_over(stop_.stop_requested())) break;
     take_own(own, phase, patience.next(had_news));
     std::optional<Message> message;
     while (phase.done.size() < most_at_once && (message = ranks_.receive())) take(*message, phase);
@@ -235,9 +250,15 @@ void end_ranks(Communicator& ranks) noexcept {
 
 namespace {
 
+void wait_for_end(Communicator& ranks) {
+  while (!std::holds_alternative<End>(parse_rank_text(wait_for_message(ranks).text))) {
+  }
+}
+
 /// The loop of a rank that computes: units in, results out.
 void serve_units(WorkerThreads& own, Communicator& ranks, const std::stop_token& stop) {
   Patience patience;
+  Grace grace;
   bool had_news = true;
   for (;;) {
     std::vector<FinishedUnit> finished = own.take_finished(patience.next(had_news));
@@ -254,8 +275,9 @@ void serve_units(WorkerThreads& own, Communicator& ranks, const std::stop_token&
       if (!assigned) fail_unexpected("rank 0");
       if (!stop.stop_requested()) own.start(assigned->number, assigned->unit);
     }
-    if (stop.stop_requested() && own.unfinished() == 0) {
+    if (grace.is_over(stop.stop_requested()) || (stop.stop_requested() && own.unfinished() == 0)) {
       ranks.send(0, rank_text(Left{}));
+      wait_for_end(ranks);
       return;
     }
   }
@@ -281,8 +303,7 @@ void take_part(const Study& study, int threads, Communicator& ranks, const std::
 
 void tell_failure(const Failed& failure, Communicator& ranks) {
   ranks.send(0, rank_text(failure));
-  while (!std::holds_alternative<End>(parse_rank_text(wait_for_message(ranks).text))) {
-  }
+  wait_for_end(ranks);
 }
 
 void serve_study(const Study& study,

@@ -45,7 +45,8 @@ class RankZero {
   std::string meet(OtherInstructionSets others);
   void welcome(bool has_blocks);
   /// Computes units on all ranks and on `own` threads, and records what they give. Returns when all
-  /// are done, or, asked to stop, when none runs any more. Throws the first error of any rank then.
+  /// are done or, asked to stop, when none runs any more or after 0.3 s: mpirun leaves no time for
+  /// more. Throws the first error of any rank when none runs any more.
   void compute(std::vector<WorkUnit> units, WorkerThreads& own, ResultRecorder& recorder);
 
  private:
@@ -72,8 +73,9 @@ class RankZero {
 /// Tells all ranks from 0 that no more is to be done; what cannot be sent is lost.
 void end_ranks(Communicator& ranks) noexcept;
 
-/// Another rank's part, until rank 0 tells the end or, asked to stop, until no unit runs. What
-/// fails here is told to rank 0, which throws it.
+/// Another rank's part, until rank 0 tells the end. What fails here is told to rank 0, which throws
+/// it. Asked to stop, it gives running units 0.3 s, leaves the others to rank 0, and waits for the
+/// end too: mpirun kills all ranks as soon as one of them has ended.
 void serve_study(const Study& study, int threads, Communicator& ranks, const std::stop_token& stop);
 
 /// Tells rank 0 why this rank cannot take part, and waits for the end.

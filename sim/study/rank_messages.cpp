@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/rank_messages.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -27,7 +29,7 @@ struct RankTexts {
   }
   RankJson operator()(const Computed& m) const {
     const BlockRow& row = m.result.row;
-    return {"computed", m.number, row.cell, row.block, row.counted, row.results, m.result.aliases};
+    return {"computed", m.number, row.cell, row.block, row.counted, m.result.aliases};
   }
   RankJson operator()(const Failed& m) const {
     return {"failed", m.place, m.fault, m.remedy, m.internal};
@@ -36,7 +38,7 @@ struct RankTexts {
   RankJson operator()(const End&) const { return RankJson::array({"end"}); }
 };
 
-RankMessage parsed(const RankJson& json) {
+RankMessage parsed(const RankJson& json, const std::string& tail) {
   const auto kind = json.at(0).get<std::string>();
   if (kind == "hello") return Hello{json.at(1), json.at(2), json.at(3)};
   if (kind == "welcome") return Welcome{json.at(1).get<bool>()};
@@ -47,7 +49,7 @@ RankMessage parsed(const RankJson& json) {
   }
   if (kind == "computed") {
     return Computed{json.at(1).get<std::int64_t>(),
-                    {{json.at(2), json.at(3).get<int>(), json.at(4), json.at(5)}, json.at(6)}};
+                    {{json.at(2), json.at(3).get<int>(), json.at(4), tail}, json.at(5)}};
   }
   if (kind == "failed") {
     return Failed{json.at(1), json.at(2), json.at(3), json.at(4).get<bool>()};
@@ -61,12 +63,19 @@ RankMessage parsed(const RankJson& json) {
 
 std::string rank_text(const RankMessage& message) {
   // a place may be a file name with invalid UTF-8
-  return std::visit(RankTexts{}, message).dump(-1, ' ', false, RankJson::error_handler_t::replace);
+  std::string text =
+      std::visit(RankTexts{}, message).dump(-1, ' ', false, RankJson::error_handler_t::replace);
+  if (const auto* computed = std::get_if<Computed>(&message)) {
+    text += '\n' + computed->result.row.results;  // long, so that it is not parsed twice
+  }
+  return text;
 }
 
 RankMessage parse_rank_text(const std::string& text) {
+  const std::size_t head = std::min(text.find('\n'), text.size());
   try {
-    return parsed(RankJson::parse(text));
+    return parsed(RankJson::parse(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(head)),
+                  text.substr(std::min(head + 1, text.size())));
   } catch (const RankJson::exception&) {
     throw Error("a message between ranks", "cannot be read", "run the same build everywhere");
   }

@@ -8,7 +8,7 @@
 
 #include "sim/study/work_units.h"
 
-/// What the ranks of a study tell each other, as JSON texts.
+/// What the ranks of a study tell each other: a line of JSON, and the trials of a block below it.
 namespace vernier::sim::internal {
 
 /// From a rank at its start: what it is about to work on, and with what.

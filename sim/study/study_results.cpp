@@ -111,6 +111,7 @@ StudyResults study_results(const Study& study, const std::filesystem::path& fold
   std::vector<std::vector<TrialResult>> all(study.file.cells.size());
   StudyResults results =
       visit_results(study, folder, [&](std::size_t cell, std::vector<TrialResult> trials) {
+        all[cell].reserve(static_cast<std::size_t>(study.file.trials));
         all[cell].insert(all[cell].end(), trials.begin(), trials.end());
       });
   for (std::size_t i = 0; i < all.size(); ++i) results.cells[i].trials = std::move(all[i]);

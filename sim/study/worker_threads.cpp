@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/worker_threads.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -18,7 +17,7 @@ namespace vernier::sim::internal {
 
 WorkerThreads::WorkerThreads(const UnitComputer& computer, int threads, std::stop_token stop)
     : computer_(computer), stop_(std::move(stop)) {
-  for (int i = 0; i < std::max(1, threads); ++i) threads_.emplace_back([this] { work(); });
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
 
 WorkerThreads::~WorkerThreads() {

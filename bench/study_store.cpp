@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -39,7 +40,10 @@ using namespace vernier::sim::internal;
 
 namespace {
 
-double seconds() {
+/// Of this process.
+double cpu_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+double wall_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
@@ -60,10 +64,10 @@ void fill(const fs::path& folder, const StudyWork& work, Shard shard, double& en
   for (std::size_t i = shard.index; i < work.blocks.size(); i += shard.count) {
     const std::vector<TrialResult> trials =
         made_up_trials(work.blocks[i].first, work.blocks[i].count);
-    const double start = seconds();
+    const double start = cpu_s();
     const BlockRow row =
         block_row(work.cell_keys[work.blocks[i].cell], work.blocks[i].block, trials);
-    encoding_s += seconds() - start;
+    encoding_s += cpu_s() - start;
     store.put(row);
   }
 }
@@ -72,24 +76,29 @@ void run(const fs::path& folder, int shards) {
   const Study study = made_up_study(folder);
   const StudyWork work = study_work(study);
   double encoding_s = 0;
-  const double start = seconds();
+  const double start = wall_s(), cpu_start = cpu_s();
   for (int i = 0; i < shards; ++i) fill(folder, work, {i, shards}, encoding_s);
-  const double filled = seconds() - start;
+  const double filled = wall_s() - start, filling_s = cpu_s() - cpu_start;
   std::uintmax_t bytes = 0;
   for (const fs::path& file : store_files(folder)) bytes += fs::file_size(file);
   const double blocks = static_cast<double>(work.blocks.size());
   const double trials = static_cast<double>(study.file.trials) * study.file.cells.size();
-  fmt::print("{:.0f} trials in {:.0f} blocks, {} stores\n", trials, blocks, shards);
-  fmt::print("encoding {:.1f} us a block, all with commits {:.1f} us a block\n",
-             1e6 * encoding_s / blocks, 1e6 * filled / blocks);
-  fmt::print("{:.1f} bytes a trial, {:.1f} MB of memory to write\n",
-             static_cast<double>(bytes) / trials, max_memory_mb());
-  const double read_start = seconds();
+  fmt::print("{:.0f} trials in {:.0f} blocks, {} stores: {:.1f} bytes a trial\n", trials, blocks,
+             shards, static_cast<double>(bytes) / trials);
+  fmt::print(
+      "a block: {:.1f} us of CPU to encode, {:.1f} us to make up, encode and commit, {:.1f} us "
+      "of wall time\n",
+      1e6 * encoding_s / blocks, 1e6 * filling_s / blocks, 1e6 * filled / blocks);
+  fmt::print("memory to write: {:.1f} MB\n", max_memory_mb());
+  const double read_start = wall_s(), read_cpu = cpu_s();
   std::size_t read = 0;
   const StudyResults results = visit_results(
       study, folder, [&](std::size_t, std::vector<TrialResult> some) { read += some.size(); });
-  fmt::print("read {} trials in {:.2f} s, {} of {} blocks; {:.1f} MB of memory\n", read,
-             seconds() - read_start, results.blocks_done, results.blocks_total, max_memory_mb());
+  fmt::print(
+      "read {} trials, {} of {} blocks: {:.2f} us of CPU a trial, {:.1f} s of wall time; "
+      "memory {:.1f} MB\n",
+      read, results.blocks_done, results.blocks_total, 1e6 * (cpu_s() - read_cpu) / trials,
+      wall_s() - read_start, max_memory_mb());
 }
 
 }  // namespace

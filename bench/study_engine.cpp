@@ -47,7 +47,7 @@ void store_ceilings(const StudyWork& work, const std::filesystem::path& folder) 
 
 double by_hand(const Study& study, const StudyWork& work) {
   const double start = cpu_s();
-  const Visibility visibility(study.world, study.file.visibility);
+  const Visibility visibility(study.world, study.file.cells[0].visibility);
   const ExperimentSettings& settings = study.file.cells[0].experiment;  // the only cell
   const auto views = std::make_shared<MapViews>(map_views(visibility, study.rig.rig, settings));
   const auto places =

@@ -300,7 +300,7 @@ TEST_F(StudyRuns, ShardsShareTheCeiling) {
 TEST_F(StudyRuns, ACeilingIsMadeOfItsParts) {
   Study s = study(7);
   s.file = parse_study("[study]\ntrials = 7\n[map]\nspacing_m = 4\n", "s.toml");
-  const std::string key = ceiling_key(s, s.file.cells[0].experiment);
+  const std::string key = ceiling_key(s, s.file.cells[0]);
   std::vector<int> even(7, not_known), odd(7, not_known), other(7, not_known);
   for (int query = 0; query < 6; ++query) (query % 2 == 0 ? even : odd)[query] = query;
   even[6] = not_determined;
@@ -325,7 +325,7 @@ TEST_F(StudyRuns, ACeilingHasTheQueriesOfAllCellsThatShareIt) {
   const auto queries = [](const std::string& trials, const std::string& sweep) {
     Study s = study(7);
     s.file = parse_study("[study]\ntrials = " + trials + "\n[sweep]\n" + sweep, "s.toml");
-    return ceiling_queries(s, ceiling_key(s, s.file.cells[0].experiment));
+    return ceiling_queries(s, ceiling_key(s, s.file.cells[0]));
   };
   EXPECT_EQ(queries("300", "\"sources.calibration\" = [0.1, 1, 10]"), 900);
   EXPECT_EQ(queries("300", "\"study.protocol\" = [\"path\", \"free\"]"), 300);

@@ -203,7 +203,7 @@ void run_study(const Study& study, const StudyRun& run) {
     store->set_note(command_key(run.command), run.command);
   }
   if (!run.machine.empty() && !missing.blocks.empty()) {
-    store.set_note(machine_key(run.machine), run.machine);
+    store->set_note(machine_key(run.machine), run.machine);
   }
 
   const std::vector<WorkUnit> queries = query_units(missing);
@@ -211,6 +211,7 @@ void run_study(const Study& study, const StudyRun& run) {
   ResultRecorder recorder(work, missing, run, *store);
   if (ranks) ranks->welcome(!blocks.empty());
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
+  record_calibrations(study, computer.scenes(), stored, run, *store);
   /// What is wanted next, where the width of an interval decides how far a cell goes.
   const auto next_blocks = [&] {
     if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
@@ -226,7 +227,6 @@ void run_study(const Study& study, const StudyRun& run) {
   }
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  record_calibrations(study, computer.scenes(), stored, run, *store);
   if (!queries.empty()) {
     recorder.begin_queries();
     compute_here(queries, computer, run, arena, recorder);

@@ -258,9 +258,10 @@ void judge(const PlanResult& plan, Session& session) {
                     needed.interval.low, needed.interval.high));
   } else if (needed.confidence < unsure_below) {
     session.add_trust_warning(fmt::format(
-        "the number of views is known to a factor of two with {:.0f} % confidence only: "
-        "take some more views and plan again",
-        100 * needed.confidence));
+        "the number of views is known to a factor of two with {:.0f} % confidence only: {}",
+        100 * needed.confidence,
+        plan.from_calibration ? "take some more views and plan again"
+                              : "calibrate from five views or more and plan from these"));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/ending_signals.h"
+#include "cli/program/machine.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/shard_choice.h"
@@ -17,6 +18,7 @@
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_merge.h"
 #include "cli/simulation/study_processes.h"
+#include "cli/simulation/study_table.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/instruction_sets.h"
@@ -106,6 +108,7 @@ void run(const StudyArguments& options, Session& session) {
   job.ranks = processes.others();
   job.shard = shard_choice(options.shard);
   job.command = session.command;
+  job.machine = program_and_machine();
   job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);

@@ -13,6 +13,7 @@
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
+#include "cli/simulation/study_table.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/store_rows.h"
 #include "sim/study/stored_results.h"

@@ -10,6 +10,7 @@
 #include "cli/program/ending_signals.h"
 #include "cli/program/session.h"
 #include "cli/program/streams.h"
+#include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
 #include "sim/mpi/mpi_launch.h"
 #include "sim/mpi/mpi_ranks.h"

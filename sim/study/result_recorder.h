@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <utility>
 #include <vector>
@@ -25,6 +26,8 @@ class ResultRecorder {
   /// Reports that nothing is done yet of the queries, or of the blocks.
   void begin_queries();
   void begin_blocks();
+  /// So many more blocks will come than were missing at first.
+  void expect_blocks(std::size_t further) { blocks_total_ += static_cast<int>(further); }
   /// Stores and reports. Blocks are committed on return, together; queries some hundred at a time.
   void add(std::vector<std::pair<WorkUnit, UnitResult>> results);
   /// Commits the queries that are not yet.

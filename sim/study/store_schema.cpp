@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/store_database.h"
 #include "sim/study/store_rows.h"
@@ -172,7 +173,8 @@ StoreIndex stored_index(const Database& database) {
   Statement rows(database, rows_of(version, ""));
   while (rows.step()) {
     BlockRow row = checked_row(database, rows, version > 1);
-    if (!index.blocks[std::move(row.cell)].emplace(row.block, row.counted[0]).second) {
+    const ClusterCount count{.successes = row.counted[2], .trials = row.counted[0]};
+    if (!index.blocks[std::move(row.cell)].emplace(row.block, count).second) {
       database.fail_damaged("it has a block twice");
     }
   }

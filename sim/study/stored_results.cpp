@@ -11,6 +11,7 @@
 
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study_store.h"
 
@@ -49,7 +50,7 @@ void StoredResults::add(StoreIndex index, const std::filesystem::path& file) {
   files_.push_back(file);
   for (const auto& [cell, blocks] : index.blocks) {
     auto& places = blocks_[cell];
-    for (const auto& [block, trials] : blocks) places[block].push_back({number, trials});
+    for (const auto& [block, count] : blocks) places[block].push_back({number, count});
   }
 }
 
@@ -70,10 +71,12 @@ const std::vector<StoredResults::InFile>* StoredResults::places(const std::strin
   return found == of_cell->second.end() ? nullptr : &found->second;
 }
 
-int StoredResults::trials(const std::string& cell, int block) const {
-  int most = 0;
+ClusterCount StoredResults::count(const std::string& cell, int block) const {
+  ClusterCount most;
   if (const auto* in = places(cell, block)) {
-    for (const InFile& place : *in) most = std::max(most, place.trials);
+    for (const InFile& place : *in) {
+      if (place.count.trials > most.trials) most = place.count;
+    }
   }
   return most;
 }
@@ -85,7 +88,7 @@ bool StoredResults::is_best(const std::filesystem::path& file,
   if (!in) return false;
   const int most = trials(cell, block);
   const auto best = std::find_if(in->begin(), in->end(),
-                                 [&](const InFile& place) { return place.trials == most; });
+                                 [&](const InFile& place) { return place.count.trials == most; });
   return files_[best->file] == file;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/interval.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study_store.h"
 
@@ -31,7 +32,9 @@ class StoredResults {
   std::string instruction_sets() const;
 
   /// The number of trials of a block in the file that has most; 0: it is in none.
-  int trials(const std::string& cell, int block) const;
+  int trials(const std::string& cell, int block) const { return count(cell, block).trials; }
+  /// The same with its successes.
+  ClusterCount count(const std::string& cell, int block) const;
   /// Whether this file is the first of those that have most trials of a block.
   bool is_best(const std::filesystem::path& file, const std::string& cell, int block) const;
   /// The blocks of a range, ascending, each with as many trials as a file has. Throws Error naming
@@ -45,7 +48,8 @@ class StoredResults {
 
  private:
   struct InFile {
-    int file = 0, trials = 0;
+    int file = 0;
+    ClusterCount count;
   };
   void add_note(const StoreNotes::value_type& note, const std::filesystem::path& file);
   const std::vector<InFile>* places(const std::string& cell, int block) const;

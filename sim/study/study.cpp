@@ -96,7 +96,7 @@ void check_processor(const StoredResults& stored, const StudyRun& run) {
 /// Of the first trials of each cell with [calibration], which use the same calibrations.
 void record_calibrations(const Study& study,
                          StudyScenes& scenes,
-                         const StoreNotes& known,
+                         const StoredResults& stored,
                          const StudyRun& run,
                          StudyStore& store) {
   std::set<std::string> recorded;
@@ -104,7 +104,7 @@ void record_calibrations(const Study& study,
     const auto calibrations = scenes.calibrations(cell);
     if (!calibrations || run.stop.stop_requested()) continue;
     const std::string key = calibration_key(study, cell);
-    if (known.count(key) > 0 || !recorded.insert(key).second) continue;
+    if (stored.notes().count(key) > 0 || !recorded.insert(key).second) continue;
     constexpr int enough = 100;
     const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
     store.set_note(name, note);
@@ -202,14 +202,27 @@ void run_study(const Study& study, const StudyRun& run) {
   if (!run.command.empty() && !missing.blocks.empty()) {
     store->set_note(command_key(run.command), run.command);
   }
+  if (!run.machine.empty() && !missing.blocks.empty()) {
+    store->set_note(machine_key(run.machine), run.machine);
+  }
 
-  const std::vector<WorkUnit> queries = query_units(missing), blocks = block_units(missing);
+  const std::vector<WorkUnit> queries = query_units(missing);
+  std::vector<WorkUnit> blocks = block_units(missing);
   ResultRecorder recorder(work, missing, run, *store);
   if (ranks) ranks->welcome(!blocks.empty());
-  record_calibrations(study, computer.scenes(), stored.notes(), run, *store);
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
+  record_calibrations(study, computer.scenes(), stored, run, *store);
+  /// What is wanted next, where the width of an interval decides how far a cell goes.
+  const auto next_blocks = [&] {
+    if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
+    stored.add(store->index(), file);
+    blocks = block_units(missing_work(study, work, run.shard, stored));
+    recorder.expect_blocks(blocks.size());
+    return !blocks.empty();
+  };
   if (ranks) {
     compute_on_ranks(queries, blocks, computer, run, *ranks, recorder, store);
+    while (next_blocks()) compute_on_ranks({}, blocks, computer, run, *ranks, recorder, store);
     return;
   }
   const RaisedThreadLimit raised(run.threads);
@@ -219,7 +232,9 @@ void run_study(const Study& study, const StudyRun& run) {
     compute_here(queries, computer, run, arena, recorder);
   }
   recorder.begin_blocks();
-  compute_here(blocks, computer, run, arena, recorder);
+  do {
+    compute_here(blocks, computer, run, arena, recorder);
+  } while (next_blocks());
 }
 
 }  // namespace vernier::sim::internal

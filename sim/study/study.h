@@ -16,6 +16,7 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/study_file.h"
 #include "sim/told/fresh_calibrations.h"
@@ -59,7 +60,8 @@ struct StudyRun {
   std::filesystem::path folder;  ///< results are stored here, and resumed from here
   int threads = 0;               ///< 0: all cores
   Shard shard;
-  std::string command;  ///< command line of this run; stored with its results
+  std::string command;       ///< command line of this run; stored with its results
+  std::string machine = {};  ///< program and machine of this run, in a line; stored as well
   /// Called from any thread, one call at a time.
   std::function<void(int done, int total)> progress;
   /// The same for the queries of the world ceilings, which are computed before the first block.
@@ -99,12 +101,14 @@ struct WorldCeiling {
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;      ///< ascending
-  std::vector<ClusterCount> maps;       ///< one entry per block
-  int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
-  std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
+  std::vector<TrialResult> trials;            ///< ascending
+  std::vector<ClusterCount> maps;             ///< one entry per block
+  int trials_per_block = 50;                  ///< trial t belongs to block t / trials_per_block
+  std::optional<WorldCeiling> ceiling;        ///< none until all of its queries are stored
+  std::optional<double> interval_width = {};  ///< at which the study stops the cell
+  BudgetDecision budget = {};
   /// Of a cell with [calibration]: what became of the calibrations of its first trials.
-  std::optional<CalibrationRecord> calibrations;
+  std::optional<CalibrationRecord> calibrations = {};
 };
 
 /// The part of a study that is stored in the folder.
@@ -112,6 +116,7 @@ struct StudyResults {
   std::vector<CellResult> cells;
   int blocks_done = 0, blocks_total = 0;
   std::vector<std::string> commands;  ///< that produced them, ascending; none for old results
+  std::vector<std::string> machines;  ///< on which, the same
   std::string instruction_sets;       ///< "AVX2", or "AVX2, AVX3" where a mixture was allowed
   std::vector<Shard> missing_shards;  ///< that lack something, if stores of shards are there
 };
@@ -119,8 +124,9 @@ struct StudyResults {
 /// The store that a shard writes.
 std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard);
 
-/// Key of a command in a store's notes.
+/// Key of a command, and of a machine, in a store's notes.
 std::string command_key(const std::string& command);
+std::string machine_key(const std::string& machine);
 
 /// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);

@@ -14,6 +14,7 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -30,11 +31,14 @@ StudyResults without_trials(const Study& study,
                             const StudyWork& work,
                             const StoredResults& stored) {
   StudyResults results;
-  std::set<std::string> commands;
+  const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
+  std::set<std::string> commands, machines;
   for (const auto& [key, value] : stored.notes()) {
     if (key == command_key(value)) commands.insert(value);
+    if (key == machine_key(value)) machines.insert(value);
   }
   results.commands.assign(commands.begin(), commands.end());
+  results.machines.assign(machines.begin(), machines.end());
   results.instruction_sets = stored.instruction_sets();
   results.missing_shards = missing_shards(study, work, stored);
   for (const StudyCell& cell : study.file.cells) {
@@ -45,9 +49,11 @@ StudyResults without_trials(const Study& study,
     if (cell.told.calibration) {
       result.calibrations = noted_calibrations(stored.notes(), calibration_key(study, cell));
     }
+    result.interval_width = study.file.interval_width;
+    result.budget = decisions[results.cells.size()];
+    results.blocks_total += result.budget.wanted;
     results.cells.push_back(std::move(result));
   }
-  results.blocks_total = static_cast<int>(work.blocks.size());
   return results;
 }
 
@@ -87,6 +93,7 @@ StudyResults visit_results(const Study& study,
     for (StoredBlock& block : blocks) {
       const BlockJob& job = work.blocks[from + static_cast<std::size_t>(block.block - first.block)];
       if (static_cast<int>(block.trials.size()) < job.count) continue;
+      if (job.block >= results.cells[cell].budget.wanted) continue;  // a cell that has stopped
       std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
       ++results.blocks_done;
       const auto successes = std::count_if(trials.begin(), trials.end(),

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/store_rows.h"
@@ -37,7 +38,7 @@ struct StoreContent {
 
 /// Which blocks a store holds, without their trials.
 struct StoreIndex {
-  std::map<std::string, std::map<int, int>> blocks;  ///< number of trials by cell and block
+  std::map<std::string, std::map<int, ClusterCount>> blocks;  ///< by cell and number
   StoreNotes notes;
   bool interrupted = false;  ///< as StoreContent's
 };

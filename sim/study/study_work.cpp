@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "calib/base/fingerprint.h"
+#include "calib/interval.h"
+#include "sim/study/budget.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -58,14 +60,36 @@ bool MissingWork::empty() const {
                                        [](const std::vector<int>& of) { return of.empty(); });
 }
 
+std::vector<BudgetDecision> budget_decisions(const Study& study,
+                                             const StudyWork& work,
+                                             const StoredResults& stored) {
+  const std::size_t cells = work.cell_keys.size();
+  std::vector<std::vector<ClusterCount>> first(cells);  // without a gap
+  std::vector<int> all(cells, 0);
+  for (const BlockJob& job : work.blocks) {
+    const auto cell = static_cast<std::size_t>(job.cell);
+    all[cell] = std::max(all[cell], job.block + 1);
+    if (static_cast<int>(first[cell].size()) != job.block) continue;
+    const ClusterCount count = stored.count(work.cell_keys[cell], job.block);
+    if (count.trials >= job.count) first[cell].push_back(count);
+  }
+  std::vector<BudgetDecision> decisions;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    decisions.push_back(budget_decision(first[cell], all[cell], study.file.interval_width));
+  }
+  return decisions;
+}
+
 MissingWork missing_work(const Study& study,
                          const StudyWork& work,
                          const Shard& shard,
                          const StoredResults& stored) {
   MissingWork missing;
+  const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
   const int count = static_cast<int>(work.blocks.size());
   for (int i = shard.index; i < count; i += shard.count) {
     const BlockJob& job = work.blocks[static_cast<std::size_t>(i)];
+    if (job.block >= decisions[static_cast<std::size_t>(job.cell)].wanted) continue;
     if (stored.trials(work.cell_keys[job.cell], job.block) < job.count) missing.blocks.push_back(i);
   }
   for (const CeilingJob& ceiling : work.ceilings) {

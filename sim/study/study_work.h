@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/study/budget.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
@@ -21,7 +22,7 @@ struct BlockJob {
 /// The queries of a world ceiling, which several cells may share.
 struct CeilingJob {
   std::string key;                  ///< ceiling_key()
-  const StudyCell* cell = nullptr;  ///< the first that has it
+  const StudyCell* cell = nullptr;  ///< one of them
   int queries = 0;
 };
 
@@ -40,7 +41,12 @@ StudyWork study_work(const Study& study);
 /// agree on it.
 std::string work_fingerprint(const StudyWork& work);
 
-/// What of it is not stored.
+/// How far each cell has to go, by what is stored (budget.h).
+std::vector<BudgetDecision> budget_decisions(const Study& study,
+                                             const StudyWork& work,
+                                             const StoredResults& stored);
+
+/// What of it is not stored, of the blocks that are wanted so far.
 struct MissingWork {
   std::vector<int> blocks;                ///< places in StudyWork::blocks
   std::vector<std::vector<int>> queries;  ///< of each ceiling

@@ -46,11 +46,11 @@ class UnitComputer {
   /// Keeps references to the study and its work. Throws Error if a cell cannot be run.
   UnitComputer(const Study& study, const StudyWork& work);
 
+  /// What cells share.
+  StudyScenes& scenes() { return scenes_; }
+
   /// Makes the views that maps are recorded from; needed before the first block.
   void prepare_maps();
-
-  /// What the cells share.
-  StudyScenes& scenes() { return scenes_; }
 
   /// Of queries, those that are done when it is asked to stop.
   UnitResult compute(const WorkUnit& unit, const std::stop_token& stop) const;

@@ -184,13 +184,16 @@ TEST(SmoothNoise, IsTheNoiseWhereItIsWhiteAndMoreWhereItIsNot) {
   const double mean = sum / sets, sd = std::sqrt(squares / sets - mean * mean);
   EXPECT_LT(std::abs(mean), 4 * sd / std::sqrt(sets) + 0.01);
   EXPECT_LT(sd, 0.08);
-  // A bend of the images that differs from view to view.
+  // A bend of each image of its own.
   BoardObservations bent = views(8).observations;
   for (BoardView& view : bent.views) {
-    RandomStream draws({.seed = 5, .feature = std::uint32_t(view.frame), .source = 200});
-    const double size = 0.4 * draws.normal();
+    RandomStream draws({.seed = 5,
+                        .trial = static_cast<std::uint32_t>(view.camera),
+                        .feature = static_cast<std::uint32_t>(view.frame),
+                        .source = 200});
+    const double a = draws.uniform(0, 6), b = draws.uniform(0, 6);
     for (Eigen::Vector2d& pixel : view.pixels_px) {
-      pixel.x() += size * std::sin(pixel.y() / 60);
+      pixel += 0.5 * Eigen::Vector2d(std::sin(pixel.y() / 40 + a), std::sin(pixel.x() / 40 + b));
     }
   }
   const RigEstimate now = calibrate(bent, {.check_input = false});

@@ -22,6 +22,7 @@
 #include "cli/verbs.h"
 #include "sim/images/ray_scene.h"
 #include "sim/mesh_files/mesh_file.h"
+#include "sim/mpi/mpi_ranks.h"
 
 namespace vernier::cli {
 namespace {
@@ -93,6 +94,16 @@ Finding embree_finding() {
           !version.empty()};
 }
 
+Finding mpi_finding() {
+  const std::string version = mpi_version();
+  return {"MPI",
+          !version.empty()
+              ? version
+              : "missing: install Debian's libopenmpi-dev and rebuild; used by vernier "
+                "study under mpirun",
+          !version.empty()};
+}
+
 Finding world_view_finding() {
   const bool there = !shipped_file("page/three.js").empty();
   return {"three.js",
@@ -154,6 +165,7 @@ std::vector<Finding> findings() {
       library_finding(),
       assimp_finding(),
       embree_finding(),
+      mpi_finding(),
       world_view_finding(),
       python_finding(),
       image_finding(),

@@ -8,7 +8,7 @@ usage() {
   cat <<'USAGE'
 usage: scripts/install_packages.sh [--demo | --test | --fuzz]
   --demo   without the packages for tests, benchmarks, the check against mrcal, the import of meshes, the
-           rendering of images and the 3-D view of worlds
+           rendering of images, the 3-D view of worlds, figures as PDF and studies on several processes (MPI)
   --test   with the additional packages of the test script: clang-format, clang-tidy, git,
            Python, Chromium, mrcal, COLMAP
   --fuzz   with clang and libFuzzer, for scripts/fuzz.sh
@@ -39,9 +39,9 @@ packages=(
   libsqlite3-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev
   libhwy-dev libyaml-dev libboost-dev libjpeg-dev libpng-dev esbuild
 )
-if [[ $scope != demo ]]; then packages+=(libassimp-dev libembree-dev libjs-three libgtest-dev libbenchmark-dev libmrcal-dev); fi
+if [[ $scope != demo ]]; then packages+=(libassimp-dev libembree-dev libjs-three libopenmpi-dev librsvg2-bin libgtest-dev libbenchmark-dev libmrcal-dev); fi
 if [[ $scope == test ]]; then
-  packages+=(clang-format clang-tidy git python3 chromium python3-mrcal colmap locales)
+  packages+=(clang-format clang-tidy git python3 python3-pandas chromium python3-mrcal colmap locales)
 fi
 if [[ $scope == fuzz ]]; then packages+=(clang-14 libclang-rt-14-dev); fi
 

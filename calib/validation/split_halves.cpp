@@ -21,7 +21,7 @@
 namespace vernier::internal {
 namespace {
 
-constexpr std::size_t fewest_frames = 6;
+constexpr std::size_t fewest_to_split = 6;
 
 struct ComparedHalves {
   RigDifference honest, mvb;
@@ -59,7 +59,7 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
                                        const SplitHalvesOptions& options,
                                        const std::function<void(int done, int total)>& progress) {
   const std::vector<int> frames = frames_of(observations);
-  if (frames.size() < fewest_frames) {
+  if (frames.size() < fewest_to_split) {
     throw Error("halves", "needs at least six frames", "give more views");
   }
   const auto count = static_cast<std::size_t>(options.splits);

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -45,6 +46,11 @@ int write_all(int descriptor, std::string_view text, int wait_ms) noexcept {
   return 0;
 }
 
+std::atomic<bool>& silent() {
+  static std::atomic<bool> flag = false;
+  return flag;
+}
+
 bool is_open(int descriptor) { return ::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF; }
 
 }  // namespace
@@ -56,7 +62,10 @@ void open_missing_streams() noexcept {
   if (!is_open(STDERR_FILENO)) ::open("/dev/null", O_WRONLY);
 }
 
+void be_silent() noexcept { silent() = true; }
+
 void say(std::string_view text) noexcept {
+  if (silent()) return;
   constexpr int longest_wait_ms = 1000;
   write_all(STDERR_FILENO, text, longest_wait_ms);
 }

@@ -17,6 +17,9 @@ void open_missing_streams() noexcept;
 /// changes no result and no exit code.
 void say(std::string_view text) noexcept;
 
+/// From then on say() does nothing: for a process beside the one that speaks for all.
+void be_silent() noexcept;
+
 /// Writes a result to standard output, completely. Throws Error if that fails; where the reader of
 /// a pipe has gone the program ends by SIGPIPE as others do, or throws if that signal is ignored.
 void print_result(std::string_view text);

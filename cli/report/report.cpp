@@ -1,28 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "calib/base/atomic_file.h"
 #include "calib/base/error_place.h"
 #include "calib/base/instruction_set.h"
+#include "calib/base/output_files.h"
 #include "calib/error.h"
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
+#include "cli/program/machine.h"
 #include "cli/program/output_check.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
+#include "cli/report/figure_svg.h"
 #include "cli/report/report_calibration.h"
 #include "cli/report/report_data.h"
 #include "cli/report/report_evaluation.h"
+#include "cli/report/study_figures.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
 #include "sim/study/study.h"
-#include "sim/study/study_store.h"
 
 namespace vernier::cli {
 namespace {
@@ -31,13 +36,14 @@ namespace fs = std::filesystem;
 
 struct ReportArguments {
   std::vector<std::string> inputs, calibrations;
-  std::string title, output;
+  std::string title, output, figures;
   bool no_proof = false;
 };
 
-/// Inputs of the page: at most one study, at most one evaluation of matchers, and rig files.
+/// Inputs of the page: studies, at most one evaluation of matchers, and rig files.
 struct Inputs {
-  std::string study, evaluation;
+  std::vector<std::string> studies;
+  std::string evaluation;
   std::vector<std::string> rigs;
 };
 
@@ -54,19 +60,24 @@ Inputs inputs_of(const ReportArguments& options) {
     } else if (!fs::exists(fs::path(name) / "study.toml")) {
       throw Error(name, "is neither a study folder nor an evaluation folder",
                   "give a folder written by vernier study -o or vernier evaluate -o");
-    } else if (inputs.study.empty()) {
-      inputs.study = name;
     } else {
-      throw Error(name, "is a second study", "give one per page");
+      inputs.studies.push_back(name);
     }
   }
   inputs.rigs.insert(inputs.rigs.end(), options.calibrations.begin(), options.calibrations.end());
   return inputs;
 }
 
-void add_study(const std::string& folder, Session& session, Validation proof, Json& data) {
-  const Study study = open_folder(folder, session);
-  const StudyResults results = study_results(study, folder);
+struct LoadedStudy {
+  std::string folder;
+  Study study;
+  StudyResults results;
+};
+
+LoadedStudy load(const std::string& folder, Session& session) {
+  LoadedStudy loaded{folder, open_folder(folder, session), {}};
+  loaded.results = study_results(loaded.study, folder);
+  const StudyResults& results = loaded.results;
   if (results.blocks_done == 0) {
     throw Error(folder, "contains no finished block", "run the study first");
   }
@@ -74,12 +85,36 @@ void add_study(const std::string& folder, Session& session, Validation proof, Js
     session.add_trust_warning(fmt::format("the study is not finished: {} of {} blocks",
                                           results.blocks_done, results.blocks_total));
   }
-  data["study"] = report_study(study, results);
-  data["world"] = report_world(study.world);
-  data["view"] = report_view(study);
-  data["rigs"].push_back(report_rig(study.rig, study.file.rig, proof, session));
-  for (const auto& [file, told] : study.told_rigs) {
-    data["rigs"].push_back(report_rig(told.estimate, file, proof, session));
+  return loaded;
+}
+
+/// What the page says of one study.
+Json study_part(const LoadedStudy& loaded) {
+  return {{"name", loaded.folder},
+          {"study", report_study(loaded.study, loaded.results)},
+          {"world", report_world(loaded.study.world)},
+          {"view", report_view(loaded.study)}};
+}
+
+/// One study makes the page; several stand below each other. A rig of several is shown once.
+void add_studies(const std::vector<LoadedStudy>& studies,
+                 Session& session,
+                 Validation proof,
+                 Json& data) {
+  std::set<std::string> rigs;
+  for (const LoadedStudy& loaded : studies) {
+    Json part = study_part(loaded);
+    if (studies.size() == 1) {
+      for (const char* key : {"study", "world", "view"}) data[key] = std::move(part[key]);
+    } else {
+      data["studies"].push_back(std::move(part));
+    }
+    if (!rigs.insert(loaded.study.rig_fingerprint).second) continue;
+    data["rigs"].push_back(report_rig(loaded.study.rig, loaded.study.file.rig, proof, session));
+    for (const auto& [file, told] : loaded.study.told_rigs) {
+      if (!rigs.insert(told.fingerprint).second) continue;
+      data["rigs"].push_back(report_rig(told.estimate, file, proof, session));
+    }
   }
 }
 
@@ -91,9 +126,9 @@ struct NamedRig {
 /// All input files of the page.
 std::vector<fs::path> files_read(const Inputs& inputs) {
   std::vector<fs::path> files;
-  if (!inputs.study.empty()) {
-    files = store_files(inputs.study);
-    for (fs::path& file : input_files(inputs.study)) files.push_back(std::move(file));
+  for (const std::string& study : inputs.studies) {
+    const std::vector<fs::path> more = study_folder_files(study);
+    files.insert(files.end(), more.begin(), more.end());
   }
   if (!inputs.evaluation.empty()) {
     const std::vector<fs::path> more = evaluation_files(inputs.evaluation);
@@ -124,9 +159,39 @@ void add_rig(const NamedRig& rig, const Session& session, Validation proof, Json
   }
 }
 
+/// Figures for papers of each study: DIR/success.svg and .pdf, of several studies in a folder each.
+std::vector<std::string> add_figures(const std::vector<LoadedStudy>& studies,
+                                     const fs::path& folder,
+                                     Session& session,
+                                     OutputFiles& outputs) {
+  std::vector<std::string> files;
+  bool has_pdf = true;
+  outputs.add_folder(folder);
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    const fs::path into = studies.size() == 1 ? folder : folder / fmt::format("study-{}", i + 1);
+    outputs.add_folder(into);
+    for (const auto& [name, figure] : study_figures(studies[i].results)) {
+      const std::string svg = figure_svg(figure);
+      outputs.add(into / (name + ".svg"), svg);
+      files.push_back((into / (name + ".svg")).string());
+      if (!has_pdf) continue;
+      const std::optional<std::string> pdf = svg_as_pdf(svg);
+      has_pdf = pdf.has_value();
+      if (!pdf) continue;
+      outputs.add(into / (name + ".pdf"), *pdf);
+      files.push_back((into / (name + ".pdf")).string());
+    }
+  }
+  if (!has_pdf) {
+    session.warn("figures are SVG only: PDF needs rsvg-convert (Debian's package librsvg2-bin)");
+  }
+  return files;
+}
+
 std::string title_of(const ReportArguments& options, const Inputs& inputs) {
   if (!options.title.empty()) return options.title;
-  if (!inputs.study.empty()) return "Localisation under calibration error";
+  if (inputs.studies.size() > 1) return "Studies of localisation under calibration error";
+  if (!inputs.studies.empty()) return "Localisation under calibration error";
   if (!inputs.evaluation.empty()) return "Stereo matchers at edges";
   return inputs.rigs.size() > 1 ? "Calibrations and their uncertainty"
                                 : "Calibration and its uncertainty";
@@ -142,28 +207,42 @@ void run(const ReportArguments& options, Session& session) {
   const Inputs inputs = inputs_of(options);
   const std::vector<NamedRig> rigs = read_rigs(inputs.rigs, session);
   check_output_is_not_input(files_read(inputs), options.output);
+  if (!options.figures.empty() && inputs.studies.empty()) {
+    throw Error("--figures", "no study is given, whose figures they would be",
+                "give a folder written by vernier study -o");
+  }
   const Validation proof = options.no_proof ? Validation::skip : Validation::make;
   Json data{{"title", title_of(options, inputs)}};
   data["program"] = {{"version", VERNIER_VERSION},
                      {"instruction_set", instruction_set()},
+                     {"machine", program_and_machine()},
                      {"command", session.command}};
   data["rigs"] = Json::array();
-  if (!inputs.study.empty()) add_study(inputs.study, session, proof, data);
+  std::vector<LoadedStudy> studies;
+  for (const std::string& folder : inputs.studies) studies.push_back(load(folder, session));
+  add_studies(studies, session, proof, data);
   if (!inputs.evaluation.empty()) data["evaluation"] = report_evaluation(inputs.evaluation);
   for (const NamedRig& rig : rigs) {
     with_errors_of(rig.file, [&] { add_rig(rig, session, proof, data); });
   }
   const std::string page = assemble_page(page_folder, data);
   const bool plots = has_plots(page_folder);
-  write_atomically(options.output, page);
+  OutputFiles outputs;
+  outputs.add(options.output, page);
+  std::vector<std::string> figures;
+  if (!options.figures.empty()) figures = add_figures(studies, options.figures, session, outputs);
+  outputs.commit();
   if (!plots) {
     session.warn(
         "the page has tables but no plots: vernier was built without plots (see vernier doctor)");
   }
-  session.result(
-      {{"output", options.output}, {"bytes", page.size()}, {"rigs", inputs.rigs}, {"plots", plots}},
-      fmt::format("{} ({:.1f} MB, self-contained{})\n", options.output,
-                  static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
+  session.result({{"output", options.output},
+                  {"bytes", page.size()},
+                  {"rigs", inputs.rigs},
+                  {"plots", plots},
+                  {"figures", figures}},
+                 fmt::format("{} ({:.1f} MB, self-contained{})\n", options.output,
+                             static_cast<double>(page.size()) / 1e6, plots ? "" : ", no plots"));
 }
 
 }  // namespace
@@ -175,13 +254,15 @@ void add_report(CLI::App& app, Session& session) {
                "write a self-contained HTML report of a study, an evaluation or calibrations",
                "vernier report rig.json -o report.html");
   verb->add_option("input", o->inputs,
-                   "study folder, evaluation folder, or rig files; several are allowed")
+                   "study folders, an evaluation folder, or rig files; several are allowed")
       ->required();
   verb->add_option("--calibration", o->calibrations, "additional rig file to show (repeatable)");
   verb->add_flag(
       "--no-proof", o->no_proof,
       "skip cross-validation (lens models and held-out boards), which takes some seconds per rig");
   verb->add_option("--title", o->title, "page title");
+  verb->add_option("--figures", o->figures,
+                   "folder for the figures of studies as SVG and PDF, for papers");
   verb->add_option("-o,--output", o->output, "HTML file")->required();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/atomic_file.h"
 #include "calib/error.h"
@@ -14,6 +16,7 @@
 #include "cli/program/session.h"
 #include "cli/simulation/observation_json.h"
 #include "cli/simulation/study_folder.h"
+#include "cli/simulation/study_table.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
 #include "sim/mount_error.h"
@@ -45,6 +48,17 @@ Json trial_json(const TrialResult& t) {
   return row;
 }
 
+/// Swept keys in their order, as they are called in plots.
+Json swept_keys_json(const StudyResults& results) {
+  Json keys = Json::array();
+  const std::vector<std::string> swept = swept_keys(results);
+  for (const std::string& key : swept) {
+    keys.push_back(
+        {{"key", key}, {"label", key == "sources.calibration" ? "ψ_c" : short_key(key, swept)}});
+  }
+  return keys;
+}
+
 }  // namespace
 
 Json report_study(const Study& study, const StudyResults& results) {
@@ -57,7 +71,9 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"world_ceiling",
              results.cells[0].ceiling ? Json(results.cells[0].ceiling->success) : Json(nullptr)},
             {"commands", results.commands},
+            {"machines", results.machines},
             {"sweep", nullptr},
+            {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
   for (std::size_t i = 0; i < results.cells.size(); ++i) {

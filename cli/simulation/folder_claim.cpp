@@ -40,12 +40,6 @@ void write_inputs(const fs::path& folder, const StudyInputs& inputs) {
   files.commit();
 }
 
-bool holds_results(const StoreContent& content) {
-  return !content.blocks.empty() || content.interrupted ||
-         std::any_of(content.notes.begin(), content.notes.end(),
-                     [](const auto& note) { return note.first.rfind("ceiling", 0) == 0; });
-}
-
 }  // namespace
 
 FolderClaim::FolderClaim(const Study& wanted, StudyInputs inputs, fs::path folder)
@@ -110,7 +104,7 @@ void FolderClaim::extend() const {
 void FolderClaim::remove_empty_store(const fs::path& store) const {
   const bool was_there =
       std::find(stores_before_.begin(), stores_before_.end(), store) != stores_before_.end();
-  if (was_there || (fs::is_regular_file(store) && holds_results(read_store(store)))) return;
+  if (was_there || (fs::is_regular_file(store) && holds_results(read_index(store)))) return;
   for (const char* end : {"", "-wal", "-shm", "-journal"}) {
     const fs::path one = store.string() + end;
     if (fs::is_regular_file(one)) fs::remove(one);

@@ -10,14 +10,18 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "cli/program/ending_signals.h"
+#include "cli/program/machine.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/shard_choice.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_merge.h"
+#include "cli/simulation/study_processes.h"
+#include "cli/simulation/study_table.h"
 #include "sim/sources.h"
 #include "sim/study/cell_summary.h"
+#include "sim/study/instruction_sets.h"
 
 namespace vernier::cli {
 namespace {
@@ -28,6 +32,12 @@ struct StudyArguments {
   std::vector<std::string> words;  ///< FILE, or status DIR, or merge DIR…
   std::string folder, shard;
   int threads = 0;
+  bool allow_other_instruction_set = false;
+
+  OtherInstructionSets other_instruction_sets() const {
+    return allow_other_instruction_set ? OtherInstructionSets::allowed
+                                       : OtherInstructionSets::refused;
+  }
 };
 
 void print(const Study& study, const fs::path& folder, Session& session) {
@@ -88,15 +98,21 @@ void run(const StudyArguments& options, Session& session) {
     throw Error("study", "no output folder given", "give -o DIR");
   }
   const fs::path file = options.words[0];
+  StudyProcesses processes;
+  if (processes.only_computes()) return processes.compute(file, options.threads, session);
   StudyRun job;
   job.folder = options.folder;
-  job.threads = options.threads;
+  job.threads = processes.threads(options.threads);
+  job.ranks = processes.others();
   job.shard = shard_choice(options.shard);
   job.command = session.command;
+  job.machine = program_and_machine();
+  job.other_instruction_sets = options.other_instruction_sets();
   const Study study = load_study(file, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };
   run_in(claim, study, job, session);
+  processes.end();
   print(study, job.folder, session);
 }
 
@@ -104,15 +120,18 @@ void merge(const StudyArguments& options, Session& session) {
   if (options.folder.empty() || options.words.size() < 2) {
     throw Error("study merge", "give the folders to merge and -o DIR", "");
   }
-  merge_studies({options.words.begin() + 1, options.words.end()}, options.folder, session);
+  merge_studies({options.words.begin() + 1, options.words.end()}, options.folder,
+                options.other_instruction_sets(), session);
 }
 
 void dispatch(const StudyArguments& options, Session& session) {
   const std::string& first = options.words[0];
+  if (first == "status" || first == "merge") refuse_several_processes("study " + first);
   if (first == "status") {
     if (options.words.size() != 2) throw Error("study status", "give one folder", "");
-    if (!options.folder.empty() || !options.shard.empty()) {
-      throw Error("study status", "takes neither -o nor --shard", "leave them out");
+    if (!options.folder.empty() || !options.shard.empty() || options.allow_other_instruction_set) {
+      throw Error("study status", "takes neither -o nor --shard nor --allow-other-instruction-set",
+                  "leave them out");
     }
     print(open_folder(options.words[1], session), options.words[1], session);
   } else if (first == "merge") {
@@ -120,6 +139,16 @@ void dispatch(const StudyArguments& options, Session& session) {
   } else {
     if (options.words.size() != 1) throw Error("study", "give one study file", "");
     run(options, session);
+  }
+}
+
+/// Of several processes rank 0 alone says what is wrong, and has the exit code of all: where
+/// another ends with an error, mpirun may end rank 0 before it could say so.
+void act(const StudyArguments& options, Session& session) {
+  if (!silence_other_process()) return dispatch(options, session);
+  try {
+    dispatch(options, session);
+  } catch (const Error&) {  // rank 0 has the same, or was told
   }
 }
 
@@ -139,7 +168,9 @@ void add_study(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--shard", o->shard,
                    "run part i of n, such as 0/4 (default: from Slurm's array variables)");
-  verb->callback([o, &session] { session.action = [=, &session] { dispatch(*o, session); }; });
+  verb->add_flag("--allow-other-instruction-set", o->allow_other_instruction_set,
+                 "accept results of another kind of processor, though not identical to the bit");
+  verb->callback([o, &session] { session.action = [=, &session] { act(*o, session); }; });
 }
 
 }  // namespace vernier::cli

@@ -3,9 +3,7 @@
 #include "cli/simulation/study_folder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -19,13 +17,17 @@
 #include "calib/rig_estimate.h"
 #include "calib/statistics/distributions.h"
 #include "cli/program/session.h"
+#include "cli/simulation/study_inputs.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/cell_summary.h"
 #include "sim/study/reliability.h"
 #include "sim/study/study.h"
 #include "sim/study/study_file.h"
+#include "sim/study/study_store.h"
 #include "sim/study/told_settings.h"
+#include "sim/study/world_summary.h"
 #include "sim/told/fresh_calibrations.h"
 
 namespace vernier::cli {
@@ -78,6 +80,21 @@ Json rig_json(const Study& study) {
   return json;
 }
 
+/// Success over swept worlds; empty if there are none.
+Json over_worlds_json(const StudyResults& results) {
+  Json json = Json::array();
+  for (const WorldSummary& s : summarise_over_worlds(results.cells)) {
+    const std::optional<Interval>& interval = s.success_interval_95;
+    json.push_back(
+        {{"label", s.label},
+         {"worlds", s.worlds},
+         {"success", s.worlds > 0 ? Json(s.success) : Json()},
+         {"success_interval_95", interval ? Json{interval->low, interval->high} : Json()},
+         {"success_interval_95_missing", interval ? Json() : Json(s.why_no_interval)}});
+  }
+  return json;
+}
+
 /// What became of the calibrations of a cell; null without any.
 Json calibrations_json(const std::optional<CalibrationRecord>& record) {
   if (!record) return {};
@@ -92,6 +109,21 @@ Json calibrations_json(const std::optional<CalibrationRecord>& record) {
 }
 
 }  // namespace
+
+std::vector<fs::path> study_folder_files(const fs::path& folder) {
+  std::vector<fs::path> files = store_files(folder);
+  for (fs::path& file : input_files(folder)) files.push_back(std::move(file));
+  return files;
+}
+
+std::string shard_options(const std::vector<Shard>& shards) {
+  constexpr std::size_t most = 10;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, shards.size()); ++i) {
+    text += fmt::format("{}--shard {}/{}", i > 0 ? ", " : "", shards[i].index, shards[i].count);
+  }
+  return shards.size() > most ? text + fmt::format(" and {} more", shards.size() - most) : text;
+}
 
 std::string short_label(const StudyCell& cell) {
   std::string label = cell.label;
@@ -111,13 +143,18 @@ Json cell_json(const CellResult& cell) {
   const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
   const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
   const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
+  Json swept = Json::object();
+  for (const auto& [key, value] : cell.cell.swept) swept[key] = value_json(value);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
+          {"swept", swept},
           {"trials", s.trials},
           {"success", of_trials(s.success)},
           {"maps", s.maps},
           {"success_interval_95", clustered},
           {"success_interval_95_missing", missing},
+          {"interval_width_wanted", cell.interval_width ? Json(*cell.interval_width) : Json()},
+          {"stopped", cell.interval_width ? Json(name(cell.budget.state)) : Json()},
           {"success_interval_binomial_95",
            s.trials > 0 ? pair(s.success_interval_binomial_95) : Json()},
           {"coverage", of_trials(s.coverage)},
@@ -149,19 +186,10 @@ Json cell_json(const CellResult& cell) {
 
 Json comparisons_json(const StudyResults& results) {
   Json comparisons = Json::array();
-  const std::vector<std::pair<std::size_t, std::size_t>> pairs = comparable_pairs(results.cells);
-  std::vector<PairedComparison> compared;
-  std::vector<double> p_values;
-  for (const auto& [a, b] : pairs) {
-    compared.push_back(compare(results.cells[a], results.cells[b]));
-    p_values.push_back(compared.back().p_value);
-  }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto& [a, b] = pairs[i];
-    const PairedComparison& c = compared[i];
-    comparisons.push_back({{"a", short_label(results.cells[a].cell)},
-                           {"b", short_label(results.cells[b].cell)},
+  for (const AdjustedComparison& pair : compare_all(results.cells)) {
+    const PairedComparison& c = pair.paired;
+    comparisons.push_back({{"a", short_label(results.cells[pair.a].cell)},
+                           {"b", short_label(results.cells[pair.b].cell)},
                            {"both", c.both},
                            {"only_a", c.only_a},
                            {"only_b", c.only_b},
@@ -169,7 +197,7 @@ Json comparisons_json(const StudyResults& results) {
                            {"maps", c.maps},
                            {"test", "paired t over maps"},
                            {"p_value", json_number(c.p_value)},
-                           {"p_value_holm", json_number(adjusted[i])},
+                           {"p_value_holm", json_number(pair.p_holm)},
                            {"mcnemar_p", json_number(c.mcnemar_p)}});
   }
   return comparisons;
@@ -180,112 +208,16 @@ Json study_json(const Study& study, const StudyResults& results) {
             {"rig", rig_json(study)},
             {"blocks_done", results.blocks_done},
             {"blocks_total", results.blocks_total},
+            {"instruction_sets", results.instruction_sets},
+            {"missing_shards", Json::array()},
             {"cells", Json::array()}};
+  for (const Shard& shard : results.missing_shards) {
+    json["missing_shards"].push_back(fmt::format("{}/{}", shard.index, shard.count));
+  }
   for (const CellResult& cell : results.cells) json["cells"].push_back(cell_json(cell));
+  json["over_worlds"] = over_worlds_json(results);
   json["comparisons"] = comparisons_json(results);
   return json;
-}
-
-namespace {
-
-std::string interval_text(const std::optional<Interval>& interval) {
-  if (!interval) return "none";
-  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * interval->low, 100 * interval->high);
-}
-
-std::string world_names(const Study& study) {
-  std::vector<std::string> names;
-  for (const std::string& file : worlds_of(study.file)) {
-    names.push_back(file == study.file.world ? study.world.name
-                                             : study.other_worlds.at(file).world.name);
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// What the estimator is told of the true rig.
-std::string rig_text(const Study& study) {
-  const auto covariance = [](const RigEstimate& rig) {
-    return rig.covariance
-               ? fmt::format("covariance (scaled by psi_c) of kind {}", name(rig.covariance->kind))
-               : std::string("no covariance");
-  };
-  const ToldSettings& told = study.file.cells[0].told;
-  if (told.calibration) {
-    return fmt::format("true rig {}; told: a fresh calibration for each trial and each map\n",
-                       study.file.rig);
-  }
-  if (told.truth.empty()) {
-    return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));
-  }
-  std::string text = fmt::format("true rig {}\n", study.file.rig);
-  for (const std::string& file : told_rigs_of(study.file)) {
-    text += fmt::format("told rig {}: {}\n", file, covariance(study.told_rigs.at(file).estimate));
-  }
-  return text;
-}
-
-/// A line for each cell with [calibration].
-std::string calibrations_text(const StudyResults& results) {
-  std::string text;
-  for (const CellResult& cell : results.cells) {
-    if (!cell.calibrations) continue;
-    const CalibrationRecord& c = *cell.calibrations;
-    text += fmt::format(
-        "calibrations from {} views: {} of {} failed, {} more are doubted; depth at {:g} m: rms "
-        "error {:.3g} m, stated {:.3g} m\n",
-        cell.cell.told.calibration->views, c.failed, c.calibrations, c.doubtful, c.range_m,
-        c.depth_error_m, c.depth_sd_m);
-    if (!c.why_failed.empty()) text += fmt::format("  failed: {}\n", c.why_failed);
-    if (!c.why_doubtful.empty()) text += fmt::format("  doubted: {}\n", c.why_doubtful);
-  }
-  return text;
-}
-
-/// A number with its unit, a dash where there is none: shards have a part of a ceiling's queries
-/// each, and a cell without trials or answers has no times or errors.
-std::string figure(double value, int digits, const char* unit = "") {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}{}", value, digits, unit);
-}
-
-}  // namespace
-
-std::string study_table(const Study& study, const StudyResults& results) {
-  const bool swept = !study.file.sweep_keys.empty();
-  std::string text =
-      fmt::format("{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-                  swept ? "cell" : "", "trials", "success", "95 % interval", "answered", "of these",
-                  "ceiling", "95 % interval", "unaliased", "median m", "cpu ms", "p95 ms");
-  std::set<std::string> missing;
-  for (const CellResult& cell : results.cells) {
-    const CellSummary s = summarise(cell);
-    if (!s.success_interval_95) missing.insert(s.why_no_interval);
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    const double of_trials = s.trials > 0 ? 1 : nan;
-    text += fmt::format(
-        "{:<24} {:>6} {:>8} {:>15} {:>8} {:>9} {:>8} {:>15} {:>9} {:>9} {:>9} {:>9}\n",
-        swept ? cell.cell.label.substr(cell.cell.label.find('.') + 1) : "", s.trials,
-        figure(of_trials * 100 * s.success, 2, " %"), interval_text(s.success_interval_95),
-        figure(of_trials * 100 * s.coverage, 1, " %"),
-        figure(of_trials * 100 * s.success_when_answered, 2, " %"),
-        figure(cell.ceiling ? 100 * cell.ceiling->success : nan, 1, " %"),
-        cell.ceiling ? interval_text(cell.ceiling->success_interval_95) : "-",
-        figure(cell.ceiling ? 100 * cell.ceiling->unaliased : nan, 1, " %"),
-        figure(s.median_error_m, 3), figure(of_trials * s.cpu_ms_mean, 1), figure(s.cpu_ms_p95, 1));
-  }
-  const auto& keys = study.file.sweep_keys;
-  const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
-  const auto protocol = name(study.file.cells[0].experiment.protocol);
-  text += rig_text(study) + calibrations_text(results);
-  text +=
-      fmt::format("{}world {}; success: within 1 m; interval: Wilson, clustered by recorded map\n",
-                  swept_protocol ? "" : fmt::format("protocol {}, ", protocol), world_names(study));
-  for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
-  if (results.blocks_done == 0) text += "no trials are stored yet\n";
-  if (results.blocks_done < results.blocks_total) {
-    text += fmt::format("{} of {} blocks done: run the study again to finish it\n",
-                        results.blocks_done, results.blocks_total);
-  }
-  return text;
 }
 
 }  // namespace vernier::cli

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "cli/program/session.h"
 #include "sim/study/study.h"
@@ -11,13 +12,18 @@
 
 namespace vernier::cli {
 
+/// The files of a study's folder that are read, which no output may replace.
+std::vector<std::filesystem::path> study_folder_files(const std::filesystem::path& folder);
+
 /// A cell's settings and statistics.
 Json cell_json(const CellResult& cell);
 /// Compares each cell with the closest previous one that has the same queries; p-values unadjusted
 /// and adjusted by Holm's method.
 Json comparisons_json(const StudyResults& results);
 Json study_json(const Study& study, const StudyResults& results);
-std::string study_table(const Study& study, const StudyResults& results);
+
+/// "--shard 1/4, --shard 3/4", of many the first ten.
+std::string shard_options(const std::vector<Shard>& shards);
 
 /// "ψ_c = 1" for a sweep of the calibration error, otherwise the cell's label.
 std::string short_label(const StudyCell& cell);

@@ -2,20 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/simulation/study_merge.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
 #include "cli/simulation/study_folder.h"
 #include "cli/simulation/study_inputs.h"
+#include "cli/simulation/study_table.h"
+#include "sim/study/instruction_sets.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study.h"
 #include "sim/study/study_difference.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
+#include "sim/study/study_work.h"
 
 namespace vernier::cli {
 
@@ -23,17 +30,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void add_folder(const fs::path& folder, StoredResults& all) {
-  for (const auto& file : store_files(folder)) all.add(read_store(file), file);
-  all.require_all_read();
-}
+constexpr std::size_t rows_at_a_time = 200;  // committed together
 
 /// Throws Error unless all parts belong to the same study.
 StoredResults read_parts(const std::vector<fs::path>& parts,
                          const fs::path& target,
                          const Study& first,
+                         OtherInstructionSets others,
                          Session& session) {
-  StoredResults all;
+  StoredResults all(others);
   for (const fs::path& part : parts) {
     if (fs::exists(target) && fs::equivalent(part, target)) {
       throw Error(part.string(), "is also the output folder", "give another -o DIR");
@@ -46,26 +51,52 @@ StoredResults read_parts(const std::vector<fs::path>& parts,
                   "is not part of the same study as " + parts[0].string() + ": " + why,
                   "merge only parts of one study");
     }
-    add_folder(part, all);
+    all.add_folder(part);
+    all.require_all_read();
   }
   return all;
 }
 
+/// Copies the blocks of one store that are the best of all.
+void copy_blocks(const fs::path& file, const StoredResults& all, StudyStore& merged) {
+  std::vector<BlockRow> rows;
+  const auto put = [&] {
+    merged.put(rows);
+    rows.clear();
+  };
+  visit_store(file, [&](const BlockRow& row) {
+    if (!all.is_best(file, row.cell, row.block)) return;
+    rows.push_back(row);
+    if (rows.size() == rows_at_a_time) put();
+  });
+  put();
+}
+
 }  // namespace
 
-void merge_studies(const std::vector<fs::path>& parts, const fs::path& target, Session& session) {
+void merge_studies(const std::vector<fs::path>& parts,
+                   const fs::path& target,
+                   OtherInstructionSets others,
+                   Session& session) {
   const Study study = open_folder(parts[0], session);
-  StoredResults all = read_parts(parts, target, study, session);
-  add_folder(target, all);
+  StoredResults all = read_parts(parts, target, study, others, session);
+  all.add_folder(target);
+  all.require_all_read();
+  all.check_agreement();
+  const std::vector<Shard> missing = missing_shards(study, study_work(study), all);
   for (const StudyCell& cell : study.file.cells) {  // throws if parts disagree on a ceiling
-    noted_queries(study, all.notes, ceiling_key(study, cell));
+    noted_queries(study, all.notes(), ceiling_key(study, cell));
   }
   const FolderClaim claim(study, inputs_of_folder(parts[0]), target);
   try {
-    StudyStore merged(store_file(target, {}));
+    const fs::path file = store_file(target, {});
+    // what this processor is does not matter: nothing is computed here
+    StudyStore merged(file, OtherInstructionSets::allowed);
     claim.extend();
-    for (const auto& [key, block] : all.blocks) merged.put(block);
-    for (const auto& [key, value] : all.notes) merged.set_note(key, value);
+    for (const auto& [key, value] : all.notes()) merged.set_note(key, value);
+    for (const fs::path& from : all.files()) {
+      if (from != file) copy_blocks(from, all, merged);
+    }
     merged.set_note(command_key(session.command), session.command);
   } catch (...) {
     claim.withdraw({});
@@ -73,9 +104,15 @@ void merge_studies(const std::vector<fs::path>& parts, const fs::path& target, S
   }
   const StudyResults results = study_results(study, target);
   if (results.blocks_done < results.blocks_total) {
-    session.add_trust_warning(fmt::format("{} of {} blocks are missing from the merged study",
-                                          results.blocks_total - results.blocks_done,
-                                          results.blocks_total));
+    session.add_trust_warning(
+        fmt::format("{} of {} blocks are missing from the merged study{}",
+                    results.blocks_total - results.blocks_done, results.blocks_total,
+                    missing.empty() ? "" : "; run " + shard_options(missing) + " and merge again"));
+  }
+  if (results.blocks_done == results.blocks_total && !missing.empty()) {
+    session.add_trust_warning(
+        "queries of the world ceiling are missing from the merged study; run " +
+        shard_options(missing) + " and merge again");
   }
   session.result(study_json(study, results), study_table(study, results));
 }

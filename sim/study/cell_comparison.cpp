@@ -11,6 +11,7 @@
 #include "calib/statistics/distributions.h"
 #include "localise/place.h"
 #include "sim/experiment.h"
+#include "sim/study/one_at_a_time.h"
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
 
@@ -83,13 +84,27 @@ std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const std::vector<CellResult>& cells) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t b = 1; b < cells.size(); ++b) {
+    const bool designed = has_design(cells[b].cell);
     for (std::size_t a = b; a-- > 0;) {
+      if (designed && !is_reference_of(cells[a].cell, cells[b].cell)) continue;
       if (!share_queries(cells[a], cells[b])) continue;
       pairs.emplace_back(a, b);
       break;
     }
   }
   return pairs;
+}
+
+std::vector<AdjustedComparison> compare_all(const std::vector<CellResult>& cells) {
+  std::vector<AdjustedComparison> all;
+  std::vector<double> p_values;
+  for (const auto& [a, b] : comparable_pairs(cells)) {
+    all.push_back({a, b, compare(cells[a], cells[b])});
+    p_values.push_back(all.back().paired.p_value);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
+  return all;
 }
 
 }  // namespace vernier::sim::internal

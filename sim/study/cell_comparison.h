@@ -28,8 +28,20 @@ struct PairedComparison {
 /// Throws Error if the cells do not share their queries.
 PairedComparison compare(const CellResult& a, const CellResult& b);
 
-/// Pairs of cells to compare: each with the nearest earlier one that shares its queries.
+/// Pairs of cells to compare: each with the nearest earlier one that shares its queries; of the
+/// designs of one_at_a_time.h, with its reference.
 std::vector<std::pair<std::size_t, std::size_t>> comparable_pairs(
     const std::vector<CellResult>& cells);
+
+/// Two of a study's cells, by index, and their p-value adjusted for the number of comparisons that
+/// have one, by Holm's method (Scandinavian Journal of Statistics 6, 1979); NaN without one.
+struct AdjustedComparison {
+  std::size_t a = 0, b = 0;
+  PairedComparison paired;
+  double p_holm = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The comparisons of comparable_pairs().
+std::vector<AdjustedComparison> compare_all(const std::vector<CellResult>& cells);
 
 }  // namespace vernier::sim::internal

@@ -14,6 +14,7 @@
 #include "calib/statistics/quantile.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/study.h"
 #include "sim/study/success_interval.h"
 
@@ -59,6 +60,9 @@ CellSummary summarise(const CellResult& cell) {
   s.success = successes / n;
   s.success_interval_binomial_95 = wilson_interval(successes, s.trials);
   s.success_interval_95 = clustered_interval_95(cell.maps);
+  if (cell.interval_width && s.success_interval_95) {
+    s.success_interval_95 = anytime_interval_95(cell.maps);  // the one that it stops by
+  }
   if (!s.success_interval_95) {
     s.why_no_interval = fmt::format("needs {} maps, has {}", fewest_maps, s.maps);
   }

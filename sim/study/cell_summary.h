@@ -15,7 +15,9 @@ struct CellSummary {
   int trials = 0;
   int maps = 0;  ///< number of recorded maps
   double success = 0;
-  std::optional<Interval> success_interval_95;  ///< clustered by map (success_interval.h)
+  /// Clustered by map (success_interval.h); where the study stops by its width, the one that may be
+  /// looked at at any time (budget.h).
+  std::optional<Interval> success_interval_95;
   std::string why_no_interval;            ///< "needs 6 maps, has 1"; empty if there is an interval
   Interval success_interval_binomial_95;  ///< Wilson, as if trials were independent
   double coverage = 0;                    ///< fraction answered

@@ -258,7 +258,7 @@ ExperimentSettings SettingsReader::read_settings(const toml::table& root,
   ExperimentSettings settings;
   settings.sources = sources;
   const toml::table& study = *root.get("study")->as_table();
-  check_keys(study, {"trials", "seed", "protocol"}, "[study]");
+  check_keys(study, {"trials", "interval_width", "seed", "protocol"}, "[study]");
   if (const auto* seed = study.get("seed")) {
     const auto value = integer(*seed, "study.seed");
     if (value < 0) fail(*seed, "study.seed is negative", "use 0 or more");

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/store_rows.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/base/fingerprint.h"
 #include "calib/error.h"
@@ -120,6 +124,19 @@ TrialResult trial_of(const TrialJson& json, const std::string& place) {
 }
 
 }  // namespace
+
+std::array<int, 3> row_counts(const std::vector<TrialResult>& trials) {
+  std::array<int, 3> counted{static_cast<int>(trials.size()), 0, 0};
+  for (const TrialResult& trial : trials) {
+    counted[1] += trial.answered();
+    counted[2] += trial.success();
+  }
+  return counted;
+}
+
+BlockRow block_row(std::string cell, int block, const std::vector<TrialResult>& trials) {
+  return {std::move(cell), block, row_counts(trials), trials_text(trials)};
+}
 
 std::string trials_text(const std::vector<TrialResult>& trials) {
   TrialJson rows = TrialJson::array();

@@ -2,12 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "sim/experiment.h"
 
 namespace vernier::sim::internal {
+
+/// A block as its row in a store holds it.
+struct BlockRow {
+  std::string cell;  ///< key
+  int block = 0;
+  std::array<int, 3> counted{};  ///< trials, those with an answer, successes
+  std::string results;           ///< trials_text()
+};
+
+/// What a row holds of some trials, for users of SQL: how many, with an answer, successes.
+std::array<int, 3> row_counts(const std::vector<TrialResult>& trials);
+
+BlockRow block_row(std::string cell, int block, const std::vector<TrialResult>& trials);
 
 /// The trials of a block as text, from which they are read back to the bit.
 std::string trials_text(const std::vector<TrialResult>& trials);

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <functional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "sim/experiment.h"
 #include "sim/study/store_database.h"
 #include "sim/study/store_rows.h"
@@ -37,37 +38,29 @@ constexpr const char* old_block_table =
     " successes INTEGER, results TEXT, PRIMARY KEY (cell, block))";
 constexpr const char* old_note_table = "CREATE TABLE note (key TEXT PRIMARY KEY, value TEXT)";
 
-/// Number of trials, of those with an answer and of successes, as in the columns for users of SQL.
-std::array<int, 3> counts(const std::vector<TrialResult>& trials) {
-  std::array<int, 3> counted{static_cast<int>(trials.size()), 0, 0};
-  for (const TrialResult& trial : trials) {
-    counted[1] += trial.answered();
-    counted[2] += trial.success();
-  }
-  return counted;
-}
-
-std::string block_checksum(const std::string& cell,
-                           int block,
-                           const std::array<int, 3>& counted,
-                           const std::string& results) {
+std::string block_checksum(const BlockRow& row) {
+  const auto& [cell, block, counted, results] = row;
   return row_checksum({cell, std::to_string(block), std::to_string(counted[0]),
                        std::to_string(counted[1]), std::to_string(counted[2]), results});
 }
 
-/// One row of either version, checked.
-StoredBlock block_of(const Database& database, const Statement& row, bool with_checksum) {
-  const std::string cell = row.text(0), results = row.text(5);
-  const int block = row.whole(1);
-  const std::array<int, 3> counted{row.whole(2), row.whole(3), row.whole(4)};
-  if (with_checksum && row.text(6) != block_checksum(cell, block, counted, results)) {
-    database.fail_damaged(fmt::format("block {} has another checksum", block));
+/// One row of either version with its checksum verified.
+BlockRow checked_row(const Database& database, const Statement& row, bool with_checksum) {
+  BlockRow read{row.text(0), row.whole(1), {row.whole(2), row.whole(3), row.whole(4)}, row.text(5)};
+  if (with_checksum && row.text(6) != block_checksum(read)) {
+    database.fail_damaged(fmt::format("block {} has another checksum", read.block));
   }
-  if (block < 0) database.fail_damaged("a block has a negative number");
+  if (read.block < 0) database.fail_damaged("a block has a negative number");
+  if (read.counted[0] < 1) database.fail_damaged(fmt::format("block {} has no trials", read.block));
+  return read;
+}
+
+StoredBlock block_of(const Database& database, const BlockRow& row) {
   try {
-    StoredBlock read{cell, block, parse_trials(results, fmt::format("block {}", block))};
-    if (counts(read.trials) != counted) {
-      database.fail_damaged(fmt::format("block {} has other trials than it counts", block));
+    StoredBlock read{row.cell, row.block,
+                     parse_trials(row.results, fmt::format("block {}", row.block))};
+    if (row_counts(read.trials) != row.counted) {
+      database.fail_damaged(fmt::format("block {} has other trials than it counts", row.block));
     }
     return read;
   } catch (const Error& error) {
@@ -76,13 +69,27 @@ StoredBlock block_of(const Database& database, const Statement& row, bool with_c
   }
 }
 
+/// Statement over the rows of either version.
+std::string rows_of(int version, const std::string& condition) {
+  return (version == 1 ? "SELECT cell, block, trials, answered, successes, results"
+                         " FROM block NOT INDEXED"
+                       : "SELECT cell, block, trials, answered, successes, results,"
+                         " checksum FROM trial_block") +
+         condition;
+}
+
+void check_pages(const Database& database) {
+  Statement verdict(database, "PRAGMA quick_check(1)");
+  if (!verdict.step() || verdict.text(0) != "ok") {
+    database.fail_damaged("its pages do not fit together");
+  }
+}
+
 void read_blocks(const Database& database, int version, StoreContent& content) {
-  Statement rows(database, version == 1
-                               ? "SELECT cell, block, trials, answered, successes, results"
-                                 " FROM block NOT INDEXED"
-                               : "SELECT cell, block, trials, answered, successes, results,"
-                                 " checksum FROM trial_block");
-  while (rows.step()) content.blocks.push_back(block_of(database, rows, version > 1));
+  Statement rows(database, rows_of(version, ""));
+  while (rows.step()) {
+    content.blocks.push_back(block_of(database, checked_row(database, rows, version > 1)));
+  }
   const auto key = [](const StoredBlock& b) { return std::tie(b.cell, b.block); };
   std::sort(content.blocks.begin(), content.blocks.end(),
             [&](const StoredBlock& a, const StoredBlock& b) { return key(a) < key(b); });
@@ -93,7 +100,7 @@ void read_blocks(const Database& database, int version, StoreContent& content) {
   }
 }
 
-void read_notes(const Database& database, int version, StoreContent& content) {
+void read_notes(const Database& database, int version, StoreNotes& notes) {
   Statement rows(database, version == 1 ? "SELECT key, value FROM note NOT INDEXED"
                                         : "SELECT key, value, checksum FROM remark");
   while (rows.step()) {
@@ -101,9 +108,9 @@ void read_notes(const Database& database, int version, StoreContent& content) {
     if (version > 1 && rows.text(2) != row_checksum({key, value})) {
       database.fail_damaged("a note has another checksum");
     }
-    if (!content.notes.emplace(key, value).second) database.fail_damaged("it has a note twice");
+    if (!notes.emplace(key, value).second) database.fail_damaged("it has a note twice");
   }
-  if (version == 1) content.notes.erase("schema");
+  if (version == 1) notes.erase("schema");
 }
 
 }  // namespace
@@ -152,26 +159,67 @@ StoreContent stored_content(const Database& database) {
   const int version = store_version(database);
   StoreContent content;
   if (version == 0) return content;
-  Statement verdict(database, "PRAGMA quick_check(1)");
-  if (!verdict.step() || verdict.text(0) != "ok")
-    database.fail_damaged("its pages do not fit together");
+  check_pages(database);
   read_blocks(database, version, content);
-  read_notes(database, version, content);
+  read_notes(database, version, content.notes);
   return content;
 }
 
-void store_block(const Database& database, const StoredBlock& block) {
-  const std::array<int, 3> counted = counts(block.trials);
-  const std::string results = trials_text(block.trials);
+StoreIndex stored_index(const Database& database) {
+  const int version = store_version(database);
+  StoreIndex index;
+  if (version == 0) return index;
+  check_pages(database);
+  Statement rows(database, rows_of(version, ""));
+  while (rows.step()) {
+    BlockRow row = checked_row(database, rows, version > 1);
+    const ClusterCount count{.successes = row.counted[2], .trials = row.counted[0]};
+    if (!index.blocks[std::move(row.cell)].emplace(row.block, count).second) {
+      database.fail_damaged("it has a block twice");
+    }
+  }
+  read_notes(database, version, index.notes);
+  return index;
+}
+
+std::vector<StoredBlock> stored_blocks(const Database& database, const BlockRange& range) {
+  const int version = store_version(database);
+  std::vector<StoredBlock> blocks;
+  if (version == 0) return blocks;
+  Statement rows(database,
+                 rows_of(version, " WHERE cell = ? AND block >= ? AND block < ? ORDER BY block"));
+  rows.bind(1, range.cell).bind(2, range.first).bind(3, range.end);
+  while (rows.step()) {
+    blocks.push_back(block_of(database, checked_row(database, rows, version > 1)));
+  }
+  return blocks;
+}
+
+void visit_rows(const Database& database, const std::function<void(const BlockRow&)>& visit) {
+  const int version = store_version(database);
+  if (version == 0) return;
+  Statement rows(database, rows_of(version, ""));
+  while (rows.step()) {
+    const BlockRow row = checked_row(database, rows, version > 1);
+    block_of(database, row);
+    visit(row);
+  }
+}
+
+void store_row(const Database& database, const BlockRow& row) {
   Statement(database, "INSERT OR REPLACE INTO trial_block VALUES (?, ?, ?, ?, ?, ?, ?)")
-      .bind(1, block.cell)
-      .bind(2, block.block)
-      .bind(3, counted[0])
-      .bind(4, counted[1])
-      .bind(5, counted[2])
-      .bind(6, results)
-      .bind(7, block_checksum(block.cell, block.block, counted, results))
+      .bind(1, row.cell)
+      .bind(2, row.block)
+      .bind(3, row.counted[0])
+      .bind(4, row.counted[1])
+      .bind(5, row.counted[2])
+      .bind(6, row.results)
+      .bind(7, block_checksum(row))
       .step();
+}
+
+void store_block(const Database& database, const StoredBlock& block) {
+  store_row(database, block_row(block.cell, block.block, block.trials));
 }
 
 void store_note(const Database& database, const std::string& key, const std::string& value) {

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "sim/study/store_database.h"
+#include "sim/study/store_rows.h"
 #include "sim/study/study_store.h"
 
 namespace vernier::sim::internal {
@@ -19,6 +22,17 @@ void make_store(const Database& database);
 /// Everything in the tables, every row checked. Throws Error at the first that is damaged.
 StoreContent stored_content(const Database& database);
 
+/// Which blocks the tables hold, and all notes. Checks the pages and every row's checksum, not what
+/// the trials say.
+StoreIndex stored_index(const Database& database);
+
+/// The blocks of a range, ascending, every row checked.
+std::vector<StoredBlock> stored_blocks(const Database& database, const BlockRange& range);
+
+/// Calls visit with every row, checked as those of stored_content.
+void visit_rows(const Database& database, const std::function<void(const BlockRow&)>& visit);
+
+void store_row(const Database& database, const BlockRow& row);
 void store_block(const Database& database, const StoredBlock& block);
 void store_note(const Database& database, const std::string& key, const std::string& value);
 

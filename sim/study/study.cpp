@@ -11,32 +11,30 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <memory>
+#include <filesystem>
 #include <mutex>
+#include <optional>
 #include <set>
-#include <stop_token>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "calib/base/error_place.h"
 #include "calib/base/instruction_set.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
-#include "calib/interval.h"
-#include "sim/experiment.h"
-#include "sim/noise_free_view.h"
-#include "sim/study/ceiling.h"
+#include "sim/study/instruction_sets.h"
+#include "sim/study/result_recorder.h"
 #include "sim/study/stored_results.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
+#include "sim/study/study_ranks.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
+#include "sim/study/study_work.h"
+#include "sim/study/work_units.h"
+#include "sim/study/worker_threads.h"
 #include "sim/told/fresh_calibrations.h"
-#include "sim/visibility.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
@@ -44,43 +42,6 @@ namespace vernier::sim::internal {
 using namespace vernier::internal;
 
 namespace {
-
-struct Job {
-  const StudyCell* cell;
-  std::string key;
-  int block, first, count;
-};
-
-std::vector<Job> all_jobs(const Study& study) {
-  std::vector<Job> jobs;
-  for (const StudyCell& cell : study.file.cells) {
-    const std::string key = cell_key(study, cell);
-    const int size = study.file.trials_per_block;
-    for (int first = 0, block = 0; first < study.file.trials; first += size, ++block) {
-      jobs.push_back({&cell, key, block, first, std::min(size, study.file.trials - first)});
-    }
-  }
-  return jobs;
-}
-
-/// Jobs of the shard that are in no store of the folder yet.
-std::vector<Job> missing_jobs(const Study& study,
-                              const StudyRun& run,
-                              const StoredResults& stored) {
-  std::vector<Job> missing;
-  const std::vector<Job> jobs = all_jobs(study);
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (static_cast<int>(i % static_cast<std::size_t>(run.shard.count)) != run.shard.index) {
-      continue;
-    }
-    const auto found = stored.blocks.find({jobs[i].key, jobs[i].block});
-    if (found == stored.blocks.end() ||
-        static_cast<int>(found->second.trials.size()) < jobs[i].count) {
-      missing.push_back(jobs[i]);
-    }
-  }
-  return missing;
-}
 
 /// Lets the process use more threads than it has cores where a run asks for more, as long as this
 /// exists; never fewer than without.
@@ -120,107 +81,16 @@ void in_parallel(tbb::task_arena& arena, int count, Work work) {
   [[maybe_unused]] const int ended = finished.load(std::memory_order_acquire);
 }
 
-/// A ceiling that no store of the folder has, and this shard's part of it.
-struct MissingCeiling {
-  const StudyCell* cell;
-  std::vector<int> of_query;  ///< as ceiling_part() stores them
-  std::vector<int> mine;      ///< the queries to compute
-};
-
-/// Computes this shard's queries of a ceiling until asked to stop, and stores them some hundred at
-/// a time under the ceiling's key; calls `one_done` after each.
-void compute_queries(const AliasFinder& finder,
-                     const QueryPlaces& places,
-                     const std::string& key,
-                     const MissingCeiling& ceiling,
-                     tbb::task_arena& arena,
-                     const std::stop_token& stop,
-                     const std::function<void()>& one_done,
-                     StudyStore& store) {
-  constexpr std::size_t at_a_time = 500;
-  for (std::size_t first = 0; first < ceiling.mine.size(); first += at_a_time) {
-    const std::size_t count = std::min(at_a_time, ceiling.mine.size() - first);
-    std::vector<int> of_query(ceiling.of_query.size(), not_known);
-    in_parallel(arena, static_cast<int>(count), [&](int i) {
-      if (stop.stop_requested()) return;
-      const int query = ceiling.mine[first + static_cast<std::size_t>(i)];
-      const Aliases found = finder.aliases(
-          places.draw(ceiling.cell->experiment.seed, static_cast<std::uint32_t>(query)));
-      of_query[query] = found.determined ? found.elsewhere : not_determined;
-      one_done();
-    });
-    const auto [part, text] = ceiling_part(key, of_query);
-    if (!text.empty()) store.set_note(part, text);
-    if (stop.stop_requested()) return;
-  }
-}
-
-/// With other shards, this one computes one of every shard.count queries.
-std::map<std::string, MissingCeiling> missing_ceilings(const Study& study,
-                                                       const StudyRun& run,
-                                                       const StoreNotes& notes) {
-  std::map<std::string, MissingCeiling> missing;
-  for (const StudyCell& cell : study.file.cells) {
-    const std::string key = ceiling_key(study, cell);
-    if (missing.count(key) > 0) continue;
-    MissingCeiling ceiling{&cell, noted_queries(study, notes, key), {}};
-    for (int i = run.shard.index; i < ceiling_queries(study, key); i += run.shard.count) {
-      if (ceiling.of_query[i] == not_known) ceiling.mine.push_back(i);
-    }
-    if (!ceiling.mine.empty()) missing.emplace(key, std::move(ceiling));
-  }
-  return missing;
-}
-
-/// Computes ceilings, one after the other.
-void add_ceilings(const Study& study,
-                  const StudyRun& run,
-                  StudyScenes& scenes,
-                  std::map<std::string, MissingCeiling> missing,
-                  tbb::task_arena& arena,
-                  StudyStore& store) {
-  if (missing.empty()) return;
-  int total = 0;
-  for (const auto& [key, ceiling] : missing) total += static_cast<int>(ceiling.mine.size());
-  std::mutex mutex;
-  int done = 0;
-  if (run.ceiling_progress) run.ceiling_progress(0, total);
-  const auto one_done = [&] {
-    const std::lock_guard lock(mutex);
-    ++done;
-    if (run.ceiling_progress) run.ceiling_progress(done, total);
-  };
-  for (const auto& [key, ceiling] : missing) {
-    NoiseFreeViewOptions options;
-    options.mount = ceiling.cell->experiment.mount;
-    const QueryWorld world = scenes.queries(*ceiling.cell);
-    const AliasFinder finder(
-        world.changed ? world.changed->visibility : scenes.visibility(*ceiling.cell), study.rig.rig,
-        options);
-    compute_queries(finder, *world.places, key, ceiling, arena, run.stop, one_done, store);
-  }
-}
-
 /// Throws Error if the folder's results are of another kind of processor than this one.
-void check_processor(const StoredResults& stored, const std::filesystem::path& folder) {
-  const auto there = stored.notes.find("instruction_set");
-  if (there == stored.notes.end() || there->second == instruction_set()) return;
-  throw Error(folder.string(),
+void check_processor(const StoredResults& stored, const StudyRun& run) {
+  const std::string there = stored.instruction_sets(), here(instruction_set());
+  if (there.empty() || has_instruction_sets(there, here)) return;
+  if (run.other_instruction_sets == OtherInstructionSets::allowed) return;
+  throw Error(run.folder.string(),
               fmt::format("written with instruction set {}, this processor has {}: results would "
                           "not be identical",
-                          shortened(there->second), instruction_set()),
-              "continue in another folder");
-}
-
-/// Throws Error if a cell cannot be run, before anything is written.
-void check_cells(const Study& study, StudyScenes& scenes) {
-  for (const StudyCell& cell : study.file.cells) {
-    StudyCell still = cell;
-    still.experiment.sources.moved = 0;  // a changed world takes time
-    const LocalisationExperiment tried(scenes.visibility(cell), study.rig, nullptr,
-                                       still.experiment, scenes.queries(still).places, nullptr,
-                                       scenes.told(cell));
-  }
+                          shortened(there), here),
+              "continue in another folder, or give --allow-other-instruction-set");
 }
 
 /// Of the first trials of each cell with [calibration], which use the same calibrations.
@@ -234,52 +104,46 @@ void record_calibrations(const Study& study,
     const auto calibrations = scenes.calibrations(cell);
     if (!calibrations || run.stop.stop_requested()) continue;
     const std::string key = calibration_key(study, cell);
-    if (stored.notes.count(key) > 0 || !recorded.insert(key).second) continue;
+    if (stored.notes().count(key) > 0 || !recorded.insert(key).second) continue;
     constexpr int enough = 100;
     const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
     store.set_note(name, note);
   }
 }
 
-/// Runs the blocks and stores each as soon as it is done.
-void run_jobs(const Study& study,
-              StudyScenes& scenes,
-              const StudyRun& run,
-              const std::vector<Job>& jobs,
-              tbb::task_arena& arena,
-              StudyStore& store) {
-  std::map<std::string, std::shared_ptr<const MapViews>> looks;
-  for (const StudyCell& cell : study.file.cells) {
-    auto& shared = looks[looks_key(cell)];
-    if (!shared && !jobs.empty() && !run.stop.stop_requested()) {
-      shared = std::make_shared<MapViews>(with_errors_of(cell.world, [&] {
-        return map_views(scenes.visibility(cell), study.rig.rig, cell.experiment);
-      }));
-    }
-  }
+/// Computes units on the threads of an arena, each of which takes the next one when it is free.
+void compute_here(const std::vector<WorkUnit>& units,
+                  const UnitComputer& computer,
+                  const StudyRun& run,
+                  tbb::task_arena& arena,
+                  ResultRecorder& recorder) {
   std::mutex mutex;
-  int done = 0;
-  const auto total = static_cast<int>(jobs.size());
-  if (run.progress) run.progress(0, total);
-  const auto do_job = [&](int i) {
+  in_parallel(arena, static_cast<int>(units.size()), [&](int i) {
     if (run.stop.stop_requested()) return;
-    const Job& job = jobs[i];
-    const StudyCell& cell = *job.cell;
-    const QueryWorld world = scenes.queries(cell);
-    const LocalisationExperiment experiment(scenes.visibility(cell), study.rig,
-                                            looks.at(looks_key(cell)), cell.experiment,
-                                            world.places, world.changed, scenes.told(cell));
-    const TrialBlock trials{.block = static_cast<std::uint32_t>(job.block),
-                            .first = static_cast<std::uint32_t>(job.first),
-                            .count = static_cast<std::uint32_t>(job.count)};
-    const StoredBlock block{job.key, job.block, with_errors_of(cell.world, [&] {
-                              return experiment.run_block(trials);
-                            })};
+    const WorkUnit& unit = units[static_cast<std::size_t>(i)];
+    std::vector<std::pair<WorkUnit, UnitResult>> done;
+    done.emplace_back(unit, computer.compute(unit, run.stop));
     const std::lock_guard lock(mutex);
-    store.put(block);
-    if (run.progress) run.progress(++done, total);
-  };
-  in_parallel(arena, total, do_job);
+    recorder.add(std::move(done));
+  });
+  recorder.flush();
+}
+
+/// The same on all ranks.
+void compute_on_ranks(const std::vector<WorkUnit>& queries,
+                      const std::vector<WorkUnit>& blocks,
+                      const UnitComputer& computer,
+                      const StudyRun& run,
+                      RankZero& ranks,
+                      ResultRecorder& recorder) {
+  const tbb::task_arena usual(tbb::task_arena::automatic);
+  WorkerThreads own(computer, run.threads > 0 ? run.threads : usual.max_concurrency(), run.stop);
+  if (!queries.empty()) {
+    recorder.begin_queries();
+    ranks.compute(queries, own, recorder);
+  }
+  recorder.begin_blocks();
+  ranks.compute(blocks, own, recorder);
 }
 
 }  // namespace
@@ -304,72 +168,68 @@ void run_study(const Study& study, const StudyRun& run) {
     throw Error(fmt::format("shard {}/{}", run.shard.index, run.shard.count),
                 "not a valid index/count", "use 0 <= index < count");
   }
-  StoredResults stored = stored_results(run.folder);
-  if (missing_jobs(study, run, stored).empty() &&
-      missing_ceilings(study, run, stored.notes).empty()) {
+  const StudyWork work = study_work(study);
+  std::optional<RankZero> ranks;
+  std::string sets(instruction_set());
+  if (run.ranks) {
+    ranks.emplace(*run.ranks, work, run.stop);
+    sets = ranks->meet(run.other_instruction_sets);
+  }
+  StoredResults stored(run.other_instruction_sets);
+  stored.add_folder(run.folder);
+  if (missing_work(study, work, run.shard, stored).empty()) {
     if (run.progress) run.progress(0, 0);
     return;
   }
-  check_processor(stored, run.folder);
-  StudyScenes scenes(study);
-  check_cells(study, scenes);
+  check_processor(stored, run);
+  UnitComputer computer(study, work);
 
   std::filesystem::create_directories(run.folder);
   const std::filesystem::path file = store_file(run.folder, run.shard);
-  StudyStore store(file);
+  StudyStore store(file, run.other_instruction_sets);
   if (run.on_start) run.on_start();
-  stored.add(store.content(), file);  // it may have been written meanwhile
-  const std::vector<Job> jobs = missing_jobs(study, run, stored);
-  if (!run.command.empty() && !jobs.empty()) store.set_note(command_key(run.command), run.command);
+  stored.add(store.index(), file);  // it may have been written meanwhile
+  const MissingWork missing = missing_work(study, work, run.shard, stored);
+  if (is_mixture(sets) || run.other_instruction_sets == OtherInstructionSets::allowed) {
+    sets = all_instruction_sets(sets, stored.instruction_sets());
+    if (is_mixture(sets)) store.set_note(instruction_set_note, sets);
+  }
+  if (!run.command.empty() && !missing.blocks.empty()) {
+    store.set_note(command_key(run.command), run.command);
+  }
+  if (!run.machine.empty() && !missing.blocks.empty()) {
+    store.set_note(machine_key(run.machine), run.machine);
+  }
 
+  const std::vector<WorkUnit> queries = query_units(missing);
+  std::vector<WorkUnit> blocks = block_units(missing);
+  ResultRecorder recorder(work, missing, run, store);
+  if (ranks) ranks->welcome(!blocks.empty());
+  if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
+  /// What is wanted next, where the width of an interval decides how far a cell goes.
+  const auto next_blocks = [&] {
+    if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
+    stored.add(store.index(), file);
+    blocks = block_units(missing_work(study, work, run.shard, stored));
+    recorder.expect_blocks(blocks.size());
+    return !blocks.empty();
+  };
+  if (ranks) {
+    compute_on_ranks(queries, blocks, computer, run, *ranks, recorder);
+    while (next_blocks()) compute_on_ranks({}, blocks, computer, run, *ranks, recorder);
+    return;
+  }
   const RaisedThreadLimit raised(run.threads);
   tbb::task_arena arena(run.threads > 0 ? raised.allowed(run.threads) : tbb::task_arena::automatic);
-  record_calibrations(study, scenes, stored, run, store);
-  add_ceilings(study, run, scenes, missing_ceilings(study, run, stored.notes), arena, store);
-  run_jobs(study, scenes, run, jobs, arena, store);
-}
-
-StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
-  const StoredResults stored = stored_results(folder);
-  stored.require_all_read();
-  const auto& [blocks, notes, none] = stored;
-  std::set<std::string> commands;
-  for (const auto& [key, value] : notes) {
-    if (key == command_key(value)) commands.insert(value);
+  record_calibrations(study, computer.scenes(), stored, run, store);
+  if (!queries.empty()) {
+    recorder.begin_queries();
+    compute_here(queries, computer, run, arena, recorder);
   }
-  StudyResults results;
-  results.commands.assign(commands.begin(), commands.end());
-  for (const StudyCell& cell : study.file.cells) {
-    CellResult result;
-    result.cell = cell;
-    result.trials_per_block = study.file.trials_per_block;
-    result.ceiling = noted_ceiling(study, notes, ceiling_key(study, cell));
-    if (cell.told.calibration) {
-      result.calibrations = noted_calibrations(notes, calibration_key(study, cell));
-    }
-    results.cells.push_back(std::move(result));
-  }
-  for (const Job& job : all_jobs(study)) {
-    ++results.blocks_total;
-    const auto found = blocks.find({job.key, job.block});
-    if (found == blocks.end() || static_cast<int>(found->second.trials.size()) < job.count) {
-      continue;
-    }
-    if (found->second.trials[0].trial != static_cast<std::uint32_t>(job.first)) {
-      throw Error(folder.string(), fmt::format("block {} holds other trials", job.block),
-                  "delete the stores of the folder and run the study again");
-    }
-    ++results.blocks_done;
-    CellResult& cell = results.cells[job.cell - study.file.cells.data()];
-    ClusterCount map;
-    for (int i = 0; i < job.count; ++i) {
-      cell.trials.push_back(found->second.trials[i]);
-      map.successes += found->second.trials[i].success();
-      ++map.trials;
-    }
-    cell.maps.push_back(map);
-  }
-  return results;
+  recorder.begin_blocks();
+  do {
+    compute_here(blocks, computer, run, arena, recorder);
+  } while (next_blocks());
 }
 
 }  // namespace vernier::sim::internal

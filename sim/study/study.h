@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -15,11 +16,15 @@
 #include "calib/interval.h"
 #include "calib/rig_estimate.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
+#include "sim/study/instruction_sets.h"
 #include "sim/study/study_file.h"
 #include "sim/told/fresh_calibrations.h"
 #include "sim/world.h"
 
 namespace vernier::sim::internal {
+
+class Communicator;
 
 /// A world or a rig with the fingerprint of its file's content.
 struct StudyWorld {
@@ -55,7 +60,8 @@ struct StudyRun {
   std::filesystem::path folder;  ///< results are stored here, and resumed from here
   int threads = 0;               ///< 0: all cores
   Shard shard;
-  std::string command;  ///< command line of this run; stored with its results
+  std::string command;       ///< command line of this run; stored with its results
+  std::string machine = {};  ///< program and machine of this run, in a line; stored as well
   /// Called from any thread, one call at a time.
   std::function<void(int done, int total)> progress;
   /// The same for the queries of the world ceilings, which are computed before the first block.
@@ -65,6 +71,11 @@ struct StudyRun {
   std::function<void()> on_start = {};
   /// Once it asks to stop, no further block or query is begun; those done are stored.
   std::stop_token stop = {};
+  /// Whether results of another kind of processor may be in the folder, or come from other ranks.
+  OtherInstructionSets other_instruction_sets = OtherInstructionSets::refused;
+  /// The other processes that compute for this one, which is their rank 0 (study_ranks.h); null:
+  /// none. The caller tells them the end.
+  Communicator* ranks = nullptr;
 };
 
 /// Runs the missing blocks of this shard. Writes its own store only, and nothing if no block and no
@@ -87,12 +98,14 @@ struct WorldCeiling {
 /// Results of a cell.
 struct CellResult {
   StudyCell cell;
-  std::vector<TrialResult> trials;      ///< ascending
-  std::vector<ClusterCount> maps;       ///< one entry per block
-  int trials_per_block = 50;            ///< trial t belongs to block t / trials_per_block
-  std::optional<WorldCeiling> ceiling;  ///< none until all of its queries are stored
+  std::vector<TrialResult> trials;            ///< ascending
+  std::vector<ClusterCount> maps;             ///< one entry per block
+  int trials_per_block = 50;                  ///< trial t belongs to block t / trials_per_block
+  std::optional<WorldCeiling> ceiling;        ///< none until all of its queries are stored
+  std::optional<double> interval_width = {};  ///< at which the study stops the cell
+  BudgetDecision budget = {};
   /// Of a cell with [calibration]: what became of the calibrations of its first trials.
-  std::optional<CalibrationRecord> calibrations;
+  std::optional<CalibrationRecord> calibrations = {};
 };
 
 /// The part of a study that is stored in the folder.
@@ -100,15 +113,28 @@ struct StudyResults {
   std::vector<CellResult> cells;
   int blocks_done = 0, blocks_total = 0;
   std::vector<std::string> commands;  ///< that produced them, ascending; none for old results
+  std::vector<std::string> machines;  ///< on which, the same
+  std::string instruction_sets;       ///< "AVX2", or "AVX2, AVX3" where a mixture was allowed
+  std::vector<Shard> missing_shards;  ///< that lack something, if stores of shards are there
 };
 
 /// The store that a shard writes.
 std::filesystem::path store_file(const std::filesystem::path& folder, const Shard& shard);
 
-/// Key of a command in a store's notes.
+/// Key of a command, and of a machine, in a store's notes.
 std::string command_key(const std::string& command);
+std::string machine_key(const std::string& machine);
 
 /// Reads all stores of the folder. Throws Error if a store is damaged, or two disagree.
 StudyResults study_results(const Study& study, const std::filesystem::path& folder);
+
+/// Called with each block that is done, cell by cell, its trials ascending; `cell` is the place in
+/// StudyFile::cells.
+using BlockVisitor = std::function<void(std::size_t cell, std::vector<TrialResult> trials)>;
+
+/// The same without the trials, which are given to `visit` instead: memory does not grow with them.
+StudyResults visit_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           const BlockVisitor& visit);
 
 }  // namespace vernier::sim::internal

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,13 @@ std::string study_difference(const Study& stored, const Study& wanted) {
       text += (i > 0 ? ", " : "") + differing[i];
     }
     return differing.size() > most ? text + ", …" : text;
+  }
+  const std::optional<double>&there = stored.file.interval_width,
+        &here = wanted.file.interval_width;
+  if (here && (!there || *here > *there)) {
+    return fmt::format(
+        "study.interval_width is {} there and {} here, and a study can only be extended",
+        there ? fmt::format("{}", *there) : "not set", *here);
   }
   if (stored.file.trials > wanted.file.trials) {
     return fmt::format("study.trials is {} there and {} here, and a study can only be extended",

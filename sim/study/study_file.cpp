@@ -17,6 +17,7 @@
 #include "calib/error.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
+#include "sim/study/one_at_a_time.h"
 #include "sim/study/settings_reader.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/success_interval.h"
@@ -59,6 +60,7 @@ class StudyReader : private SettingsReader {
   void check_complete(const toml::table& root, const std::vector<std::string>& swept) const;
   void check_sweep_size(const toml::table& root, const StudyFile& study) const;
   void add_cells(const toml::table& root, StudyFile& study) const;
+  void add_designs(const toml::table& root, StudyFile& study) const;
 
   SourceSettings sources_;  // initial values of the study's [sources]
 };
@@ -75,6 +77,9 @@ void StudyReader::read_study_section(const toml::table& root, StudyFile& study) 
     }
   }
   study.trials_per_block = block_size(study.trials);
+  if (const auto* width = section.get("interval_width")) {
+    study.interval_width = number_in(*width, "study.interval_width", 0.001, 1);
+  }
 }
 
 void StudyReader::read_world(const toml::table& root, StudyCell& cell) const {
@@ -230,6 +235,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   for (std::size_t cell = 0; cell < count; ++cell) {
     toml::table changed = root;
     changed.erase("sweep");
+    std::vector<std::pair<std::string, std::string>> swept;
     std::string label;
     std::size_t rest = cell, block = count;
     for (std::size_t k = 0; k < study.sweep_keys.size(); ++k) {
@@ -239,8 +245,10 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       const std::string& key = study.sweep_keys[k];
       set(changed, key, *sweep->get(key)->as_array()->get(i));
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
+      swept.emplace_back(key, study.sweep_values[k][i]);
     }
     StudyCell result = read_cell(changed);
+    result.swept = std::move(swept);
     result.settings = settings_of(result.experiment);
     result.settings.merge(settings_of(result.told));
     for (const std::string& key : study.sweep_keys) {
@@ -251,10 +259,27 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
   }
 }
 
+/// Replaces each cell by those of [one_at_a_time].
+void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
+  const auto* node = section(root, "one_at_a_time");
+  if (!node) return;
+  const OneAtATime designs = read_one_at_a_time(*node, place());
+  std::vector<StudyCell> cells;
+  for (const StudyCell& cell : study.cells) {
+    for (StudyCell& one : one_at_a_time(cell, designs, place())) cells.push_back(std::move(one));
+    const auto trials = static_cast<std::int64_t>(cells.size()) * study.trials;
+    if (cells.size() <= most_cells && trials <= most_trials) continue;
+    fail(*node,
+         fmt::format("the study has more than {} cells or {} trials", most_cells, most_trials),
+         "name fewer one_at_a_time.sources or factors, or reduce study.trials");
+  }
+  study.cells = std::move(cells);
+}
+
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
-              "localiser", "sweep"},
+              "localiser", "sweep", "one_at_a_time"},
              "");
   StudyFile study;
   read_study_section(root, study);
@@ -264,6 +289,7 @@ StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path
   check_complete(root, study.sweep_keys);
   check_sweep_size(root, study);
   add_cells(root, study);
+  add_designs(root, study);
   const StudyCell& first = study.cells[0];
   study.world = first.world;
   if (!first.told.truth.empty()) {

@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/experiment.h"
@@ -16,7 +18,8 @@ namespace vernier::sim::internal {
 /// One combination of the swept settings.
 struct StudyCell {
   std::string label;  ///< swept keys and values, such as "sources.calibration = 10"
-  std::map<std::string, std::string> settings;  ///< every setting in effect, by dotted key
+  std::vector<std::pair<std::string, std::string>> swept;  ///< these keys and values, in order
+  std::map<std::string, std::string> settings;             ///< all in effect, by dotted key
   ExperimentSettings experiment;
   std::string world = "workshop";  ///< its file
   VisibilityMethod visibility = VisibilityMethod::exact;
@@ -29,12 +32,13 @@ int block_size(int trials);
 
 /// Content of a study file (docs/file-formats.md).
 struct StudyFile {
-  int trials = 900;                     ///< per cell
-  int trials_per_block = 50;            ///< block_size(trials)
-  std::string world = "workshop";       ///< file of the first cell's world
-  std::string rig = "nominal";          ///< file of the true rig, one for all cells
-  std::filesystem::path sources;        ///< file that [sources] is based on; empty: none
-  std::vector<std::string> sweep_keys;  ///< the first varies slowest
+  int trials = 900;                      ///< per cell; at most, with an interval_width
+  int trials_per_block = 50;             ///< block_size(trials)
+  std::optional<double> interval_width;  ///< at which a cell stops (budget.h); none: never before
+  std::string world = "workshop";        ///< file of the first cell's world
+  std::string rig = "nominal";           ///< file of the true rig, one for all cells
+  std::filesystem::path sources;         ///< file that [sources] is based on; empty: none
+  std::vector<std::string> sweep_keys;   ///< the first varies slowest
   std::vector<std::vector<std::string>> sweep_values;  ///< as text, one list per key
   std::vector<StudyCell> cells;                        ///< all combinations
 };

@@ -309,4 +309,6 @@ std::optional<WorldCeiling> noted_ceiling(const Study& study,
 
 std::string command_key(const std::string& command) { return "command " + command; }
 
+std::string machine_key(const std::string& machine) { return "machine " + machine; }
+
 }  // namespace vernier::sim::internal

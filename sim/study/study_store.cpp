@@ -11,13 +11,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <functional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "calib/base/instruction_set.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/experiment.h"
+#include "sim/study/instruction_sets.h"
 #include "sim/study/store_database.h"
 #include "sim/study/store_lock.h"
 #include "sim/study/store_rows.h"
@@ -95,14 +99,66 @@ bool needs_a_writer(int code) {
          code == SQLITE_READONLY_CANTINIT || code == SQLITE_PROTOCOL;
 }
 
-StoreContent read_once(const fs::path& file, const std::string& options) {
+/// A result for a store that only its next run can mend.
+template <class Result>
+Result interrupted() {
+  Result none;
+  none.interrupted = true;
+  return none;
+}
+
+template <class Result>
+Result read_once(const fs::path& file,
+                 const std::string& options,
+                 const std::function<Result(const Database&)>& read) {
   const Database database = Database::to_read(file, options);
   try {
     database.run("BEGIN");
-    return stored_content(database);
+    return read(database);
   } catch (const Error&) {
-    if (needs_a_writer(database.code())) return {{}, {}, true};
+    if (needs_a_writer(database.code())) return interrupted<Result>();
     throw;
+  }
+}
+
+/// Reads, again if the file has changed meanwhile. A Result has a member `interrupted`.
+template <class Result>
+Result read_unchanged(const fs::path& file, const std::function<Result(const Database&)>& read) {
+  using namespace std::chrono_literals;
+  constexpr int attempts = 20;
+  for (int attempt = 1;; ++attempt) {
+    check_regular(file);
+    const auto before = state_of_store(file);
+    if (before[0].exists && before[0].size == 0) return {};  // its writer was killed at the start
+    // A log without its index: only a writer can make that.
+    if (state_of(beside(file, "-wal")).size > 0 && !state_of(beside(file, "-shm")).exists) {
+      return interrupted<Result>();
+    }
+    try {
+      const std::string options = reading_options(file);
+      Result result = read_once(file, options, read);
+      if (options != unlocked || state_of(file) == before[0]) return result;
+      if (attempt == attempts) {
+        throw Error(file.string(), "is being changed by another process",
+                    "run the same command again when that has ended");
+      }
+    } catch (const Error&) {
+      if (attempt == attempts || state_of_store(file) == before) throw;
+    }
+    std::this_thread::sleep_for(50ms);
+  }
+}
+
+/// What read_blocks and visit_store need.
+struct SomeBlocks {
+  std::vector<StoredBlock> blocks;
+  bool interrupted = false;
+};
+
+void require_read(const fs::path& file, const SomeBlocks& read) {
+  if (read.interrupted) {
+    throw Error(file.string(), "was interrupted while it was written",
+                "run its part of the study again, which completes it");
   }
 }
 
@@ -117,9 +173,10 @@ struct StudyStore::Open {
   Database database;
 };
 
-StudyStore::StudyStore(const fs::path& file) : StudyStore(file, journal_for(file)) {}
+StudyStore::StudyStore(const fs::path& file, OtherInstructionSets others)
+    : StudyStore(file, journal_for(file), others) {}
 
-StudyStore::StudyStore(const fs::path& file, Journal journal)
+StudyStore::StudyStore(const fs::path& file, Journal journal, OtherInstructionSets others)
     : open_(new Open{StoreLock((check_regular(file), file)), Database::to_write(file)}) {
   const Database& database = open_->database;
   const int version = store_version(database);  // before anything is changed
@@ -131,11 +188,14 @@ StudyStore::StudyStore(const fs::path& file, Journal journal)
   Statement row(database, "SELECT value FROM remark WHERE key = 'instruction_set'");
   if (!row.step()) {
     set_note("instruction_set", here);
-  } else if (row.text(0) != here) {
-    throw Error(file.string(),
-                "written with instruction set " + shortened(row.text(0)) + ", this processor has " +
-                    here + ": results would not be identical",
-                "continue in another folder");
+  } else if (const std::string there = row.text(0); !has_instruction_sets(there, here)) {
+    if (others == OtherInstructionSets::refused) {
+      throw Error(file.string(),
+                  "written with instruction set " + shortened(there) + ", this processor has " +
+                      here + ": results would not be identical",
+                  "continue in another folder, or give --allow-other-instruction-set");
+    }
+    set_note(instruction_set_note, all_instruction_sets(there, here));
   }
 }
 
@@ -158,36 +218,49 @@ StudyStore::StudyStore(StudyStore&&) noexcept = default;
 
 void StudyStore::put(const StoredBlock& block) { store_block(open_->database, block); }
 
+void StudyStore::put(const BlockRow& row) { store_row(open_->database, row); }
+
+void StudyStore::put(const std::vector<BlockRow>& rows) {
+  Transaction together(open_->database);
+  for (const BlockRow& row : rows) store_row(open_->database, row);
+  together.commit();
+}
+
 void StudyStore::set_note(const std::string& key, const std::string& value) {
   store_note(open_->database, key, value);
 }
 
 StoreContent StudyStore::content() const { return stored_content(open_->database); }
 
+StoreIndex StudyStore::index() const { return stored_index(open_->database); }
+
 StoreContent read_store(const fs::path& file) {
-  using namespace std::chrono_literals;
-  constexpr int attempts = 20;
-  for (int attempt = 1;; ++attempt) {
-    check_regular(file);
-    const auto before = state_of_store(file);
-    if (before[0].exists && before[0].size == 0) return {};  // its writer was killed at the start
-    // A log without its index: only a writer can make that.
-    if (state_of(beside(file, "-wal")).size > 0 && !state_of(beside(file, "-shm")).exists) {
-      return {{}, {}, true};
-    }
-    try {
-      const std::string options = reading_options(file);
-      StoreContent content = read_once(file, options);
-      if (options != unlocked || state_of(file) == before[0]) return content;
-      if (attempt == attempts) {
-        throw Error(file.string(), "is being changed by another process",
-                    "run the same command again when that has ended");
-      }
-    } catch (const Error&) {
-      if (attempt == attempts || state_of_store(file) == before) throw;
-    }
-    std::this_thread::sleep_for(50ms);
-  }
+  return read_unchanged<StoreContent>(file, stored_content);
+}
+
+StoreIndex read_index(const fs::path& file) {
+  return read_unchanged<StoreIndex>(file, stored_index);
+}
+
+std::vector<StoredBlock> read_blocks(const fs::path& file, const BlockRange& range) {
+  SomeBlocks read = read_unchanged<SomeBlocks>(file, [&](const Database& database) {
+    return SomeBlocks{stored_blocks(database, range), false};
+  });
+  require_read(file, read);
+  return std::move(read.blocks);
+}
+
+void visit_store(const fs::path& file, const std::function<void(const BlockRow&)>& visit) {
+  require_read(file, read_unchanged<SomeBlocks>(file, [&](const Database& database) {
+                 visit_rows(database, visit);
+                 return SomeBlocks{};
+               }));
+}
+
+bool holds_results(const StoreIndex& index) {
+  return !index.blocks.empty() || index.interrupted ||
+         std::any_of(index.notes.begin(), index.notes.end(),
+                     [](const auto& note) { return note.first.rfind("ceiling", 0) == 0; });
 }
 
 StoredBlock longer_block(StoredBlock a, StoredBlock b, const std::string& place) {

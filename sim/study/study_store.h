@@ -3,13 +3,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "calib/interval.h"
 #include "sim/experiment.h"
+#include "sim/study/instruction_sets.h"
+#include "sim/study/store_rows.h"
 
 namespace vernier::sim::internal {
 
@@ -32,6 +36,22 @@ struct StoreContent {
   bool interrupted = false;
 };
 
+/// Which blocks a store holds, without their trials.
+struct StoreIndex {
+  std::map<std::string, std::map<int, ClusterCount>> blocks;  ///< by cell and number
+  StoreNotes notes;
+  bool interrupted = false;  ///< as StoreContent's
+};
+
+/// Whether it has a block, or a part of a ceiling.
+bool holds_results(const StoreIndex& index);
+
+/// Blocks first to end - 1 of a cell.
+struct BlockRange {
+  std::string cell;
+  int first = 0, end = 0;
+};
+
 /// How SQLite keeps changes that are not complete.
 enum class Journal {
   write_ahead,  ///< WAL: readers and the writer never wait; needs a local disk
@@ -47,18 +67,25 @@ class StudyStore {
  public:
   /// Opens or creates the file. Throws Error if another process writes it, if it is not a store or
   /// damaged, or was written on a processor with another instruction set (results would not be
-  /// comparable to the bit). A store of version 1, which has no checksums, becomes one of
-  /// version 2.
-  explicit StudyStore(const std::filesystem::path& file);
-  StudyStore(const std::filesystem::path& file, Journal journal);
+  /// comparable to the bit) unless that is allowed, which it then notes. A store of version 1,
+  /// which has no checksums, becomes one of version 2.
+  explicit StudyStore(const std::filesystem::path& file,
+                      OtherInstructionSets others = OtherInstructionSets::refused);
+  StudyStore(const std::filesystem::path& file,
+             Journal journal,
+             OtherInstructionSets others = OtherInstructionSets::refused);
   ~StudyStore();
   StudyStore(StudyStore&&) noexcept;
 
   /// Adds or replaces a block; committed on return.
   void put(const StoredBlock& block);
+  void put(const BlockRow& row);
+  /// The same for several, committed together.
+  void put(const std::vector<BlockRow>& rows);
   void set_note(const std::string& key, const std::string& value);
   /// Reads and checks everything. Throws Error if anything is damaged.
   StoreContent content() const;
+  StoreIndex index() const;
 
  private:
   struct Open;
@@ -69,6 +96,14 @@ class StudyStore {
 /// permission to write, changes nothing and leaves no file behind. Throws Error as above. Not for
 /// a store that this process is writing: POSIX locks would be lost; use content().
 StoreContent read_store(const std::filesystem::path& file);
+
+/// The same for which blocks it holds, for some of them, and for every row: what is read is not
+/// kept. Where another process changes the file meanwhile they may begin again, so that `visit`
+/// sees rows twice.
+StoreIndex read_index(const std::filesystem::path& file);
+std::vector<StoredBlock> read_blocks(const std::filesystem::path& file, const BlockRange& range);
+void visit_store(const std::filesystem::path& file,
+                 const std::function<void(const BlockRow&)>& visit);
 
 /// The longer of two versions of a block. Throws Error(`place`) if their common trials differ in
 /// more than the timings.

@@ -44,6 +44,12 @@ function sample_pages(folder, page) {
     "adjusted": [JSON.stringify({ title: "Adjusted", study: adjusted(study) }), true],
     "true-bound": [JSON.stringify({ title: "Bound", rigs: [true_bound(full.rigs[0])] }), true],
     "reliability": [JSON.stringify({ title: "Reliability", study: with_reliability(study) }), true],
+    "two-keys": [JSON.stringify({ title: "Two keys", study: swept_by(study, 2) }), true],
+    "three-keys": [JSON.stringify({ title: "Three keys", study: swept_by(study, 3) }), true],
+    "one-at-a-time": [JSON.stringify({ title: "Designs", study: designed(study) }), true],
+    "several-studies": [JSON.stringify({ ...full, study: undefined, world: undefined, view: undefined,
+      studies: ["a", "b"].map((name) => ({ name, study: swept_by(study, 1), world: full.world,
+        view: full.view })) }), true],
     "sweep-with-zero": [JSON.stringify({ title: "Zero", study: with_zero(study) }), true],
   };
   return Object.entries(made).map(([name, [report, plotly]]) => {
@@ -140,6 +146,31 @@ function with_reliability(study) {
     i ? cell : { ...cell, reliability, thresholds }) };
 }
 
+/** Cells of a grid of up to three keys. */
+function swept_by(study, keys) {
+  const grid = [["sources.calibration", [0.1, 1, 10]], ["localiser.method", ["lines", "pgh", "corners"]],
+    ["study.protocol", ["near_path", "anywhere"]]].slice(0, keys);
+  let all = [{}];
+  for (const [key, values] of grid) {
+    all = all.flatMap((one) => values.map((value) => ({ ...one, [key]: value })));
+  }
+  const cells = all.map((swept, i) => ({ ...study.cells[i % study.cells.length], swept,
+    label: Object.entries(swept).map(([key, value]) => `${key} = ${value}`).join(", "),
+    settings: { ...study.cells[0].settings, ...swept }, trial_list: undefined }));
+  return { ...study, cells, comparisons: [], sweep: null,
+    swept_keys: grid.map(([key]) => ({ key, label: key })) };
+}
+
+/** Cells of one source at a time. */
+function designed(study) {
+  const rows = [["as set", "", ""], ["no source", "", ""], ["only", "edge_loss", 0.1],
+    ["all but", "stereo_mismatch_of_a_long_name", 0], ["swept", "edge_loss", 0.2]];
+  const cells = rows.map(([design, source, value], i) => ({ ...study.cells[i % 3],
+    swept: { design, source, value }, label: `${design} ${source} = ${value}`, trial_list: undefined }));
+  return { ...study, cells, comparisons: [], sweep: null,
+    swept_keys: ["design", "source", "value"].map((key) => ({ key, label: key })) };
+}
+
 function with_zero(study) {
   const cells = study.cells.map((cell, i) => i ? cell
     : { ...cell, label: "ψ_c = 0", settings: { ...cell.settings, "sources.calibration": 0 } });
@@ -149,23 +180,31 @@ function with_zero(study) {
 // Runs in the page.
 function inspect() {
   const report = JSON.parse(document.getElementById("data").textContent);
-  const cells = report.study?.cells ?? [];
+  const of_study = ({ study }, end) => {
+    const cells = study?.cells ?? [];
+    return [
+      [cells.length, `headline${end}`], [cells.length > 1, `sweep${end}`], [cells.length, `cells${end}`],
+      [cells.some((cell) => cell.reliability?.length), `reliability${end}`],
+      [cells.length && study.comparisons?.length, `comparisons${end}`]];
+  };
+  const of_map = ({ study, world, view }, end) => [
+    [world || study?.cells.some((cell) => cell.trial_list?.length), `plan${end}`],
+    [view, `view${end}`]];
+  const of_studies = (report.studies ?? []).flatMap((one, i) =>
+    [[true, `study-${i + 1}`], ...of_study(one, `-${i + 1}`), ...of_map(one, `-${i + 1}`)]);
   const rig_sections = (rig, id) => [[true, id], [rig.corners, `${id}-corners`],
     [rig.projection || rig.depth?.length, `${id}-projection`],
     [rig.view_influence, `${id}-views`], [rig.proof, `${id}-proof`]];
   const { evaluation } = report;
   const wanted = [
-    [cells.length, "headline"], [cells.length > 1, "sweep"], [cells.length, "cells"],
-    [cells.some((cell) => cell.reliability?.length), "reliability"],
-    [cells.length && report.study.comparisons?.length, "comparisons"],
+    [report.studies, "studies"], ...of_studies, ...of_study(report, ""),
     [evaluation, "scores"], [evaluation?.curves, "density"],
     [evaluation?.scenes[0]?.matchers && typeof window.Plotly !== "undefined", "angles"],
     [evaluation?.calibration_error, "calibration-error"],
     [evaluation?.scenes.some((scene) => scene.pictures), "pictures"],
-    [report.world || cells.some((cell) => cell.trial_list?.length), "plan"],
-    [report.view, "view"], [report.rigs?.length > 1, "calibrations"],
+    ...of_map(report, ""), [report.rigs?.length > 1, "calibrations"],
     ...(report.rigs ?? []).flatMap((rig, i) => rig_sections(rig, i ? `rig-${i + 1}` : "rig")),
-    [report.program || report.study || evaluation, "making"],
+    [report.program || report.study || report.studies || evaluation, "making"],
   ].filter(([needed]) => needed).map(([, id]) => id);
   const drawn = (place) => {
     const traces = [...place.querySelectorAll(".scatterlayer .trace, .heatmaplayer .hm,"
@@ -184,6 +223,9 @@ function inspect() {
     empty: plots.filter((place) => !place.data || !drawn(place))
       .map((place) => place.getAttribute("aria-label")),
     unnamed: plots.filter((place) => !place.getAttribute("aria-label")).length,
+    turned: [...document.querySelectorAll("[id^=sweep] .xtick text, [id^=sweep] .ytick text,"
+      + " #studies .xtick text, #studies .ytick text")]
+      .filter((text) => /rotate\((?!0)/.test(text.getAttribute("transform") ?? "")).length,
     text: [document.title, document.body.innerText, ...svg_text].join("\n"),
     too_wide: document.documentElement.scrollWidth - window.innerWidth,
     notice: document.body.innerText.includes("This page has no plots"),
@@ -234,6 +276,7 @@ function faults_of({ file, plotly }, seen) {
   if (seen.unnamed) faults.push(`${seen.unnamed} plots have no spoken name`);
   if (!plotly && seen.plots) faults.push("a plot without plotly");
   if (seen.notice === plotly) faults.push(`notice of missing plots: ${seen.notice}`);
+  if (seen.turned) faults.push(`${seen.turned} labels of axes are turned`);
   if (seen.too_wide > 0) faults.push(`page is ${seen.too_wide} px wider than its window`);
   for (const match of seen.text.matchAll(/^.*\b(NaN|undefined|null|Infinity|\[object)\b.*$/gm)) {
     faults.push(`text "${match[0].trim().slice(0, 100)}"`);

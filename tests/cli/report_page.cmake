@@ -14,9 +14,17 @@ execute_process(COMMAND ${VERNIER} study ${FOLDER}/small.toml -o ${FOLDER}/study
 execute_process(COMMAND ${VERNIER} report ${FOLDER}/study nominal --no-proof
                         -o ${FOLDER}/report.html
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+file(WRITE ${FOLDER}/grid.toml
+     "[study]\ntrials = 12\nprotocol = \"near_path\"\n[map]\nspacing_m = 4\n[sweep]\n"
+     "\"sources.calibration\" = [0.1, 10]\n\"localiser.method\" = [\"lines\", \"pgh\"]\n")
+execute_process(COMMAND ${VERNIER} study ${FOLDER}/grid.toml -o ${FOLDER}/grid -q
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+execute_process(COMMAND ${VERNIER} report ${FOLDER}/study ${FOLDER}/grid --no-proof
+                        -o ${FOLDER}/several.html
+                COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 execute_process(COMMAND ${VERNIER} report nominal -o ${FOLDER}/rig.html
                 COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
-execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html ${FOLDER}/rig.html
+execute_process(COMMAND ${NODE} ${SOURCE}/page_test.mjs ${FOLDER}/report.html ${FOLDER}/rig.html ${FOLDER}/several.html
                 RESULT_VARIABLE status)
 if(status EQUAL 77)
   message("report page: skipped: no playwright-core (npm ci in tests/cli) or no Chromium")

@@ -5,10 +5,12 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM = None
 STUDY = '''[study]
@@ -55,6 +57,55 @@ class Report(unittest.TestCase):
         self.works('study', 'merge', 'my results', '-o', 'all')
         self.works('report', 'all', '--no-proof', '-o', 'report.html')
         self.assertIn("vernier study merge 'my results' -o all", self.data()['study']['commands'])
+
+    def test_several_studies_share_a_page(self):
+        for name, seed in (('one', 1), ('two', 2)):
+            (self.folder / f'{name}.toml').write_text(STUDY.replace('trials = 2',
+                                                                    f'trials = 2\nseed = {seed}'))
+            self.works('study', f'{name}.toml', '-o', name, '-q')
+        self.works('report', 'one', 'two', '--no-proof', '-o', 'report.html')
+        data = self.data()
+        self.assertEqual([part['name'] for part in data['studies']], ['one', 'two'])
+        self.assertEqual([part['study']['seed'] for part in data['studies']], [1, 2])
+        self.assertNotIn('study', data)
+        self.assertEqual(len(data['rigs']), 1)  # both have the same
+        for part in data['studies']:
+            machine, = part['study']['machines']
+            self.assertRegex(machine, r'^vernier [\d.]+, .+, \d+ cores?, \S+$')
+            self.assertEqual(len(part['study']['commands']), 1)
+        self.assertEqual(data['program']['machine'], machine)
+
+    def test_figures_for_papers(self):
+        (self.folder / 'grid.toml').write_text(STUDY + '''[sweep]
+"sources.calibration" = [0.1, 10]
+"localiser.method" = ["lines", "pgh_baseline_vectorised"]
+''')
+        self.works('study', 'grid.toml', '-o', 'grid', '-q')
+        done = self.works('report', 'grid', '--no-proof', '-o', 'report.html', '--figures', 'figures',
+                          '--json')
+        files = [pathlib.Path(name) for name in json.loads(done.stdout)['figures']]
+        has_pdf = shutil.which('rsvg-convert') is not None
+        self.assertEqual('rsvg-convert' in done.stderr, not has_pdf)
+        self.assertEqual([f.name for f in files if f.suffix == '.svg'],
+                         ['success.svg', 'median_error.svg'])
+        self.assertEqual(len(files), 4 if has_pdf else 2)
+        for name in files:
+            content = (self.folder / name).read_bytes()
+            if name.suffix == '.pdf':
+                self.assertTrue(content.startswith(b'%PDF-') and content.rstrip().endswith(b'%%EOF'))
+                continue
+            tree = xml.etree.ElementTree.fromstring(content)
+            texts = [''.join(text.itertext()).strip()
+                     for text in tree.iter('{http://www.w3.org/2000/svg}text')]
+            self.assertIn('ψc', texts)
+            for method in ('lines', 'pgh_baseline_vectorised'):
+                self.assertIn(f'method = {method}', texts)  # a panel each
+            self.assertNotIn(b'nan', content)
+        done = subprocess.run([PROGRAM, 'report', 'nominal', '--figures', 'none', '-o', 'x.html'],
+                              capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('no study is given', done.stderr)
+        self.assertFalse((self.folder / 'none').exists() or (self.folder / 'x.html').exists())
 
     def test_results_without_a_command_say_none(self):
         self.works('report', 'nominal', '--no-proof', '-o', 'report.html')

@@ -41,7 +41,7 @@ class Streams(unittest.TestCase):
         """In a folder of its own, with the shell's redirection."""
         folder = pathlib.Path(tempfile.mkdtemp(dir=cls.inputs))
         for file in cls.inputs.iterdir():
-            if file.is_file():
+            if file.is_file() or file.name == 'begun':
                 (folder / file.name).symlink_to(file)
         done = subprocess.run(['sh', '-c', f'exec "$@" {redirection}', 'sh', PROGRAM,
                                *map(str, call.words)],

@@ -126,6 +126,11 @@ def write_inputs(folder):
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
     (folder / 'study.toml').write_text(STUDY)
+    begun = folder / 'begun'
+    begun.mkdir()
+    (begun / 'study.toml').write_text(STUDY)
+    (begun / 'world.world.toml').write_text(WORLD)
+    (begun / 'rig.json').write_bytes((ROOT / 'datasets/rigs/nominal.rig.json').read_bytes())
     (folder / 'room.ply').write_text(room())
     (folder / 'views.jsonl').write_text(features())
     (folder / 'known.map').write_bytes(map_file(features().splitlines()))
@@ -174,6 +179,8 @@ def calls():
         Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
                         '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        # A study without results, which the program alone can make: it says so.
+        Call('export', ['export', 'begun', '-o', 'out.csv'], ['out.csv'], code=3),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),
         Call('map_info', ['map', 'info', 'known.map'], []),

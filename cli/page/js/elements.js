@@ -27,12 +27,26 @@ export function nodes_of(child) {
 
 export const paragraph = (...children) => element("p", {}, ...children);
 
+// Of several studies each has its sections, with ids of their own and without entries in the contents.
+let part = "";
+
+/** The id of a section in the part of the page that is being made. */
+export const part_id = (id) => `${id}${part}`;
+
+/** Makes sections of one of several parts. */
+export function in_part(suffix, make) {
+  part = suffix;
+  make();
+  part = "";
+}
+
 /** Adds a section to the page, and to the table of contents as `nav` (null: not listed). */
-export function section_named(id, heading, nav, ...children) {
+export function section_named(name, heading, nav, ...children) {
+  const id = part_id(name);
   const made = element("section", { id, "aria-labelledby": `${id}-heading` },
     element("h2", { id: `${id}-heading` }, heading), ...children);
   document.getElementById("report").append(made);
-  if (nav) {
+  if (nav && !part) {
     document.getElementById("contents").append(
       element("li", {}, element("a", { href: `#${id}` }, nav)));
   }

@@ -8,14 +8,13 @@ import { varying_settings } from "./sweep.js";
 
 /** How the results were produced: program, study file and the settings of every cell. */
 export function making_section(report) {
-  const { program, study, evaluation } = report;
-  if (!program && !study && !evaluation) return;
+  const { program, evaluation } = report;
+  const studies = report.studies ?? (report.study ? [{ study: report.study }] : []);
+  if (!program && !studies.length && !evaluation) return;
   const rows = [
-    ["Program", program?.version && `vernier ${program.version}`],
+    ["Page written by", program?.machine ?? (program?.version && `vernier ${program.version}`)],
     ["Processor's instruction set", program?.instruction_set],
-    ["Study file", study?.file], ["Method", study?.method],
-    ["Trials per cell", study && count(study.trials)],
-    ["Seed", is_number(study?.seed) ? String(study.seed) : null],
+    ...studies.flatMap(study_rows),
     ["Pairs", evaluation?.settings?.list ?? evaluation?.scenes.map((scene) => scene.left).join(","
       + " ")],
     ["Row alignment repaired", evaluation?.settings && (evaluation.settings.repair ? "yes" : "no")],
@@ -31,16 +30,30 @@ export function making_section(report) {
     { head: "Item", text: true, cell: (row) => row.name },
     { head: "Value", text: true, cell: (row) => row.value },
   ], rows, { wide: false }));
-  const commands = [...study?.commands ?? [], evaluation?.settings?.command, program?.command]
-    .filter(Boolean);
+  const commands = [...studies.flatMap(({ study }) => study.commands ?? []),
+    evaluation?.settings?.command, program?.command].filter(Boolean);
   if (commands.length) made.append(element("pre", {}, element("code", {}, commands.join("\n"))));
-  if (study?.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells));
+  for (const { name, study } of studies) {
+    if (study.cells?.some((cell) => cell.settings)) made.append(settings_details(study.cells, name));
+  }
 }
 
-function settings_details(cells) {
+/** What a study was made with; of several, each under its name. */
+function study_rows({ name, study }) {
+  const of = (item) => name ? `${name}: ${item.toLowerCase()}` : item;
+  return [
+    [of("Study file"), study.file], [of("Method"), study.method],
+    [of("Trials per cell"), count(study.trials)],
+    [of("Seed"), is_number(study.seed) ? String(study.seed) : null],
+    [of("Computed by"), study.machines?.join("; ")],
+  ];
+}
+
+function settings_details(cells, name) {
   const varying = varying_settings(cells);
   const common = Object.entries(cells[0].settings || {}).filter(([key]) => !varying.includes(key));
-  const details = element("details", {}, element("summary", {}, "Settings of every cell"));
+  const details = element("details", {}, element("summary", {},
+    name ? `Settings of every cell of ${name}` : "Settings of every cell"));
   if (varying.length) {
     details.append(table("Settings that differ between cells", [
       { head: "Cell", text: true, cell: (cell) => cell.label ?? DASH },

@@ -5,7 +5,7 @@ import { percent, significant } from "./format.js";
 import { pictures_section } from "./matcher_pictures.js";
 import { calibration_error_section } from "./matchers_under_error.js";
 import { in_percent, is_number, ratio, times } from "./numbers.js";
-import { SERIES, axis, figure, have_plots } from "./plot.js";
+import { axis, figure, have_plots, series_colour } from "./plot.js";
 
 /** The sections of an evaluation of matchers against ground truth. */
 export function evaluation_sections(evaluation) {
@@ -75,7 +75,7 @@ function density_section(evaluation) {
       data: Object.entries(evaluation.curves).map(([name, points], i) => ({
         type: "scatter", mode: "lines+markers", name,
         x: points.map((p) => in_percent(p[0])), y: points.map((p) => in_percent(p[1])),
-        line: { color: SERIES[i % SERIES.length] }, marker: { size: 5 },
+        line: { color: series_colour(i) }, marker: { size: 5 },
         hovertemplate: "%{y:.2f} % at %{x:.1f} %",
       })),
       layout: { xaxis: axis("edges matched, %"),
@@ -124,7 +124,7 @@ function angle_section(evaluation, names) {
   const lines = (value) => names.map((name, i) => {
     const bins = angle_means(evaluation, name);
     return { type: "scatter", mode: "lines+markers", name, x: bins.map((bin) => bin.middle),
-      y: bins.map(value), line: { color: SERIES[i % SERIES.length] } };
+      y: bins.map(value), line: { color: series_colour(i) } };
   });
   const degrees = axis("angle to the row, degrees", { range: [0, 90], dtick: 10 });
   made.append(

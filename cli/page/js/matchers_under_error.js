@@ -3,7 +3,7 @@
 import { paragraph, section, small, table } from "./elements.js";
 import { percent, range_percent, significant } from "./format.js";
 import { bars_in_percent, in_percent } from "./numbers.js";
-import { SERIES, axis, figure, log_axis } from "./plot.js";
+import { axis, figure, log_axis, series_colour } from "./plot.js";
 import { PSI_MEANING } from "./study.js";
 
 const error_name = (cell) => cell.rows_moved_px ? `rows ${significant(cell.rows_moved_px, 2)} px`
@@ -52,7 +52,7 @@ function mismatch_figure(cells, names) {
       name: repair ? `${name}, repaired` : name,
       x: own.map((cell) => cell.psi_c), y: shares.map(in_percent),
       error_y: bars_in_percent(shares, ranges, { thickness: 1, width: 3 }),
-      line: { color: SERIES[i % SERIES.length], dash: repair ? "dot" : "solid" },
+      line: { color: series_colour(i), dash: repair ? "dot" : "solid" },
       hovertemplate: "%{y:.2f} %" };
   })).filter((trace) => trace.x.length);
   return figure("Mismatch against calibration error", "Bars: 95 % intervals over the pairs.",

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 import { view_section } from "./camera_view.js";
-import { element } from "./elements.js";
+import { element, in_part, section_named } from "./elements.js";
 import { making_section } from "./making.js";
 import { evaluation_sections } from "./matchers.js";
+import { overview_section } from "./overview.js";
 import { plan_section } from "./plan.js";
-import { draw_waiting_plots, fit_plots_to_paper, fit_plots_to_window, have_plots } from "./plot.js";
+import {
+  draw_waiting_plots, fit_plots_to_paper, fit_plots_to_window, follow_reader, have_plots,
+} from "./plot.js";
 import { reliability_section } from "./reliability.js";
 import { rigs_sections } from "./rig.js";
 import { cells_section, comparisons_section, headline } from "./study.js";
@@ -33,25 +36,47 @@ function colophon(report) {
     + " it loads nothing from the network.");
 }
 
-function show(report) {
-  masthead(report);
-  notice_without_plots();
-  const study = report.study?.cells?.length ? report.study : null;
-  if (study) {
-    headline(report);
+/** What the page says of a study. */
+function study_sections({ study, world }) {
+  if (study?.cells?.length) {
+    headline({ study, world });
     if (study.cells.length > 1) sweep_section(study);
-    cells_section(report);
+    cells_section({ study });
     reliability_section(study);
     if (study.comparisons?.length) comparisons_section(study);
   }
+}
+
+function map_sections({ study, world, view }) {
+  if (world || study?.cells?.some((cell) => cell.trial_list?.length)) plan_section({ study, world });
+  if (view) view_section(view);
+}
+
+/** Several studies: what they have together, then each for itself. */
+function several_studies(studies) {
+  overview_section(studies);
+  studies.forEach((one, i) => {
+    section_named(`study-${i + 1}`, `Study ${one.name}`, one.name);
+    in_part(`-${i + 1}`, () => {
+      study_sections(one);
+      map_sections(one);
+    });
+  });
+}
+
+function show(report) {
+  masthead(report);
+  notice_without_plots();
+  if (report.studies) several_studies(report.studies);
+  study_sections(report);
   if (report.evaluation) evaluation_sections(report.evaluation);
-  if (report.world || study?.cells.some((cell) => cell.trial_list?.length)) plan_section(report);
-  if (report.view) view_section(report.view);
+  map_sections(report);
   rigs_sections(report);
   making_section(report);
   colophon(report);
   draw_waiting_plots();
   if (!have_plots()) return;
+  follow_reader();
   window.addEventListener("beforeprint", fit_plots_to_paper);
   window.addEventListener("afterprint", fit_plots_to_window);
 }

@@ -42,7 +42,8 @@ export function plan_section(report) {
     plan_height(report), () => plan_plot(report, cells[first]));
   const choose = (i) => {
     note.replaceChildren(...nodes_of(plan_words(cells[i])));
-    draw_plot(drawn.querySelector("div.plot"), plan_height(report), plan_plot(report, cells[i]));
+    draw_plot(drawn.querySelector("div.plot"), plan_height(report),
+      () => plan_plot(report, cells[i]));
   };
   if (cells.length > 1) {
     made.append(chooser("Cell shown:", cells.map((cell) => cell.label), first, choose));

@@ -3,13 +3,9 @@
 import { element } from "./elements.js";
 import { minus, plot_text } from "./format.js";
 import { is_number } from "./numbers.js";
+import { COLOUR, choose_theme, on_other_theme, series_colour } from "./theme.js";
 
-// Okabe and Ito's palette: told apart with every common kind of colour blindness.
-export const COLOUR = {
-  blue: "#0072b2", red: "#d55e00", green: "#009e73", amber: "#e69f00", sky: "#56b4e9",
-  pink: "#cc79a7", grey: "#8c99a6", light: "#c9d0d8", ink: "#1d2733",
-};
-export const SERIES = [COLOUR.blue, COLOUR.red, COLOUR.green, COLOUR.pink, COLOUR.amber, COLOUR.sky];
+export { COLOUR, series_colour };
 
 export const have_plots = () => typeof window.Plotly !== "undefined";
 
@@ -17,13 +13,12 @@ export const have_plots = () => typeof window.Plotly !== "undefined";
 const waiting_plots = [];
 
 /** A figure: heading, caption, plot. `draw` returns {data, layout}; `spoken` is the label for screen
- * readers. Null without Plotly.
+ * readers; `height` in pixels, or a function that returns it. Null without Plotly.
  */
 export function figure(heading, reading, spoken, height, draw) {
   if (!have_plots()) return null;
   const place = element("div", { class: "plot", role: "img", "aria-label": spoken });
-  place.style.height = `${height}px`;
-  waiting_plots.push(() => draw_plot(place, height, draw()));
+  waiting_plots.push(() => draw_plot(place, height, draw));
   return element("figure", {}, heading && element("h3", {}, heading),
     element("figcaption", {}, reading), place);
 }
@@ -32,10 +27,17 @@ export function draw_waiting_plots() {
   waiting_plots.splice(0).forEach((draw) => draw());
 }
 
-export function draw_plot(place, height, { data, layout }) {
+const drawings = new Map();  // of places: how they are drawn again
+
+export function draw_plot(place, height, draw) {
+  drawings.set(place, () => draw_plot(place, height, draw));
+  const { data, layout } = draw();
+  const height_px = typeof height === "function" ? height() : height;
+  place.style.height = `${height_px}px`;
   const config = { responsive: true, displaylogo: false,
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
-  return Plotly.react(place, data, { ...base_layout(), ...layout, height }, config);
+  return Plotly.react(place, data, { ...base_layout(), ...layout, height: height_px },
+    config);
 }
 
 function base_layout() {
@@ -44,25 +46,26 @@ function base_layout() {
     font: { family: "system-ui, 'Segoe UI', 'Liberation Sans', sans-serif", size: 13,
       color: COLOUR.ink },
     margin: { l: 62, r: 14, t: 14, b: 52 },
-    paper_bgcolor: "#fff",
-    plot_bgcolor: "#fff",
-    hoverlabel: { bgcolor: "#fff", bordercolor: COLOUR.grey, font: { color: COLOUR.ink } },
+    paper_bgcolor: COLOUR.paper,
+    plot_bgcolor: COLOUR.paper,
+    hoverlabel: { bgcolor: COLOUR.paper, bordercolor: COLOUR.grey, font: { color: COLOUR.ink } },
     legend: { orientation: "h", x: 0, xanchor: "left", y: 1.01, yanchor: "bottom" },
   };
 }
 
 export function axis(title, more = {}) {
-  return { title: { text: plot_text(title), standoff: 8 }, gridcolor: "#e9edf1", zeroline: false,
+  return { title: { text: plot_text(title), standoff: 8 }, gridcolor: COLOUR.grid, zeroline: false,
     linecolor: COLOUR.grey, showline: true, ticks: "outside", tickcolor: COLOUR.grey,
-    automargin: true, ...more };
+    automargin: true, tickangle: 0, ...more };
 }
 
-/** A logarithmic axis over `values` with labelled ticks at 1, 2 and 5 times powers of ten. */
-export function log_axis(title, values, more = {}) {
+/** A logarithmic axis over `values` with labelled ticks at 1, 2 and 5 times powers of ten; `sparse`:
+ * at these powers if there are several. */
+export function log_axis(title, values, { sparse = false, ...more } = {}) {
   const positive = values.filter((x) => is_number(x) && x > 0);
   const low = Math.floor(Math.log10(Math.min(...positive)));
   const high = Math.ceil(Math.log10(Math.max(...positive)));
-  const steps = high - low > 3 ? [1] : [1, 2, 5];
+  const steps = high - low > 3 || (sparse && high > low + 1) ? [1] : [1, 2, 5];
   const ticks = [];
   for (let power = low; power <= high; ++power) {
     ticks.push(...steps.map((step) => step * 10 ** power));
@@ -108,9 +111,30 @@ export function image_axes([width, height]) {
 const PAPER_PX = 680;
 let opened_for_paper = [];
 
+const draw_again = () => drawings.forEach((draw) => draw());
+
+/** Plots follow the theme, and the number of small multiples beside each other the width. */
+export function follow_reader() {
+  on_other_theme(() => {
+    choose_theme();
+    draw_again();
+  });
+  let room = room_px(), waiting = null;
+  window.addEventListener("resize", () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => {
+      if (room_px() === room) return;
+      room = room_px();
+      draw_again();
+    }, 150);
+  });
+}
+
 const all_plots = () => [...document.querySelectorAll(".plot.js-plotly-plot")];
 
 export function fit_plots_to_paper() {
+  choose_theme({ paper: true });
+  draw_again();
   opened_for_paper = [...document.querySelectorAll("details:not([open])")];
   opened_for_paper.forEach((closed) => { closed.open = true; });
   for (const place of all_plots()) {
@@ -132,4 +156,6 @@ export function fit_plots_to_window() {
     place.style.height = `${height}px`;
     Plotly.relayout(place, { autosize: true, width: null, height });
   }
+  choose_theme();
+  draw_again();
 }

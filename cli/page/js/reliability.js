@@ -3,7 +3,7 @@
 import { element, paragraph, section } from "./elements.js";
 import { count, percent, plot_text } from "./format.js";
 import { is_number } from "./numbers.js";
-import { COLOUR, SERIES, axis, figure, log_axis } from "./plot.js";
+import { COLOUR, axis, figure, log_axis, series_colour } from "./plot.js";
 
 const with_reliability = (study) => study.cells.filter((cell) => cell.reliability?.length);
 const with_thresholds = (study) => study.cells.filter((cell) => cell.thresholds?.length);
@@ -40,7 +40,7 @@ function reliability_plot(study) {
       error_y: { type: "data", symmetric: false, thickness: 1, width: 4,
         array: bins.map((bin) => bin.error_interval_95[1] - shown(bin)),
         arrayminus: bins.map((bin) => bin.wrong > 0 ? bin.error - bin.error_interval_95[0] : 0) },
-      line: { color: SERIES[i % SERIES.length], width: 1 },
+      line: { color: series_colour(i), width: 1 },
       marker: { size: 8, symbol: bins.map((bin) => bin.wrong > 0 ? "circle" : "circle-open") },
       showlegend: cells.length > 1,
       customdata: bins.map((bin) => [plot_text(cell.label), count(bin.wrong), count(bin.answers)]),
@@ -69,7 +69,7 @@ function threshold_plot(study) {
   const data = cells.map((cell, i) => ({
     type: "scatter", mode: "lines+markers", name: plot_text(cell.label),
     x: cell.thresholds.map((at) => 100 * at.coverage), y: cell.thresholds.map(rate),
-    line: { color: SERIES[i % SERIES.length], width: 1.5 }, marker: { size: 6, symbol: i },
+    line: { color: series_colour(i), width: 1.5 }, marker: { size: 6, symbol: i },
     showlegend: cells.length > 1,
     customdata: cell.thresholds.map((at) => [plot_text(cell.label), percent(at.max_error_rate),
       count(at.wrong), count(at.answered)]),

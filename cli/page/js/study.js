@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
-import { element, paragraph, section, small, table } from "./elements.js";
+import { element, paragraph, part_id, section, small, table } from "./elements.js";
 import {
   DASH, count, counted, fixed, metres, milliseconds, p_value, percent, range_percent,
   significant,
@@ -38,15 +38,18 @@ const protocol_of = (study, cell) => cell.protocol || study.protocol;
 export function headline(report) {
   const study = report.study;
   const cell = headline_cell(study);
-  const box = element("section", { id: "headline", "aria-labelledby": "headline-heading" },
-    element("h2", { id: "headline-heading" },
-      study.cells.length > 1 ? `Localisation success at ${cell.label}` : "Localisation success"),
+  const id = part_id("headline");
+  const box = element("section", { id, class: "headline", "aria-labelledby": `${id}-heading` },
+    element("h2", { id: `${id}-heading` },
+      study.cells.length > 1 ? `Localisation success at ${at_words(cell)}` : "Localisation success"),
     element("div", {}, element("div", { class: "figure" }, percent(cell.success)),
       paragraph("of queries localised within 1 m of the true position")),
     element("div", { class: "words" }, headline_words(study, cell)),
     element("dl", { class: "tiles" }, headline_tiles(report, cell)));
   document.getElementById("report").append(box);
 }
+
+const at_words = (cell) => cell.label === "as set" ? "the settings of the study" : cell.label;
 
 function headline_words(study, cell) {
   const range = cell.success_interval_95;

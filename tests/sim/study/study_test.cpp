@@ -21,10 +21,13 @@
 #include <vector>
 
 #include "calib/error.h"
+#include "calib/interval.h"
 #include "localise/localiser.h"
 #include "sim/experiment.h"
+#include "sim/study/budget.h"
 #include "sim/study/cell_comparison.h"
 #include "sim/study/study.h"
+#include "sim/study/study_difference.h"
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
@@ -104,6 +107,47 @@ TEST_F(StudyRuns, OneAndTwoThreadsGiveTheSameBits) {
   const std::string one = words_of(1), two = words_of(2);
   EXPECT_GT(one.size(), 1000u);
   EXPECT_EQ(one, two);
+}
+
+/// A study that stops at a width.
+Study stopping(const Study& all, const std::string& width) {
+  Study s = all;
+  s.file = parse_study("[study]\ntrials = 900\ninterval_width = " + width +
+                           "\nprotocol = \"near_path\"\n[map]\nspacing_m = 4\n"
+                           "[localiser]\nmethod = \"pgh_baseline_vectorised\"\n",
+                       "s.toml");
+  return s;
+}
+
+// Whoever computes the blocks, a cell stops at the same one; what was computed beyond is left out.
+TEST_F(StudyRuns, AWidthStopsACellAtTheSameBlockHoweverItRuns) {
+  const Study s = stopping(study(6), "0.37");
+  const StudyResults one = run(s, "one", 1);
+  const CellResult& cell = one.cells[0];
+  EXPECT_EQ(cell.budget.state, BudgetState::narrow);
+  EXPECT_GT(cell.budget.wanted, 6);
+  EXPECT_LT(cell.budget.wanted, 18);
+  EXPECT_EQ(cell.trials.size(), 50u * static_cast<std::size_t>(cell.budget.wanted));
+  EXPECT_EQ(one.blocks_done, one.blocks_total);
+  const Interval i = summarise(cell).success_interval_95.value();
+  EXPECT_LE(i.high - i.low, 0.37);
+  EXPECT_EQ(words(run(s, "two", 2)), words(one));
+
+  // two shards, each run until none has anything left to do
+  StudyResults parts;
+  for (int round = 0; round < 6; ++round) {
+    for (int shard = 0; shard < 2; ++shard) parts = run(s, "parts", 1, {shard, 2});
+  }
+  EXPECT_EQ(words(parts), words(one));
+
+  // all blocks stored, by a study without a width
+  Study all = s;
+  all.file.interval_width.reset();
+  EXPECT_EQ(run(all, "one", 2).cells[0].trials.size(), 900u);
+  EXPECT_EQ(words(study_results(s, folder_ / "one")), words(one));
+  EXPECT_NE(study_difference(all, s), "");  // the narrower wish may follow, not the wider
+  EXPECT_EQ(study_difference(s, all), "");
+  EXPECT_NE(study_difference(s, stopping(s, "0.5")), "");
 }
 
 // A lower limit for the whole process would slow down whoever uses the library beside its own

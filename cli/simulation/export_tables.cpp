@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/export_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/base/column_file.h"
+#include "calib/base/file_in_progress.h"
+#include "calib/base/text_lines.h"
+#include "calib/error.h"
+#include "calib/interval.h"
+#include "cli/program/text_table.h"
+#include "localise/localiser.h"
+#include "localise/place.h"
+#include "sim/experiment.h"
+#include "sim/study/cell_summary.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Columns of a table and, for one of its rows, their values.
+class Row {
+ public:
+  void real(const char* name, double value) { add(name, ColumnKind::real, value); }
+  void whole(const char* name, std::int64_t value) { add(name, ColumnKind::whole, value); }
+  void flag(const char* name, bool value) { add(name, ColumnKind::boolean, value); }
+  void text(const std::string& name, const std::string& value, std::size_t characters) {
+    add(name, ColumnKind::text, value);
+    columns.back().characters = characters;
+  }
+  void add(const std::string& name, ColumnKind kind, ColumnValue value) {
+    columns.push_back({name, kind});
+    values.push_back(std::move(value));
+  }
+
+  std::vector<Column> columns;
+  std::vector<ColumnValue> values;
+};
+
+/// Settings as columns of the cells: numbers where all cells have a number.
+class SettingColumns {
+ public:
+  /// Those that are swept, or all.
+  SettingColumns(const Study& study, bool all_settings) {
+    for (const StudyCell& cell : study.file.cells) {
+      for (const auto& [key, value] : cell.swept) add_key(key);
+      if (!all_settings) continue;
+      for (const auto& [key, value] : cell.settings) add_key(key);
+    }
+    values_.resize(keys_.size());
+    for (std::size_t k = 0; k < keys_.size(); ++k) {
+      for (const StudyCell& cell : study.file.cells) values_[k].push_back(value_of(cell, keys_[k]));
+    }
+  }
+
+  void add_to(Row& row, std::size_t cell) const {
+    for (std::size_t k = 0; k < keys_.size(); ++k) {
+      const std::string& value = values_[k][cell];
+      if (is_number(k)) {
+        row.add(keys_[k], ColumnKind::real, to_real(value).value_or(no_number));
+      } else {
+        row.text(keys_[k], value, longest(values_[k]));
+      }
+    }
+  }
+
+  static std::size_t longest(const std::vector<std::string>& texts) {
+    std::size_t most = 1;
+    for (const std::string& text : texts) most = std::max(most, text_width(text));
+    return most;
+  }
+
+ private:
+  void add_key(const std::string& key) {
+    if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
+  }
+  /// As it is in effect, or as the sweep has it; empty if the cell has no such setting.
+  static std::string value_of(const StudyCell& cell, const std::string& key) {
+    for (const auto& [swept, value] : cell.swept) {
+      if (swept == key) return value;
+    }
+    const auto found = cell.settings.find(key);
+    return found == cell.settings.end() ? std::string() : found->second;
+  }
+  bool is_number(std::size_t k) const {
+    return std::all_of(values_[k].begin(), values_[k].end(), [](const std::string& value) {
+      return value.empty() || to_real(value).has_value();
+    });
+  }
+
+  std::vector<std::string> keys_;
+  std::vector<std::vector<std::string>> values_;  // by key and cell
+};
+
+void add_interval(Row& row, const std::string& name, const std::optional<Interval>& interval) {
+  row.real((name + "_low").c_str(), interval ? interval->low : no_number);
+  row.real((name + "_high").c_str(), interval ? interval->high : no_number);
+}
+
+void add_figures(Row& row, const CellResult& cell) {
+  const CellSummary s = summarise(cell);
+  const double of = s.trials > 0 ? 1 : no_number;  // a cell without trials has no rates and times
+  row.whole("trials", s.trials);
+  row.whole("maps", s.maps);
+  row.real("success", of * s.success);
+  add_interval(row, "success", s.success_interval_95);
+  add_interval(row, "success_binomial",
+               s.trials > 0 ? std::optional(s.success_interval_binomial_95) : std::nullopt);
+  row.real("coverage", of * s.coverage);
+  row.real("success_when_answered", of * s.success_when_answered);
+  row.real("best_guess_success", of * s.best_guess_success);
+  row.whole("failed", s.failed);
+  row.real("node_success", of * s.node_success);
+  row.real("recall_0_5m_5deg", of * s.recall_05);
+  row.real("recall_0_25m_2deg", of * s.recall_025);
+  row.real("median_error_m", s.median_error_m);
+  row.real("median_heading_error_deg", s.median_heading_error_rad * 180 / std::numbers::pi);
+  row.real("cpu_ms_mean", of * s.cpu_ms_mean);
+  row.real("cpu_ms_median", s.cpu_ms_median);
+  row.real("cpu_ms_p95", s.cpu_ms_p95);
+  row.real("wall_ms_mean", of * s.wall_ms_mean);
+  const std::optional<WorldCeiling>& ceiling = cell.ceiling;
+  row.real("world_ceiling", ceiling ? ceiling->success : no_number);
+  add_interval(row, "world_ceiling",
+               ceiling ? std::optional(ceiling->success_interval_95) : std::nullopt);
+  row.real("unaliased_share", ceiling ? ceiling->unaliased : no_number);
+}
+
+void add_pose(Row& row, const std::string& name, const Pose2D& pose, bool is_known) {
+  row.real((name + "_x_m").c_str(), is_known ? pose.x_m : no_number);
+  row.real((name + "_y_m").c_str(), is_known ? pose.y_m : no_number);
+  row.real((name + "_heading_rad").c_str(), is_known ? pose.heading_rad : no_number);
+}
+
+void add_trial(Row& row, const TrialResult& t) {
+  constexpr std::size_t longest_status = 15;
+  const bool has_answer = std::isfinite(t.error_m);
+  row.whole("trial", t.trial);
+  row.text("status", std::string(name(t.status)), longest_status);
+  row.flag("answered", t.answered());
+  row.flag("success", t.success());
+  add_pose(row, "true", t.truth, true);
+  add_pose(row, "answer", t.answer, has_answer);
+  add_pose(row, "node", t.node, has_answer);
+  row.real("error_m", t.error_m);
+  row.real("node_error_m", t.node_error_m);
+  row.real("heading_error_rad", t.heading_error_rad);
+  row.whole("lines", t.lines);
+  row.whole("looks", t.looks);
+  row.whole("corners", t.corners);
+  row.whole("corner_mismatches", t.corner_mismatches);
+  row.real("score", t.score);
+  row.real("runner_up", t.runner_up);
+  row.real("probability", t.probability);
+  row.real("cpu_ms", t.cpu_ms);
+  row.real("wall_ms", t.wall_ms);
+}
+
+Row trial_row(const SettingColumns& settings,
+              std::size_t cell,
+              int block,
+              const TrialResult& trial) {
+  Row row;
+  row.whole("cell", static_cast<std::int64_t>(cell) + 1);
+  settings.add_to(row, cell);
+  row.whole("block", block);
+  add_trial(row, trial);
+  return row;
+}
+
+}  // namespace
+
+std::size_t export_cells(const Study& study,
+                         const StudyResults& results,
+                         bool all_settings,
+                         const std::string& name,
+                         FileInProgress& file) {
+  const SettingColumns settings(study, all_settings);
+  std::vector<std::string> labels;
+  for (const StudyCell& cell : study.file.cells) labels.push_back(cell.label);
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < results.cells.size(); ++i) {
+    Row& row = rows.emplace_back();
+    row.whole("cell", static_cast<std::int64_t>(i) + 1);
+    row.text("label", labels[i], SettingColumns::longest(labels));
+    settings.add_to(row, i);
+    add_figures(row, results.cells[i]);
+  }
+  ColumnFile table(file, ColumnFile::format_of(name), rows[0].columns, rows.size());
+  for (const Row& row : rows) table.add(row.values);
+  return rows.size();
+}
+
+StudyResults export_trials(const Study& study,
+                           const std::filesystem::path& folder,
+                           const std::string& name,
+                           FileInProgress& file) {
+  const ColumnFile::Format format = ColumnFile::format_of(name);
+  std::size_t rows = 0;
+  if (format == ColumnFile::Format::npy) {  // its head has the number of rows
+    visit_results(study, folder, [&](std::size_t, const std::vector<TrialResult>& trials) {
+      rows += trials.size();
+    });
+  }
+  const SettingColumns settings(study, false);
+  ColumnFile table(file, format, trial_row(settings, 0, 0, {}).columns, rows);
+  std::size_t written = 0;
+  StudyResults results =
+      visit_results(study, folder, [&](std::size_t cell, const std::vector<TrialResult>& trials) {
+        for (const TrialResult& t : trials) {
+          const int block = static_cast<int>(t.trial) / study.file.trials_per_block;
+          table.add(trial_row(settings, cell, block, t).values);
+        }
+        written += trials.size();
+      });
+  if (format == ColumnFile::Format::npy && written != rows) {
+    throw Error(folder.string(), "is being changed by another process",
+                "run the same command again when that has ended");
+  }
+  return results;
+}
+
+}  // namespace vernier::cli

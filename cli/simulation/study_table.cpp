@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/study_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/covariance.h"
+#include "calib/interval.h"
+#include "calib/rig_estimate.h"
+#include "cli/program/text_table.h"
+#include "cli/simulation/study_folder.h"
+#include "sim/experiment.h"
+#include "sim/study/budget.h"
+#include "sim/study/cell_comparison.h"
+#include "sim/study/cell_summary.h"
+#include "sim/study/instruction_sets.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/told_settings.h"
+#include "sim/study/world_summary.h"
+#include "sim/told/fresh_calibrations.h"
+
+namespace vernier::cli {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string interval_text(const std::optional<Interval>& interval) {
+  if (!interval) return "none";
+  return fmt::format("[{:>5.2f}, {:>6.2f}]", 100 * interval->low, 100 * interval->high);
+}
+
+/// A number, a dash where there is none: shards have a part of a ceiling's queries each, and a cell
+/// without trials or answers has no times or errors.
+std::string figure(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
+}
+
+std::string p_text(double p) {
+  if (std::isnan(p)) return "-";
+  return p < 0.0001 ? "<0.0001" : fmt::format("{:.4f}", p);
+}
+
+/// Names of the rows: the number of a cell, by which comparisons refer to it, and its swept values.
+std::vector<TextColumn> key_columns(const StudyResults& results) {
+  std::vector<TextColumn> columns;
+  if (results.cells.size() < 2) return columns;
+  columns.push_back({"cell", {}, true});
+  for (std::size_t i = 0; i < results.cells.size(); ++i) {
+    columns[0].cells.push_back(fmt::format("{}", i + 1));
+  }
+  const std::vector<std::string> keys = swept_keys(results);
+  for (const std::string& key : keys) {
+    columns.push_back({short_key(key, keys), {}, true});
+    for (const CellResult& cell : results.cells) {
+      const auto& swept = cell.cell.swept;
+      const auto found = std::find_if(swept.begin(), swept.end(),
+                                      [&](const auto& entry) { return entry.first == key; });
+      columns.back().cells.push_back(found == swept.end() ? "-" : found->second);
+    }
+  }
+  return columns;
+}
+
+struct CellFigures {
+  std::vector<CellSummary> summaries;
+  std::vector<std::optional<WorldCeiling>> ceilings;
+};
+
+bool is_same(const std::optional<WorldCeiling>& a, const std::optional<WorldCeiling>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->success == b->success && a->unaliased == b->unaliased && a->queries == b->queries;
+}
+
+bool is_shared(const std::vector<std::optional<WorldCeiling>>& ceilings) {
+  return std::all_of(ceilings.begin(), ceilings.end(),
+                     [&](const auto& ceiling) { return is_same(ceiling, ceilings[0]); });
+}
+
+/// One column of figures: its head and the text of a cell's figure.
+template <class Text>
+void add_column(std::vector<TextColumn>& columns,
+                const std::string& head,
+                std::size_t cells,
+                Text text) {
+  columns.push_back({head, {}});
+  for (std::size_t i = 0; i < cells; ++i) columns.back().cells.push_back(text(i));
+}
+
+std::string cells_table(const StudyResults& results, const CellFigures& figures) {
+  std::vector<TextColumn> columns = key_columns(results);
+  const auto add = [&](const std::string& head, auto text) {
+    add_column(columns, head, figures.summaries.size(), [&](std::size_t i) {
+      const CellSummary& s = figures.summaries[i];
+      return text(s, s.trials > 0 ? 1 : nan);
+    });
+  };
+  const auto add_ceiling = [&](const std::string& head, auto text) {
+    add_column(columns, head, figures.ceilings.size(), [&](std::size_t i) {
+      const std::optional<WorldCeiling>& ceiling = figures.ceilings[i];
+      return ceiling ? text(*ceiling) : std::string("-");
+    });
+  };
+  using S = const CellSummary&;
+  add("trials", [](S s, double) { return fmt::format("{}", s.trials); });
+  add("success %", [](S s, double of) { return figure(of * 100 * s.success, 2); });
+  add("95 % interval", [](S s, double) { return interval_text(s.success_interval_95); });
+  add("answered %", [](S s, double of) { return figure(of * 100 * s.coverage, 1); });
+  add("of these %", [](S s, double of) { return figure(of * 100 * s.success_when_answered, 2); });
+  add("median m", [](S s, double) { return figure(s.median_error_m, 3); });
+  add("cpu ms", [](S s, double of) { return figure(of * s.cpu_ms_mean, 1); });
+  add("p95 ms", [](S s, double) { return figure(s.cpu_ms_p95, 1); });
+  if (results.cells[0].interval_width) {
+    add_column(columns, "maps", results.cells.size(),
+               [&](std::size_t i) { return fmt::format("{}", results.cells[i].maps.size()); });
+    add_column(columns, "stopped", results.cells.size(),
+               [&](std::size_t i) { return std::string(name(results.cells[i].budget.state)); });
+  }
+  if (!is_shared(figures.ceilings)) {
+    using C = const WorldCeiling&;
+    add_ceiling("ceiling %", [](C c) { return figure(100 * c.success, 1); });
+    add_ceiling("of the ceiling", [](C c) { return interval_text(c.success_interval_95); });
+    add_ceiling("unaliased %", [](C c) { return figure(100 * c.unaliased, 1); });
+  }
+  return text_table(std::move(columns));
+}
+
+std::string ceiling_line(const CellFigures& figures) {
+  if (!is_shared(figures.ceilings) || !figures.ceilings[0]) return {};
+  const WorldCeiling& c = *figures.ceilings[0];
+  return fmt::format("world ceiling {:.1f} % {}, unaliased {:.1f} % of the queries\n",
+                     100 * c.success, interval_text(c.success_interval_95), 100 * c.unaliased);
+}
+
+std::string worlds_table(const StudyResults& results) {
+  const std::vector<WorldSummary> worlds = summarise_over_worlds(results.cells);
+  if (worlds.empty()) return {};
+  std::vector<TextColumn> columns{{"over worlds", {}, true}};
+  for (const WorldSummary& s : worlds) columns[0].cells.push_back(s.label);
+  const auto add = [&](const std::string& head, auto text) {
+    add_column(columns, head, worlds.size(), [&](std::size_t i) { return text(worlds[i]); });
+  };
+  using S = const WorldSummary&;
+  add("worlds", [](S s) { return fmt::format("{}", s.worlds); });
+  add("success %", [](S s) { return s.worlds > 0 ? figure(100 * s.success, 2) : "-"; });
+  add("95 % interval", [](S s) { return interval_text(s.success_interval_95); });
+  return "\n" + text_table(std::move(columns));
+}
+
+/// The comparisons that have a p-value.
+std::string comparisons_table(const StudyResults& results) {
+  std::vector<AdjustedComparison> pairs = compare_all(results.cells);
+  std::erase_if(pairs, [](const auto& pair) { return std::isnan(pair.paired.p_value); });
+  if (pairs.empty()) return {};
+  std::vector<TextColumn> columns;
+  const auto add = [&](const std::string& head, auto text) {
+    add_column(columns, head, pairs.size(), [&](std::size_t i) { return text(pairs[i]); });
+  };
+  using P = const AdjustedComparison&;
+  add("cells", [](P p) { return fmt::format("{}, {}", p.a + 1, p.b + 1); });
+  columns[0].is_key = true;
+  add("only first right", [](P p) { return fmt::format("{}", p.paired.only_a); });
+  add("only second", [](P p) { return fmt::format("{}", p.paired.only_b); });
+  add("p", [](P p) { return p_text(p.paired.p_value); });
+  add("p by Holm", [](P p) { return p_text(p.p_holm); });
+  return "\nsame queries, by a paired t-test over maps:\n" + text_table(std::move(columns));
+}
+
+std::string world_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const std::string& file : worlds_of(study.file)) {
+    names.push_back(file == study.file.world ? study.world.name
+                                             : study.other_worlds.at(file).world.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What the estimator is told of the true rig.
+std::string rig_text(const Study& study) {
+  const auto covariance = [](const RigEstimate& rig) {
+    return rig.covariance
+               ? fmt::format("covariance (scaled by psi_c) of kind {}", name(rig.covariance->kind))
+               : std::string("no covariance");
+  };
+  const ToldSettings& told = study.file.cells[0].told;
+  if (told.calibration) {
+    return fmt::format("true rig {}; told: a fresh calibration for each trial and each map\n",
+                       study.file.rig);
+  }
+  if (told.truth.empty()) {
+    return fmt::format("rig {}: {}\n", study.file.rig, covariance(study.rig));
+  }
+  std::string text = fmt::format("true rig {}\n", study.file.rig);
+  for (const std::string& file : told_rigs_of(study.file)) {
+    text += fmt::format("told rig {}: {}\n", file, covariance(study.told_rigs.at(file).estimate));
+  }
+  return text;
+}
+
+/// A line for each cell with [calibration].
+std::string calibrations_text(const StudyResults& results) {
+  std::string text;
+  for (const CellResult& cell : results.cells) {
+    if (!cell.calibrations) continue;
+    const CalibrationRecord& c = *cell.calibrations;
+    text += fmt::format(
+        "calibrations from {} views: {} of {} failed, {} more are doubted; depth at {:g} m: rms "
+        "error {:.3g} m, stated {:.3g} m\n",
+        cell.cell.told.calibration->views, c.failed, c.calibrations, c.doubtful, c.range_m,
+        c.depth_error_m, c.depth_sd_m);
+    if (!c.why_failed.empty()) text += fmt::format("  failed: {}\n", c.why_failed);
+    if (!c.why_doubtful.empty()) text += fmt::format("  doubted: {}\n", c.why_doubtful);
+  }
+  return text;
+}
+
+std::string conditions(const Study& study, const StudyResults& results) {
+  const std::vector<std::string> keys = swept_keys(results);
+  const bool swept_protocol = std::find(keys.begin(), keys.end(), "study.protocol") != keys.end();
+  const auto protocol = name(study.file.cells[0].experiment.protocol);
+  return rig_text(study) + calibrations_text(results) +
+         fmt::format("{}world {}; success: answered, within 1 m\n",
+                     swept_protocol ? "" : fmt::format("protocol {}, ", protocol),
+                     world_names(study)) +
+         (study.file.interval_width
+              ? fmt::format("interval: confidence sequence over recorded maps, to {} wide\n",
+                            *study.file.interval_width)
+              : "interval: Wilson's with Student's t, clustered by recorded map\n");
+}
+
+}  // namespace
+
+std::vector<std::string> swept_keys(const StudyResults& results) {
+  std::vector<std::string> keys;
+  for (const CellResult& cell : results.cells) {
+    for (const auto& [key, value] : cell.cell.swept) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+std::string short_key(const std::string& key, const std::vector<std::string>& keys) {
+  const auto last = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
+  const bool single = std::count_if(keys.begin(), keys.end(), [&](const std::string& other) {
+                        return last(other) == last(key);
+                      }) == 1;
+  return single ? last(key) : key;
+}
+
+std::string study_table(const Study& study, const StudyResults& results) {
+  CellFigures figures;
+  std::set<std::string> missing;
+  for (const CellResult& cell : results.cells) {
+    figures.summaries.push_back(summarise(cell));
+    figures.ceilings.push_back(cell.ceiling);
+    const CellSummary& s = figures.summaries.back();
+    if (!s.success_interval_95) missing.insert(s.why_no_interval);
+  }
+  std::string text = cells_table(results, figures) + worlds_table(results) +
+                     comparisons_table(results) + "\n" + ceiling_line(figures) +
+                     conditions(study, results);
+  for (const std::string& why : missing) text += fmt::format("no interval: {}\n", why);
+  if (is_mixture(results.instruction_sets)) {
+    text += fmt::format("computed with instruction sets {}: not comparable to the bit\n",
+                        results.instruction_sets);
+  }
+  if (results.blocks_done == 0) text += "no trials are stored yet\n";
+  if (results.blocks_done < results.blocks_total) {
+    text += fmt::format(
+        "{} of {} blocks done: run the study again to finish it{}\n", results.blocks_done,
+        results.blocks_total,
+        results.missing_shards.empty() ? "" : ", with " + shard_options(results.missing_shards));
+  }
+  return text;
+}
+
+}  // namespace vernier::cli

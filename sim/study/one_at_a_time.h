@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/study/study_file.h"
+
+namespace vernier::sim::internal {
+
+/// The table [one_at_a_time] of a study: how much each source of error matters, by cells that
+/// differ in one source only. All cells have the same queries and draws (common random numbers),
+/// so each is compared in pairs with its reference.
+struct OneAtATime {
+  bool only = false;     ///< this source and no other; the reference has none
+  bool all_but = false;  ///< all sources but this; the reference has all
+  bool swept = false;    ///< this source times each factor, beside all others; the same reference
+  std::vector<std::string> sources;          ///< names; empty: all that are on
+  std::vector<double> factors = {0.5, 2.0};  ///< of `swept`, neither 0 nor 1
+};
+
+/// Reads the table. Throws Error with file and line for unknown designs and sources, and factors
+/// that are no positive numbers or are 1.
+OneAtATime read_one_at_a_time(const toml::table& table, const std::string& place);
+
+/// The cells of the designs around one cell, the references first: swept are "design" (as set, no
+/// source, only, all but, swept), "source" and "value". Throws Error if a named source is off, a
+/// value is out of the source's range, or no source is on.
+std::vector<StudyCell> one_at_a_time(const StudyCell& cell,
+                                     const OneAtATime& designs,
+                                     const std::string& place);
+
+/// Whether a cell is of a design, and whether `reference` is what it is compared with.
+bool has_design(const StudyCell& cell);
+bool is_reference_of(const StudyCell& reference, const StudyCell& cell);
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/rank_messages.h"
+
+#include <cstdint>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "calib/error.h"
+#include "sim/study/store_rows.h"
+#include "sim/study/work_units.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+using RankJson = nlohmann::json;
+
+struct RankTexts {
+  RankJson operator()(const Hello& m) const { return {"hello", m.work, m.instruction_set, m.host}; }
+  RankJson operator()(const Welcome& m) const { return {"welcome", m.has_blocks}; }
+  RankJson operator()(const Ready& m) const { return {"ready", m.threads}; }
+  RankJson operator()(const Assigned& m) const {
+    return {"assigned", m.number, m.unit.block, m.unit.ceiling, m.unit.queries};
+  }
+  RankJson operator()(const Computed& m) const {
+    const BlockRow& row = m.result.row;
+    return {"computed", m.number, row.cell, row.block, row.counted, row.results, m.result.aliases};
+  }
+  RankJson operator()(const Failed& m) const {
+    return {"failed", m.place, m.fault, m.remedy, m.internal};
+  }
+  RankJson operator()(const Left&) const { return RankJson::array({"left"}); }
+  RankJson operator()(const End&) const { return RankJson::array({"end"}); }
+};
+
+RankMessage parsed(const RankJson& json) {
+  const auto kind = json.at(0).get<std::string>();
+  if (kind == "hello") return Hello{json.at(1), json.at(2), json.at(3)};
+  if (kind == "welcome") return Welcome{json.at(1).get<bool>()};
+  if (kind == "ready") return Ready{json.at(1).get<int>()};
+  if (kind == "assigned") {
+    return Assigned{json.at(1).get<std::int64_t>(),
+                    {json.at(2).get<int>(), json.at(3).get<int>(), json.at(4)}};
+  }
+  if (kind == "computed") {
+    return Computed{json.at(1).get<std::int64_t>(),
+                    {{json.at(2), json.at(3).get<int>(), json.at(4), json.at(5)}, json.at(6)}};
+  }
+  if (kind == "failed") {
+    return Failed{json.at(1), json.at(2), json.at(3), json.at(4).get<bool>()};
+  }
+  if (kind == "left") return Left{};
+  if (kind == "end") return End{};
+  throw Error("a message between ranks", "is not known", "run the same build everywhere");
+}
+
+}  // namespace
+
+std::string rank_text(const RankMessage& message) {
+  // a place may be a file name with invalid UTF-8
+  return std::visit(RankTexts{}, message).dump(-1, ' ', false, RankJson::error_handler_t::replace);
+}
+
+RankMessage parse_rank_text(const std::string& text) {
+  try {
+    return parsed(RankJson::parse(text));
+  } catch (const RankJson::exception&) {
+    throw Error("a message between ranks", "cannot be read", "run the same build everywhere");
+  }
+}
+
+Failed current_failure() {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return {error.place(), error.fault(), error.remedy(), false};
+  } catch (const std::exception& error) {
+    return {"", error.what(), "", true};
+  } catch (...) {
+    return {"", "an unknown exception", "", true};
+  }
+}
+
+}  // namespace vernier::sim::internal

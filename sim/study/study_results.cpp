@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/error.h"
+#include "calib/interval.h"
+#include "sim/experiment.h"
+#include "sim/study/budget.h"
+#include "sim/study/stored_results.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
+#include "sim/study/study_store.h"
+#include "sim/study/study_work.h"
+
+namespace vernier::sim::internal {
+
+namespace {
+
+/// Results without trials: cells, ceilings, commands.
+StudyResults without_trials(const Study& study,
+                            const StudyWork& work,
+                            const StoredResults& stored) {
+  StudyResults results;
+  const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
+  std::set<std::string> commands, machines;
+  for (const auto& [key, value] : stored.notes()) {
+    if (key == command_key(value)) commands.insert(value);
+    if (key == machine_key(value)) machines.insert(value);
+  }
+  results.commands.assign(commands.begin(), commands.end());
+  results.machines.assign(machines.begin(), machines.end());
+  results.instruction_sets = stored.instruction_sets();
+  results.missing_shards = missing_shards(study, work, stored);
+  for (const StudyCell& cell : study.file.cells) {
+    CellResult result;
+    result.cell = cell;
+    result.trials_per_block = study.file.trials_per_block;
+    result.ceiling = noted_ceiling(study, stored.notes(), ceiling_key(study, cell));
+    if (cell.told.calibration) {
+      result.calibrations = noted_calibrations(stored.notes(), calibration_key(study, cell));
+    }
+    result.interval_width = study.file.interval_width;
+    result.budget = decisions[results.cells.size()];
+    results.blocks_total += result.budget.wanted;
+    results.cells.push_back(std::move(result));
+  }
+  return results;
+}
+
+/// A stored block as the study wants it: it may have more trials.
+std::vector<TrialResult> wanted_trials(StoredBlock block,
+                                       const BlockJob& job,
+                                       const std::filesystem::path& folder) {
+  if (block.trials[0].trial != static_cast<std::uint32_t>(job.first)) {
+    throw Error(folder.string(), fmt::format("block {} holds other trials", job.block),
+                "delete the stores of the folder and run the study again");
+  }
+  block.trials.resize(static_cast<std::size_t>(job.count));
+  return std::move(block.trials);
+}
+
+}  // namespace
+
+StudyResults visit_results(const Study& study,
+                           const std::filesystem::path& folder,
+                           const BlockVisitor& visit) {
+  StoredResults stored;
+  stored.add_folder(folder);
+  stored.require_all_read();
+  const StudyWork work = study_work(study);
+  StudyResults results = without_trials(study, work, stored);
+  constexpr std::size_t at_a_time = 200;  // blocks read together
+  for (std::size_t from = 0; from < work.blocks.size();) {
+    const BlockJob& first = work.blocks[from];
+    std::size_t end = from;
+    while (end < work.blocks.size() && end < from + at_a_time &&
+           work.blocks[end].cell == first.cell) {
+      ++end;
+    }
+    const std::size_t cell = static_cast<std::size_t>(first.cell);
+    std::vector<StoredBlock> blocks =
+        stored.read({work.cell_keys[cell], first.block, work.blocks[end - 1].block + 1});
+    for (StoredBlock& block : blocks) {
+      const BlockJob& job = work.blocks[from + static_cast<std::size_t>(block.block - first.block)];
+      if (static_cast<int>(block.trials.size()) < job.count) continue;
+      if (job.block >= results.cells[cell].budget.wanted) continue;  // a cell that has stopped
+      std::vector<TrialResult> trials = wanted_trials(std::move(block), job, folder);
+      ++results.blocks_done;
+      const auto successes = std::count_if(trials.begin(), trials.end(),
+                                           [](const TrialResult& t) { return t.success(); });
+      results.cells[cell].maps.push_back(
+          {.successes = static_cast<int>(successes), .trials = static_cast<int>(trials.size())});
+      visit(cell, std::move(trials));
+    }
+    from = end;
+  }
+  return results;
+}
+
+StudyResults study_results(const Study& study, const std::filesystem::path& folder) {
+  std::vector<std::vector<TrialResult>> all(study.file.cells.size());
+  StudyResults results =
+      visit_results(study, folder, [&](std::size_t cell, std::vector<TrialResult> trials) {
+        all[cell].insert(all[cell].end(), trials.begin(), trials.end());
+      });
+  for (std::size_t i = 0; i < all.size(); ++i) results.cells[i].trials = std::move(all[i]);
+  return results;
+}
+
+}  // namespace vernier::sim::internal

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/study_work.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calib/base/fingerprint.h"
+#include "calib/interval.h"
+#include "sim/study/budget.h"
+#include "sim/study/stored_results.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+#include "sim/study/study_keys.h"
+
+namespace vernier::sim::internal {
+
+using namespace vernier::internal;
+
+StudyWork study_work(const Study& study) {
+  StudyWork work;
+  std::map<std::string, const StudyCell*> ceilings;
+  const int trials = study.file.trials, size = study.file.trials_per_block;
+  for (const StudyCell& cell : study.file.cells) {
+    const int number = static_cast<int>(work.cell_keys.size());
+    work.cell_keys.push_back(cell_key(study, cell));
+    for (int first = 0, block = 0; first < trials; first += size, ++block) {
+      work.blocks.push_back({number, block, first, std::min(size, trials - first)});
+    }
+    ceilings.emplace(ceiling_key(study, cell), &cell);
+  }
+  for (const auto& [key, cell] : ceilings) {
+    work.ceilings.push_back({key, cell, ceiling_queries(study, key)});
+  }
+  return work;
+}
+
+std::string work_fingerprint(const StudyWork& work) {
+  std::string all;
+  for (const std::string& key : work.cell_keys) all += key + "\n";
+  for (const CeilingJob& ceiling : work.ceilings) {
+    all += fmt::format("{} {}\n", ceiling.key, ceiling.queries);
+  }
+  for (const BlockJob& job : work.blocks) {
+    all += fmt::format("{} {} {} {}\n", job.cell, job.block, job.first, job.count);
+  }
+  return fingerprint(all);
+}
+
+bool MissingWork::empty() const {
+  return blocks.empty() && std::all_of(queries.begin(), queries.end(),
+                                       [](const std::vector<int>& of) { return of.empty(); });
+}
+
+std::vector<BudgetDecision> budget_decisions(const Study& study,
+                                             const StudyWork& work,
+                                             const StoredResults& stored) {
+  const std::size_t cells = work.cell_keys.size();
+  std::vector<std::vector<ClusterCount>> first(cells);  // without a gap
+  std::vector<int> all(cells, 0);
+  for (const BlockJob& job : work.blocks) {
+    const auto cell = static_cast<std::size_t>(job.cell);
+    all[cell] = std::max(all[cell], job.block + 1);
+    if (static_cast<int>(first[cell].size()) != job.block) continue;
+    const ClusterCount count = stored.count(work.cell_keys[cell], job.block);
+    if (count.trials >= job.count) first[cell].push_back(count);
+  }
+  std::vector<BudgetDecision> decisions;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    decisions.push_back(budget_decision(first[cell], all[cell], study.file.interval_width));
+  }
+  return decisions;
+}
+
+MissingWork missing_work(const Study& study,
+                         const StudyWork& work,
+                         const Shard& shard,
+                         const StoredResults& stored) {
+  MissingWork missing;
+  const std::vector<BudgetDecision> decisions = budget_decisions(study, work, stored);
+  const int count = static_cast<int>(work.blocks.size());
+  for (int i = shard.index; i < count; i += shard.count) {
+    const BlockJob& job = work.blocks[static_cast<std::size_t>(i)];
+    if (job.block >= decisions[static_cast<std::size_t>(job.cell)].wanted) continue;
+    if (stored.trials(work.cell_keys[job.cell], job.block) < job.count) missing.blocks.push_back(i);
+  }
+  for (const CeilingJob& ceiling : work.ceilings) {
+    const std::vector<int> known = noted_queries(study, stored.notes(), ceiling.key);
+    std::vector<int>& queries = missing.queries.emplace_back();
+    for (int i = shard.index; i < ceiling.queries; i += shard.count) {
+      if (known[static_cast<std::size_t>(i)] == not_known) queries.push_back(i);
+    }
+  }
+  return missing;
+}
+
+Shard shard_of_store(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  Shard shard;
+  if (std::sscanf(name.c_str(), "results-%9d-of-%9d.sqlite", &shard.index, &shard.count) != 2 ||
+      shard.index < 0 || shard.index >= shard.count || store_file("", shard) != name) {
+    return {};
+  }
+  return shard;
+}
+
+std::vector<Shard> missing_shards(const Study& study,
+                                  const StudyWork& work,
+                                  const StoredResults& stored) {
+  std::set<int> counts;
+  for (const auto& file : stored.files()) {
+    if (const Shard shard = shard_of_store(file); shard.count > 1) counts.insert(shard.count);
+  }
+  if (counts.empty()) return {};
+  const MissingWork missing = missing_work(study, work, {}, stored);
+  std::vector<Shard> shards;
+  for (const int count : counts) {
+    std::set<int> lacking;
+    for (const int block : missing.blocks) lacking.insert(block % count);
+    for (const std::vector<int>& queries : missing.queries) {
+      for (const int query : queries) lacking.insert(query % count);
+    }
+    for (const int index : lacking) shards.push_back({index, count});
+  }
+  return shards;
+}
+
+}  // namespace vernier::sim::internal

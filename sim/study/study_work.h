@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/study/budget.h"
+#include "sim/study/stored_results.h"
+#include "sim/study/study.h"
+#include "sim/study/study_file.h"
+
+namespace vernier::sim::internal {
+
+/// A block of trials of a cell.
+struct BlockJob {
+  int cell = 0;  ///< place in StudyFile::cells
+  int block = 0;
+  int first = 0, count = 0;  ///< its trials
+};
+
+/// The queries of a world ceiling, which several cells may share.
+struct CeilingJob {
+  std::string key;                  ///< ceiling_key()
+  const StudyCell* cell = nullptr;  ///< one of them
+  int queries = 0;
+};
+
+/// All that a study computes, in a fixed order. Of n shards, shard s has the blocks and, of each
+/// ceiling, the queries whose place is s modulo n.
+struct StudyWork {
+  std::vector<std::string> cell_keys;
+  std::vector<BlockJob> blocks;
+  std::vector<CeilingJob> ceilings;  ///< ascending by key
+};
+
+/// Points into the study, which must outlive it.
+StudyWork study_work(const Study& study);
+
+/// A digest of everything that a study's results depend on: processes that work on it together must
+/// agree on it.
+std::string work_fingerprint(const StudyWork& work);
+
+/// How far each cell has to go, by what is stored (budget.h).
+std::vector<BudgetDecision> budget_decisions(const Study& study,
+                                             const StudyWork& work,
+                                             const StoredResults& stored);
+
+/// What of it is not stored, of the blocks that are wanted so far.
+struct MissingWork {
+  std::vector<int> blocks;                ///< places in StudyWork::blocks
+  std::vector<std::vector<int>> queries;  ///< of each ceiling
+  bool empty() const;
+};
+
+/// Of a shard. Throws Error if stores disagree on a ceiling.
+MissingWork missing_work(const Study& study,
+                         const StudyWork& work,
+                         const Shard& shard,
+                         const StoredResults& stored);
+
+/// Shards that lack a block or a query, of every number of shards that a store is named after
+/// ("results-1-of-4.sqlite"); ascending. Empty if nothing is missing or no store is a shard's.
+std::vector<Shard> missing_shards(const Study& study,
+                                  const StudyWork& work,
+                                  const StoredResults& stored);
+
+/// The shard that a store's name says; {0, 1} for the store of a whole study.
+Shard shard_of_store(const std::filesystem::path& file);
+
+}  // namespace vernier::sim::internal

@@ -150,8 +150,8 @@ void StudyReader::check_sweep_key(const toml::table& root,
   }
   if (key.find('.') != std::string::npos &&
       (std::find(sections.begin(), sections.end(), head) == sections.end() ||
-       key == "study.trials" || key == "sources.file" || key == "rig.truth" ||
-       key == "calibration.observations")) {
+       key == "study.trials" || key == "study.interval_width" || key == "sources.file" ||
+       key == "rig.truth" || key == "calibration.observations")) {
     fail(node, "'" + shortened(key) + "' cannot be swept",
          "sweep a key of [sources], [corners], [camera], [map], [localiser] or [calibration], "
          "study.protocol, study.seed, world.file or rig.file");

@@ -71,5 +71,5 @@ install(FILES ${PROJECT_BINARY_DIR}/vernier-config.cmake
 
 # The program finds these beside itself, in ../share/vernier; cli/page adds the report's page.
 set(vernier_share_dir ${CMAKE_INSTALL_DATADIR}/vernier)
-install(DIRECTORY datasets/worlds datasets/rigs DESTINATION ${vernier_share_dir})
+install(DIRECTORY datasets/worlds datasets/rigs datasets/studies DESTINATION ${vernier_share_dir})
 install(FILES python/mrcal_uncertainty.py DESTINATION ${vernier_share_dir}/python)

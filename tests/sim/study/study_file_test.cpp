@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,6 +35,26 @@ namespace {
 
 std::string complaint_of(const std::string& text) {
   return test::error_message([&] { parse_study(text, "s.toml"); });
+}
+
+TEST(StudyFile, ShippedStudiesAreRead) {
+  const std::filesystem::path folder =
+      std::filesystem::path(VERNIER_SOURCE_DIR) / "datasets" / "studies";
+  const std::map<std::string, std::size_t> cells{{"board_views.toml", 4},
+                                                 {"campaign.toml", 77},
+                                                 {"each_source.toml", 47},
+                                                 {"stages.toml", 5},
+                                                 {"versions.toml", 4}};
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const StudyFile study = read_study(entry.path());
+    EXPECT_EQ(study.cells.size(), cells.at(entry.path().filename().string())) << entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, cells.size());
+  const StudyFile campaign = read_study(folder / "campaign.toml");
+  constexpr int of_the_memo = 74'110;
+  EXPECT_GE(campaign.trials * static_cast<int>(campaign.cells.size()), of_the_memo);
 }
 
 TEST(StudyFile, DefaultsAreTheMemos) {

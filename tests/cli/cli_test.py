@@ -551,7 +551,7 @@ class BadInput(Case):
             (self.folder / name).mkdir()
             (self.folder / name / 'study.toml').touch()
         self.complains('report', self.folder / 'one', self.folder / 'two', '-o',
-                       self.folder / 'r.html', of='is a second study')
+                       self.folder / 'r.html', of="the file has no 'study'")
 
     def test_numbers_that_are_none(self):
         for psi_c in ('nan', 'inf'):

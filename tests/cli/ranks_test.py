@@ -102,7 +102,7 @@ class Results(RankCase):
     def test_progress_is_said_once(self):
         done = self.study_on(3)
         self.assertEqual(done.stderr.count('study: blocks: 6 of 6'), 1)
-        self.assertEqual(done.stdout.count('success: within 1 m'), 1)
+        self.assertEqual(done.stdout.count('success: answered, within 1 m'), 1)
 
 
 class BadInput(RankCase):

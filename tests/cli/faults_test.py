@@ -37,7 +37,7 @@ class FaultCase(Case):
     def setUp(self):
         super().setUp()
         verb_calls.write_inputs(self.folder)
-        self.inputs = set(os.listdir(self.folder))
+        self.inputs = {str(file.relative_to(self.folder)) for file in self.folder.rglob('*')}
 
     def made(self):
         """What is in the folder besides the inputs."""
@@ -63,7 +63,7 @@ class Disk(FaultCase):
         disk = self.folder / 'disk'
         disk.mkdir(exist_ok=True)
         script = (f'mount -t tmpfs -o size={size} none disk && cd disk && {before} '
-                  f'for file in ../*.* ; do ln -s "$file" . ; done; "$@"; code=$?; '
+                  f'for file in ../*.* ../begun; do ln -s "$file" . ; done; "$@"; code=$?; '
                   'find . -mindepth 1 ! -type l > ../left; '
                   'test -f old && cat old > ../old_now; exit $code')
         done = subprocess.run([*NAMESPACE, 'sh', '-c', script, 'sh', cli_test.PROGRAM,

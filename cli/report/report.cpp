@@ -88,9 +88,35 @@ LoadedStudy load(const std::string& folder, Session& session) {
   return loaded;
 }
 
+/// The last parts of folders' names, as many as tell them apart: legends have little room.
+std::vector<std::string> names_of(const std::vector<LoadedStudy>& studies) {
+  std::vector<fs::path> rest;
+  std::vector<std::string> names;
+  for (const LoadedStudy& loaded : studies) {
+    const fs::path folder = fs::path(loaded.folder).lexically_normal();
+    const fs::path whole = folder.has_filename() ? folder : folder.parent_path();
+    names.push_back(whole.filename().string());
+    rest.push_back(whole.parent_path());
+  }
+  const auto are_distinct = [&] {
+    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+  };
+  while (!are_distinct()) {
+    bool longer = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!rest[i].has_filename()) continue;
+      names[i] = rest[i].filename().string() + "/" + names[i];
+      rest[i] = rest[i].parent_path();
+      longer = true;
+    }
+    if (!longer) break;
+  }
+  return names;
+}
+
 /// What the page says of one study.
-Json study_part(const LoadedStudy& loaded) {
-  return {{"name", loaded.folder},
+Json study_part(const LoadedStudy& loaded, const std::string& name) {
+  return {{"name", name},
           {"study", report_study(loaded.study, loaded.results)},
           {"world", report_world(loaded.study.world)},
           {"view", report_view(loaded.study)}};
@@ -102,15 +128,18 @@ void add_studies(const std::vector<LoadedStudy>& studies,
                  Validation proof,
                  Json& data) {
   std::set<std::string> rigs;
-  for (const LoadedStudy& loaded : studies) {
-    Json part = study_part(loaded);
+  const std::vector<std::string> names = names_of(studies);
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    const LoadedStudy& loaded = studies[i];
+    Json part = study_part(loaded, names[i]);
     if (studies.size() == 1) {
       for (const char* key : {"study", "world", "view"}) data[key] = std::move(part[key]);
     } else {
       data["studies"].push_back(std::move(part));
     }
-    if (!rigs.insert(loaded.study.rig_fingerprint).second) continue;
-    data["rigs"].push_back(report_rig(loaded.study.rig, loaded.study.file.rig, proof, session));
+    if (rigs.insert(loaded.study.rig_fingerprint).second) {
+      data["rigs"].push_back(report_rig(loaded.study.rig, loaded.study.file.rig, proof, session));
+    }
     for (const auto& [file, told] : loaded.study.told_rigs) {
       if (!rigs.insert(told.fingerprint).second) continue;
       data["rigs"].push_back(report_rig(told.estimate, file, proof, session));

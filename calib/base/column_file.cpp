@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "calib/base/byte_order.h"
 #include "calib/base/file_in_progress.h"
+#include "calib/base/numpy_array.h"
 #include "calib/base/utf8.h"
 #include "calib/error.h"
 
@@ -58,28 +58,12 @@ std::string python_text(std::string_view text) {
   return quoted + "'";
 }
 
-/// Version 1 has room for a head of 64 KiB, version 3 for 4 GiB of UTF-8.
-std::string numpy_head(const std::vector<Column>& columns, std::size_t rows) {
+std::string description_of(const std::vector<Column>& columns, std::size_t rows) {
   std::string text = "{'descr': [";
-  bool ascii = true;
   for (const Column& column : columns) {
     text += fmt::format("({}, '{}'), ", python_text(column.name), numpy_type(column));
-    for (const char c : column.name) ascii = ascii && static_cast<unsigned char>(c) < 0x80;
   }
-  text += fmt::format("], 'fortran_order': False, 'shape': ({},), }}", rows);
-  constexpr std::size_t aligned = 64;  // the data begin at a multiple of 64 bytes
-  const bool is_short = ascii && text.size() + aligned < std::numeric_limits<std::uint16_t>::max();
-  const std::size_t before = is_short ? 10 : 12;
-  text.append(aligned - (before + text.size() + 1) % aligned, ' ');
-  text += '\n';
-  std::string bytes = "\x93NUMPY";
-  bytes += is_short ? std::string_view("\x01\x00", 2) : std::string_view("\x03\x00", 2);
-  if (is_short) {
-    append_number(bytes, static_cast<std::uint16_t>(text.size()), false);
-  } else {
-    append_number(bytes, static_cast<std::uint32_t>(text.size()), false);
-  }
-  return bytes + text;
+  return text + fmt::format("], 'fortran_order': False, 'shape': ({},), }}", rows);
 }
 
 /// The code point of a valid character of UTF-8.
@@ -121,7 +105,7 @@ ColumnFile::ColumnFile(FileInProgress& file,
     : file_(file), format_(format), columns_(std::move(columns)) {
   for (Column& column : columns_) column.characters = std::max<std::size_t>(1, column.characters);
   if (format_ == Format::npy) {
-    file_.append(numpy_head(columns_, rows));
+    file_.append(numpy_head(description_of(columns_, rows)));
     return;
   }
   std::string line;

@@ -4,9 +4,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "calib/base/byte_order.h"
 #include "calib/base/image_size.h"
@@ -133,16 +135,28 @@ NumpyArray parse_numpy(std::string_view bytes, const std::string& place) {
   return {head.rows, head.columns, head.type[1] != 'f', read(data, count, head.type[0] == '>')};
 }
 
-std::string numpy_bytes(const std::vector<float>& values, int rows, int columns) {
-  std::string text =
-      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
-  constexpr std::size_t before = 10, aligned = 64;  // the data begin at a multiple of 64 bytes
-  text.append(aligned - (before + text.size() + 1) % aligned, ' ');
-  text += '\n';
+std::string numpy_head(std::string dictionary) {
+  constexpr std::size_t aligned = 64;
+  const bool is_ascii = std::all_of(dictionary.begin(), dictionary.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  const bool is_short =
+      is_ascii && dictionary.size() + aligned < std::numeric_limits<std::uint16_t>::max();
+  const std::size_t before = is_short ? 10 : 12;
+  dictionary.append(aligned - (before + dictionary.size() + 1) % aligned, ' ');
+  dictionary += '\n';
   std::string bytes(magic);
-  bytes += std::string_view("\x01\x00", 2);
-  append_number(bytes, static_cast<std::uint16_t>(text.size()), false);
-  bytes += text;
+  bytes += is_short ? std::string_view("\x01\x00", 2) : std::string_view("\x03\x00", 2);
+  if (is_short) {
+    append_number(bytes, static_cast<std::uint16_t>(dictionary.size()), false);
+  } else {
+    append_number(bytes, static_cast<std::uint32_t>(dictionary.size()), false);
+  }
+  return bytes + dictionary;
+}
+
+std::string numpy_bytes(const std::vector<float>& values, int rows, int columns) {
+  std::string bytes = numpy_head(fmt::format(
+      "{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns));
   for (const float value : values) append_number(bytes, value, false);
   return bytes;
 }

@@ -22,6 +22,10 @@ bool is_numpy(std::string_view bytes);
 /// Error(place) unless the array has two dimensions, C order and real or integer values.
 NumpyArray parse_numpy(std::string_view bytes, const std::string& place);
 
+/// The head of a .npy file whose description is this dictionary: version 1 has room for 64 KiB,
+/// version 3 for 4 GiB of UTF-8. The data begin at a multiple of 64 bytes.
+std::string numpy_head(std::string dictionary);
+
 /// The bytes of a .npy file of float32, little-endian.
 std::string numpy_bytes(const std::vector<float>& values, int rows, int columns);
 

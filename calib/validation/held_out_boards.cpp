@@ -17,13 +17,11 @@
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/draw_sources.h"
+#include "calib/statistics/shuffled.h"
 #include "calib/triangulation.h"
-#include "calib/validation/shuffled_frames.h"
 
 namespace vernier::internal {
 namespace {
-
-constexpr int min_frames_to_split = 6;
 
 /// One frame seen by both cameras of the pair: pixels by corner.
 using SeenPair = std::map<int, PixelPair>;
@@ -173,7 +171,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
     const HeldOutBoardsOptions& options,
     const std::function<void(int done, int total)>& progress) {
   const std::vector<int> frames = frames_of(observations);
-  if (observations.size_px.size() < 2 || frames.size() < min_frames_to_split) {
+  if (observations.size_px.size() < 2 || frames.size() < fewest_frames_to_divide) {
     throw Error("boards left out", "needs a pair of cameras and at least six frames",
                 "give more views");
   }
@@ -190,7 +188,9 @@ HeldOutBoardsResult evaluate_held_out_boards(
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
     std::vector<int> kept =
-        shuffled_frames(frames, options.seed, split, DrawSource::left_out_boards);
+        shuffled(frames, {.seed = options.seed,
+                          .trial = static_cast<std::uint32_t>(split),
+                          .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
     kept.resize(static_cast<std::size_t>(training));
     std::sort(kept.begin(), kept.end());
     try {

@@ -10,6 +10,9 @@
 
 namespace vernier::internal {
 
+/// Fewer frames are not divided to validate a calibration.
+inline constexpr int fewest_frames_to_divide = 6;
+
 struct HeldOutBoardsOptions {
   int training_frames = 0;  ///< per split; 0: a little over half
   int splits = 100;

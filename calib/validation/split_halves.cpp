@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -16,12 +17,11 @@
 #include "calib/rig_estimate.h"
 #include "calib/statistics/distributions.h"
 #include "calib/statistics/draw_sources.h"
-#include "calib/validation/shuffled_frames.h"
+#include "calib/statistics/shuffled.h"
+#include "calib/validation/held_out_boards.h"
 
 namespace vernier::internal {
 namespace {
-
-constexpr std::size_t fewest_to_split = 6;
 
 struct ComparedHalves {
   RigDifference honest, mvb;
@@ -36,12 +36,12 @@ RigEstimate calibrated(const BoardObservations& observations,
 
 /// Nothing if one of the halves does not determine the rig.
 std::optional<ComparedHalves> compare_halves(const BoardObservations& observations,
-                                             const std::vector<int>& shuffled,
+                                             const std::vector<int>& order,
                                              const CalibrationOptions& how) {
-  const auto middle = shuffled.begin() + static_cast<std::ptrdiff_t>(shuffled.size() / 2);
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
   try {
-    const RigEstimate a = calibrated(observations, {shuffled.begin(), middle}, how);
-    const RigEstimate b = calibrated(observations, {middle, shuffled.end()}, how);
+    const RigEstimate a = calibrated(observations, {order.begin(), middle}, how);
+    const RigEstimate b = calibrated(observations, {middle, order.end()}, how);
     const auto compared_by = [&](CovarianceChoice choice) {
       return rig_difference(a.rig, chosen_covariance(a, choice).value(), b.rig,
                             chosen_covariance(b, choice).value());
@@ -59,7 +59,7 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
                                        const SplitHalvesOptions& options,
                                        const std::function<void(int done, int total)>& progress) {
   const std::vector<int> frames = frames_of(observations);
-  if (frames.size() < fewest_to_split) {
+  if (frames.size() < fewest_frames_to_divide) {
     throw Error("halves", "needs at least six frames", "give more views");
   }
   const auto count = static_cast<std::size_t>(options.splits);
@@ -67,9 +67,11 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
   std::mutex mutex;
   int done = 0;
   for_each_index(count, options.threads, [&](std::size_t split) {
-    const std::vector<int> shuffled =
-        shuffled_frames(frames, options.seed, static_cast<int>(split), DrawSource::split_halves);
-    compared[split] = compare_halves(observations, shuffled, options.calibration);
+    const std::vector<int> order =
+        shuffled(frames, {.seed = options.seed,
+                          .trial = static_cast<std::uint32_t>(split),
+                          .source = static_cast<std::uint32_t>(DrawSource::split_halves)});
+    compared[split] = compare_halves(observations, order, options.calibration);
     const std::lock_guard lock(mutex);
     if (progress) progress(++done, options.splits);
   });

@@ -21,6 +21,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/rig_file.h"
 #include "calib/solver/initial_rig.h"
+#include "calib/validation/held_out_boards.h"
 #include "cli/calibration/board_input.h"
 #include "cli/calibration/check_file.h"
 #include "cli/calibration/check_halves.h"
@@ -64,14 +65,14 @@ void refuse_unused_options(const CheckArguments& options) {
 
 /// Checked before solving: held-out boards need a pair of cameras, and splits some frames.
 void check_splits(const CheckArguments& options, const BoardObservations& observations) {
-  constexpr int fewest_frames = 6, fewest_to_calibrate = 3;
+  constexpr int fewest_to_calibrate = 3;
   const auto frames = static_cast<int>(frames_of(observations).size());
-  if (options.halves && frames < fewest_frames) {
+  if (options.halves && frames < fewest_frames_to_divide) {
     throw Error("--halves", fmt::format("needs at least six frames; got {}", frames),
                 "give more views, or leave it out");
   }
   if (!options.holdout) return;
-  if (observations.size_px.size() < 2 || frames < fewest_frames) {
+  if (observations.size_px.size() < 2 || frames < fewest_frames_to_divide) {
     throw Error(
         "--holdout",
         fmt::format("needs two cameras and at least six frames; got {} camera(s) and {} frame(s)",

@@ -64,14 +64,11 @@ Json named_coverage(const std::string& what, const std::string& unit, const Leng
   return json;
 }
 
-void add_left_out(const RigEstimate& estimate,
+void add_left_out(const BoardObservations& observations,
                   const CalibrationOptions& options,
                   const std::string& file,
                   const Session& session,
                   Json& json) {
-  const CalibrationEvidence& evidence = *estimate.evidence;
-  const BoardObservations observations =
-      at_frames(evidence.observations, evenly_spaced(evidence.frames, max_frames));
   session.info(fmt::format("{}: calibrating {} times with held-out boards", file, splits));
   const HeldOutBoardsResult result =
       evaluate_held_out_boards(observations, {.splits = splits, .calibration = options});
@@ -111,14 +108,11 @@ Json distances_json(const SplitHalvesResult& result) {
   return {{"honest", honest}, {"mvb", mvb}, {"expected", expected}};
 }
 
-void add_halves(const RigEstimate& estimate,
+void add_halves(const BoardObservations& observations,
                 const CalibrationOptions& options,
                 const std::string& file,
                 const Session& session,
                 Json& json) {
-  const CalibrationEvidence& evidence = *estimate.evidence;
-  const BoardObservations observations =
-      at_frames(evidence.observations, evenly_spaced(evidence.frames, max_frames));
   session.info(fmt::format("{}: calibrating halves of the views {} times", file, splits));
   const SplitHalvesResult result =
       compare_split_halves(observations, {.splits = splits, .calibration = options});
@@ -149,13 +143,16 @@ Json report_validation(const RigEstimate& estimate,
   } catch (const Error& error) {
     note(fmt::format("Lens models were not compared: {}.", error.what()));
   }
+  const BoardObservations observations = at_frames(
+      estimate.evidence->observations, evenly_spaced(estimate.evidence->frames, max_frames));
+  const CalibrationOptions options = options_of_file(with_default_names(estimate));
   try {
-    add_halves(estimate, options_of_file(with_default_names(estimate)), file, session, json);
+    add_halves(observations, options, file, session, json);
   } catch (const Error& error) {
     note(fmt::format("Halves of the views were not compared: {}.", error.what()));
   }
   try {
-    add_left_out(estimate, options_of_file(with_default_names(estimate)), file, session, json);
+    add_left_out(observations, options, file, session, json);
   } catch (const Error& error) {
     note(fmt::format("No boards were held out: {}.", error.what()));
   }

@@ -33,13 +33,6 @@ struct CellQuantity {
   std::function<FigurePoint(const CellSummary&)> of;  ///< y and its interval
 };
 
-std::string swept_text(const StudyCell& cell, const std::string& key) {
-  for (const auto& [swept, value] : cell.swept) {
-    if (swept == key) return value;
-  }
-  return {};
-}
-
 /// Keys that are swept, and how cells are laid out by them.
 struct SweepLayout {
   std::string x;  ///< empty: rows
@@ -51,13 +44,13 @@ std::string shown_key(const std::string& key) {
   return key == "sources.calibration" ? "ψ_c" : short_key(key, {key});
 }
 
-SweepLayout layout_of(const std::vector<CellResult>& cells) {
-  std::vector<std::string> keys;
+SweepLayout layout_of(const StudyResults& results) {
+  std::vector<std::string> keys = swept_keys(results);
   std::map<std::string, std::vector<std::string>> values;
-  for (const CellResult& cell : cells) {
-    for (const auto& [key, value] : cell.cell.swept) {
-      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-      auto& of = values[key];
+  for (const std::string& key : keys) {
+    auto& of = values[key];
+    for (const CellResult& cell : results.cells) {
+      const std::string value = swept_value(cell.cell, key);
       if (std::find(of.begin(), of.end(), value) == of.end()) of.push_back(value);
     }
   }
@@ -71,9 +64,7 @@ SweepLayout layout_of(const std::vector<CellResult>& cells) {
     }
     if (layout.x.empty() || of.size() > values[layout.x].size()) layout.x = key;
   }
-  if (layout.x.empty()) {
-    return layout;
-  }
+  if (layout.x.empty()) return layout;
   std::erase(keys, layout.x);
   constexpr std::size_t most_lines = 6;
   if (keys.size() > 1) {
@@ -96,7 +87,7 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> grouped(
   for (const std::size_t i : of) {
     std::string title;
     for (const std::string& key : keys) {
-      const std::string value = swept_text(cells[i].cell, key);
+      const std::string value = swept_value(cells[i].cell, key);
       title += (title.empty() ? "" : ", ") + shown_key(key) + " = " + value;
     }
     const auto found = std::find_if(groups.begin(), groups.end(),
@@ -113,7 +104,7 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> grouped(
 class FigureMaker {
  public:
   explicit FigureMaker(const StudyResults& results)
-      : cells_(results.cells), layout_(layout_of(results.cells)) {
+      : cells_(results.cells), layout_(layout_of(results)) {
     for (const CellResult& cell : cells_) summaries_.push_back(summarise(cell));
   }
 
@@ -152,7 +143,7 @@ class FigureMaker {
     std::vector<FigurePoint> points;
     for (const std::size_t i : cells) {
       points.push_back(quantity.of(summaries_[i]));
-      points.back().x = to_real(swept_text(cells_[i].cell, layout_.x)).value_or(no_figure);
+      points.back().x = to_real(swept_value(cells_[i].cell, layout_.x)).value_or(no_figure);
     }
     std::stable_sort(points.begin(), points.end(),
                      [](const FigurePoint& a, const FigurePoint& b) { return a.x < b.x; });
@@ -170,10 +161,10 @@ class FigureMaker {
 
   /// The name of a cell's row, by its design if it is of one.
   static std::string row_name(const StudyCell& cell) {
-    const std::string design = swept_text(cell, "design"), source = swept_text(cell, "source");
+    const std::string design = swept_value(cell, "design"), source = swept_value(cell, "source");
     if (design.empty()) return short_label(cell);
     if (source.empty()) return design == "as set" ? "all sources as set" : design;
-    return design == "all but" ? "without " + source : source + " = " + swept_text(cell, "value");
+    return design == "all but" ? "without " + source : source + " = " + swept_value(cell, "value");
   }
 
   void add_rows(FigurePanel& panel,
@@ -197,7 +188,7 @@ class FigureMaker {
           cells_.begin(), cells_.end(),
           [&](const CellResult& cell) { return is_reference_of(cell.cell, cells_[i].cell); });
       if (reference == cells_.end()) continue;
-      std::string title = swept_text(cells_[i].cell, "design");
+      std::string title = swept_value(cells_[i].cell, "design");
       if (title != "swept") title += " this source";
       for (const auto& [key, value] : cells_[i].cell.swept) {
         if (key != "design" && key != "source" && key != "value") title = value + ": " + title;

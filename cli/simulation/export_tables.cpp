@@ -37,9 +37,9 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 /// Columns of a table and, for one of its rows, their values.
 class Row {
  public:
-  void real(const char* name, double value) { add(name, ColumnKind::real, value); }
-  void whole(const char* name, std::int64_t value) { add(name, ColumnKind::whole, value); }
-  void flag(const char* name, bool value) { add(name, ColumnKind::boolean, value); }
+  void real(const std::string& name, double value) { add(name, ColumnKind::real, value); }
+  void whole(const std::string& name, std::int64_t value) { add(name, ColumnKind::whole, value); }
+  void flag(const std::string& name, bool value) { add(name, ColumnKind::boolean, value); }
   void text(const std::string& name, const std::string& value, std::size_t characters) {
     add(name, ColumnKind::text, value);
     columns.back().characters = characters;
@@ -63,19 +63,24 @@ class SettingColumns {
       if (!all_settings) continue;
       for (const auto& [key, value] : cell.settings) add_key(key);
     }
-    values_.resize(keys_.size());
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      for (const StudyCell& cell : study.file.cells) values_[k].push_back(value_of(cell, keys_[k]));
+    for (const std::string& key : keys_) {
+      Setting& setting = settings_.emplace_back();
+      for (const StudyCell& cell : study.file.cells) setting.values.push_back(value_of(cell, key));
+      setting.is_number = std::all_of(
+          setting.values.begin(), setting.values.end(),
+          [](const std::string& value) { return value.empty() || to_real(value).has_value(); });
+      setting.characters = longest(setting.values);
     }
   }
 
   void add_to(Row& row, std::size_t cell) const {
     for (std::size_t k = 0; k < keys_.size(); ++k) {
-      const std::string& value = values_[k][cell];
-      if (is_number(k)) {
+      const Setting& setting = settings_[k];
+      const std::string& value = setting.values[cell];
+      if (setting.is_number) {
         row.add(keys_[k], ColumnKind::real, to_real(value).value_or(no_number));
       } else {
-        row.text(keys_[k], value, longest(values_[k]));
+        row.text(keys_[k], value, setting.characters);
       }
     }
   }
@@ -92,25 +97,24 @@ class SettingColumns {
   }
   /// As it is in effect, or as the sweep has it; empty if the cell has no such setting.
   static std::string value_of(const StudyCell& cell, const std::string& key) {
-    for (const auto& [swept, value] : cell.swept) {
-      if (swept == key) return value;
-    }
+    if (std::string swept = swept_value(cell, key); !swept.empty()) return swept;
     const auto found = cell.settings.find(key);
     return found == cell.settings.end() ? std::string() : found->second;
   }
-  bool is_number(std::size_t k) const {
-    return std::all_of(values_[k].begin(), values_[k].end(), [](const std::string& value) {
-      return value.empty() || to_real(value).has_value();
-    });
-  }
 
+  /// A setting's values by cell.
+  struct Setting {
+    std::vector<std::string> values;
+    bool is_number = false;  ///< in all cells that have one
+    std::size_t characters = 1;
+  };
   std::vector<std::string> keys_;
-  std::vector<std::vector<std::string>> values_;  // by key and cell
+  std::vector<Setting> settings_;  // by key
 };
 
 void add_interval(Row& row, const std::string& name, const std::optional<Interval>& interval) {
-  row.real((name + "_low").c_str(), interval ? interval->low : no_number);
-  row.real((name + "_high").c_str(), interval ? interval->high : no_number);
+  row.real(name + "_low", interval ? interval->low : no_number);
+  row.real(name + "_high", interval ? interval->high : no_number);
 }
 
 void add_figures(Row& row, const CellResult& cell) {
@@ -143,9 +147,9 @@ void add_figures(Row& row, const CellResult& cell) {
 }
 
 void add_pose(Row& row, const std::string& name, const Pose2D& pose, bool is_known) {
-  row.real((name + "_x_m").c_str(), is_known ? pose.x_m : no_number);
-  row.real((name + "_y_m").c_str(), is_known ? pose.y_m : no_number);
-  row.real((name + "_heading_rad").c_str(), is_known ? pose.heading_rad : no_number);
+  row.real(name + "_x_m", is_known ? pose.x_m : no_number);
+  row.real(name + "_y_m", is_known ? pose.y_m : no_number);
+  row.real(name + "_heading_rad", is_known ? pose.heading_rad : no_number);
 }
 
 void add_trial(Row& row, const TrialResult& t) {

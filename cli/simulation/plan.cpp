@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -105,7 +106,7 @@ void know(const PlanArguments& o,
   const SimulatedBoardOptions views{.seed = o.seed,
                                     .pixel_sigma_px = o.pixel_sigma_px,
                                     .distance_m = o.board_distance_m,
-                                    .tilt_rad = o.board_tilt_deg * 0.017453292519943295};
+                                    .tilt_rad = o.board_tilt_deg * (std::numbers::pi / 180)};
   plan.known = knowledge_of_datasheet(rig, {columns, rows, o.square_m}, views, name);
   plan.basis = fmt::format(
       "the datasheet {} and a {} board, squares of {:g} m, at {:g} m, tilted up to {:g} degrees",

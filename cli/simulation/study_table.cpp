@@ -63,10 +63,7 @@ std::vector<TextColumn> key_columns(const StudyResults& results) {
   for (const std::string& key : keys) {
     columns.push_back({short_key(key, keys), {}, true});
     for (const CellResult& cell : results.cells) {
-      const auto& swept = cell.cell.swept;
-      const auto found = std::find_if(swept.begin(), swept.end(),
-                                      [&](const auto& entry) { return entry.first == key; });
-      columns.back().cells.push_back(found == swept.end() ? "-" : found->second);
+      columns.back().cells.push_back(swept_value(cell.cell, key));
     }
   }
   return columns;

@@ -108,15 +108,8 @@ void name_design(StudyCell& cell,
   cell.swept.emplace_back(source_key, source);
   cell.swept.emplace_back(value_key, value);
   std::string words = design;
-  if (!source.empty()) words += (design == swept_design ? " " : " ") + source + " = " + value;
+  if (!source.empty()) words += " " + source + " = " + value;
   cell.label = first ? words : cell.label + ", " + words;
-}
-
-std::string swept_value(const StudyCell& cell, std::string_view key) {
-  for (const auto& [swept, value] : cell.swept) {
-    if (swept == key) return value;
-  }
-  return {};
 }
 
 /// The sources of the designs: those named, or all that are on.

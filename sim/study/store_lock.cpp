@@ -17,6 +17,7 @@
 
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
+#include "sim/study/host_name.h"
 
 namespace vernier::sim::internal {
 
@@ -65,9 +66,7 @@ std::string words_in(int descriptor) {
 
 /// False if it could not be written, as on a full disk.
 bool write_who(int descriptor) {
-  std::array<char, 65> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
-  const std::string words = "process " + std::to_string(::getpid()) + " on " + host.data() + "\n";
+  const std::string words = "process " + std::to_string(::getpid()) + " on " + host_name() + "\n";
   return ::ftruncate(descriptor, 0) == 0 &&
          ::pwrite(descriptor, words.data(), words.size(), 0) == static_cast<ssize_t>(words.size());
 }

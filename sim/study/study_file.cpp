@@ -328,6 +328,12 @@ std::vector<std::string> told_rigs_of(const StudyFile& study) {
   });
 }
 
+std::string swept_value(const StudyCell& cell, std::string_view key) {
+  const auto found = std::find_if(cell.swept.begin(), cell.swept.end(),
+                                  [&](const auto& entry) { return entry.first == key; });
+  return found == cell.swept.end() ? std::string() : found->second;
+}
+
 int block_size(int trials) { return std::clamp(trials / fewest_maps, 1, 50); }
 
 StudyFile parse_study(const std::string& text,

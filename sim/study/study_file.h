@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct StudyCell {
   VisibilityMethod visibility = VisibilityMethod::exact;
   ToldSettings told;
 };
+
+/// A cell's value of a swept key; empty if it has none.
+std::string swept_value(const StudyCell& cell, std::string_view key);
 
 /// Number of trials per block, which share one recorded map: 50, or fewer so that `trials` make at
 /// least six maps, the minimum for an interval.

@@ -3,10 +3,8 @@
 #include "sim/study/study_ranks.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +25,7 @@
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/study/communicator.h"
+#include "sim/study/host_name.h"
 #include "sim/study/instruction_sets.h"
 #include "sim/study/rank_messages.h"
 #include "sim/study/result_recorder.h"
@@ -78,11 +77,6 @@ Message wait_for_message(Communicator& ranks) {
     if (std::optional<Message> message = ranks.receive()) return *std::move(message);
     std::this_thread::sleep_for(patience.next(false));
   }
-}
-
-std::string host_name() {
-  std::array<char, 65> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
 [[noreturn]] void fail_unexpected(const std::string& who) {

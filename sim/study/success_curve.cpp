@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/success_curve.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "calib/base/ordered_parallel.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
 #include "calib/interval.h"
@@ -29,6 +25,8 @@
 #include "sim/visibility.h"
 
 namespace vernier::sim::internal {
+
+using namespace vernier::internal;
 
 namespace {
 
@@ -91,25 +89,16 @@ std::vector<SuccessAt> success_curve(const Visibility& visibility,
   std::vector<ClusterCount> counts(static_cast<std::size_t>(total));
   std::mutex mutex;
   int done = 0;
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, total, 1),
-        [&](const tbb::blocked_range<int>& range) {
-          for (int i = range.begin(); i < range.end(); ++i) {
-            const int block = i % blocks, first = block * size;
-            const auto trials = experiments[static_cast<std::size_t>(i / blocks)]->run_block(
-                {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(first),
-                 static_cast<std::uint32_t>(std::min(size, options.trials - first))});
-            const auto right = std::count_if(trials.begin(), trials.end(),
-                                             [](const TrialResult& t) { return t.success(); });
-            const std::lock_guard lock(mutex);
-            counts[static_cast<std::size_t>(i)] = {static_cast<int>(right),
-                                                   static_cast<int>(trials.size())};
-            if (options.progress) options.progress(++done, total);
-          }
-        },
-        tbb::simple_partitioner());
+  for_each_index(counts.size(), options.threads, [&](std::size_t i) {
+    const int block = static_cast<int>(i) % blocks, first = block * size;
+    const auto trials = experiments[i / static_cast<std::size_t>(blocks)]->run_block(
+        {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(first),
+         static_cast<std::uint32_t>(std::min(size, options.trials - first))});
+    const auto right = std::count_if(trials.begin(), trials.end(),
+                                     [](const TrialResult& t) { return t.success(); });
+    counts[i] = {static_cast<int>(right), static_cast<int>(trials.size())};
+    const std::lock_guard lock(mutex);
+    if (options.progress) options.progress(++done, total);
   });
   std::vector<SuccessAt> curve;
   for (std::size_t k = 0; k < options.psi_c.size(); ++k) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "calib/board_observations.h"
@@ -20,7 +19,7 @@
 #include "calib/rig_estimate.h"
 #include "calib/simulated_board.h"
 #include "calib/statistics/draw_sources.h"
-#include "calib/statistics/random.h"
+#include "calib/statistics/shuffled.h"
 #include "calib/triangulation.h"
 #include "calib/uncertainty/target_quantity.h"
 #include "sim/told/scaled_error.h"
@@ -31,22 +30,6 @@ namespace vernier::sim::internal {
 using namespace vernier::internal;
 
 namespace {
-
-constexpr auto views_source = static_cast<std::uint32_t>(DrawSource::calibration_views);
-
-/// The first `count` of all numbers below `of` in a random order (Fisher and Yates), ascending.
-std::vector<int> drawn_numbers(int count, int of, const RandomCounter& place) {
-  RandomStream draws(place);
-  std::vector<int> order(static_cast<std::size_t>(of));
-  std::iota(order.begin(), order.end(), 0);
-  for (int i = 0; i < count; ++i) {
-    const auto other = i + static_cast<int>(draws.below(static_cast<std::uint32_t>(of - i)));
-    std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(other)]);
-  }
-  order.resize(static_cast<std::size_t>(count));
-  std::sort(order.begin(), order.end());
-  return order;
-}
 
 class CalibratedRigs : public ToldRigs {
  public:
@@ -109,12 +92,12 @@ BoardObservations FreshCalibrations::views_of(std::uint32_t draw) const {
                            .tilt_rad = options_.tilt_rad})
         .observations;
   }
-  const std::vector<int> all = frames_of(*corners_);
-  std::vector<int> frames;
-  for (const int i : drawn_numbers(options_.views, static_cast<int>(all.size()),
-                                   {.seed = seed_, .trial = draw, .source = views_source})) {
-    frames.push_back(all[static_cast<std::size_t>(i)]);
-  }
+  std::vector<int> frames = shuffled(
+      frames_of(*corners_), {.seed = seed_,
+                             .trial = draw,
+                             .source = static_cast<std::uint32_t>(DrawSource::calibration_views)});
+  frames.resize(static_cast<std::size_t>(options_.views));
+  std::sort(frames.begin(), frames.end());
   return at_frames(*corners_, frames);
 }
 

@@ -29,7 +29,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_work.h"
 #include "tests/sim/study/stored_example.h"
-#include "tests/support/small_office.h"
+#include "tests/support/example_study.h"
 
 namespace vernier {
 
@@ -69,18 +69,7 @@ class ThreadRank : public Communicator {
   int rank_;
 };
 
-Study example_study(int trials = 24) {
-  Study s;
-  s.file = parse_study("[study]\ntrials = " + std::to_string(trials) +
-                           "\nprotocol = \"near_path\"\n[map]\nspacing_m = 1\n"
-                           "[sweep]\n\"sources.calibration\" = [0.1, 10]\n",
-                       "s.toml");
-  s.world = test::small_office();
-  s.rig = test::nominal_rig();
-  s.world_fingerprint = "office";
-  s.rig_fingerprint = "nominal";
-  return s;
-}
+Study example_study(int trials = 24) { return test::example_study(trials); }
 
 class StudyRanks : public testing::Test {
  protected:

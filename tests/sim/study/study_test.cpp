@@ -31,7 +31,7 @@
 #include "sim/study/study_file.h"
 #include "sim/study/study_keys.h"
 #include "sim/study/study_store.h"
-#include "tests/support/small_office.h"
+#include "tests/support/example_study.h"
 
 namespace vernier {
 
@@ -50,17 +50,7 @@ class StudyRuns : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   static Study study(int trials, const std::string& sweep = "[0.1, 10]") {
-    Study s;
-    s.file = parse_study("[study]\ntrials = " + std::to_string(trials) +
-                             "\nprotocol = \"near_path\"\n[map]\nspacing_m = 1\n"
-                             "[sweep]\n\"sources.calibration\" = " +
-                             sweep + "\n",
-                         "s.toml");
-    s.world = test::small_office();
-    s.rig = test::nominal_rig();
-    s.world_fingerprint = "office";
-    s.rig_fingerprint = "nominal";
-    return s;
+    return test::example_study(trials, sweep);
   }
 
   /// Everything but the timings.

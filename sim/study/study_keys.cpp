@@ -46,8 +46,8 @@ namespace {
 /// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
-/// The same of one method: `lines` since candidates without hope are given up.
-constexpr int lines_version = 3;
+/// The same of one method: `lines` since places too unlike the answer are no rivals of it.
+constexpr int lines_version = 4;
 
 /// The same of ceilings: 2 since they are searched by several pairs of edges.
 constexpr int ceiling_version = 2;

@@ -43,20 +43,33 @@ void PairedScores::add_round(std::span<const double> a, std::span<const double> 
   rounds_.push_back(round);
 }
 
-double PairedScores::upper_limit(double alpha) const {
+PairedScores::Variances PairedScores::variances() const {
+  if (rounds() < 2) return {};
+  const double n = rounds(), mean = difference();
+  Variances v;
+  for (const Round& round : rounds_) {
+    const double off = round.difference - round.trials * mean;
+    v.between += n / (n - 1) * off * off;
+  }
+  v.independent = squares_ - trials_ * mean * mean;
+  return v;
+}
+
+double PairedScores::limit(double alpha, double variance, int dof) const {
   if (!(alpha > 0 && alpha < 0.5)) {
     throw Error("paired scores", fmt::format("an error rate of {}", alpha), "use one in (0, 0.5)");
   }
-  if (rounds() < 2 || trials_ == 0) return 1;
-  const double n = rounds(), mean = difference();
-  double between = 0;
-  for (const Round& round : rounds_) {
-    const double off = round.difference - round.trials * mean;
-    between += off * off;
-  }
-  const double variance = std::max(2 + squares_, n / (n - 1) * between);
-  const double t = student_deviate(mixture_deviate(n, alpha), n - 1);
-  return std::clamp(mean + t * std::sqrt(variance) / trials_, -1.0, 1.0);
+  if (dof < 1 || trials_ == 0) return 1;
+  const double t = student_deviate(mixture_deviate(rounds(), alpha), dof);
+  return std::clamp(difference() + t * std::sqrt(variance) / trials_, -1.0, 1.0);
+}
+
+double PairedScores::upper_limit(double alpha) const {
+  return limit(alpha, std::max(2 + squares_, variances().between), rounds() - 1);
+}
+
+double PairedScores::upper_limit(double alpha, double design_effect, int dof) const {
+  return limit(alpha, design_effect * (2 + squares_), dof);
 }
 
 }  // namespace vernier::sim::internal

@@ -37,11 +37,24 @@ class PairedScores {
   double difference() const { return trials_ > 0 ? sum_ / trials_ : 0; }
   /// In [-1, 1]; 1 for fewer than two rounds. Throws Error for an α outside (0, 1/2).
   double upper_limit(double alpha) const;
+  /// The same for any number of rounds where other pairs show how rounds vary: with
+  /// V = D (2 + Σ (a - b)²), D the design effect and `dof` the degrees of freedom that it is known
+  /// with.
+  double upper_limit(double alpha, double design_effect, int dof) const;
+
+  /// Variance between rounds and of independent trials, of the sum of differences: their ratio,
+  /// over many pairs, is the design effect. Both 0 for fewer than two rounds.
+  struct Variances {
+    double between = 0, independent = 0;
+  };
+  Variances variances() const;
 
  private:
   struct Round {
     double difference, trials;
   };
+  double limit(double alpha, double variance, int dof) const;
+
   std::vector<Round> rounds_;
   double trials_ = 0, sum_ = 0, squares_ = 0;
 };

@@ -181,12 +181,20 @@ RaceState follow_race(const RaceScores& scores, int rounds, const RaceOptions& o
 
 double shortfall_limit(const RaceScores& scores, int of, double error_rate) {
   const double alpha = error_rate_of_one(error_rate, scores.size());
+  const std::size_t rounds = scores[static_cast<std::size_t>(of)].size();
+  std::vector<PairedScores> pairs;
+  double between = 0, independent = 0;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (static_cast<int>(i) == of) continue;
+    const std::size_t shared = std::min(scores[i].size(), rounds);
+    pairs.push_back(paired(scores, static_cast<int>(i), of, static_cast<int>(shared)));
+    between += pairs.back().variances().between;
+    independent += pairs.back().variances().independent;
+  }
+  const double effect = independent > 0 ? std::max(1.0, between / independent) : 1;
   double most = 0;
-  for (int i = 0; i < static_cast<int>(scores.size()); ++i) {
-    if (i == of) continue;
-    const std::size_t shared = std::min(scores[static_cast<std::size_t>(i)].size(),
-                                        scores[static_cast<std::size_t>(of)].size());
-    most = std::max(most, paired(scores, i, of, static_cast<int>(shared)).upper_limit(alpha));
+  for (const PairedScores& pair : pairs) {
+    most = std::max(most, pair.upper_limit(alpha, effect, static_cast<int>(rounds) - 1));
   }
   return most;
 }

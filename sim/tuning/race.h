@@ -66,8 +66,10 @@ struct RaceState {
 /// candidates or rounds, or for an option out of its range.
 RaceState follow_race(const RaceScores& scores, int rounds, const RaceOptions& options);
 
-/// How much better the best candidate may still be than one, at most, with a confidence of
-/// 1 - error_rate: the largest of the limits, on the rounds that each shares with it.
+/// How much better the best candidate may still be than the winner, at most, with a confidence of
+/// 1 - error_rate: the largest of the limits of paired_scores.h, on the rounds that each candidate
+/// shares with it. Most candidates have few rounds, so the design effect is that of all pairs
+/// together, not below 1, with the degrees of freedom of the winner's rounds.
 double shortfall_limit(const RaceScores& scores, int of, double error_rate);
 
 /// The candidates from best to worst: the winner first, then by rounds, then by mean score.

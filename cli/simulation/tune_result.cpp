@@ -119,6 +119,15 @@ std::string difference_text(const TuneResult& result) {
   return text + "\n";
 }
 
+/// The first names of a list.
+std::string first_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::size_t shown = std::min(most, names.size());
+  const std::string text = fmt::format(
+      "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  return shown < names.size() ? fmt::format("{} and {} more", text, names.size() - shown) : text;
+}
+
 std::string shortfall_text(const TuneResult& result) {
   const double confidence = 100 * (1 - result.settings.race.error_rate);
   if (result.shortfall_limit >= 1) {
@@ -188,9 +197,9 @@ std::string tune_text(const TuneResult& result) {
          confirmed_text(result, "reference", result.reference) + difference_text(result) +
          shortfall_text(result) + cost_text(result) +
          fmt::format(
-             "searched: {}; not searched: {}, seed {}\n"
+             "searched: {}\nnot searched: {}, seed {}\n"
              "the winner of a search looks better where it was searched than it is\n",
-             fmt::join(result.worlds, ", "), fmt::join(result.settings.confirm_worlds, ", "),
+             first_of(result.worlds), first_of(result.settings.confirm_worlds),
              result.settings.confirm_seed);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/error_place.h"
 #include "calib/board_observations.h"
@@ -26,6 +27,7 @@
 #include "cli/calibration/check_file.h"
 #include "cli/calibration/check_halves.h"
 #include "cli/calibration/check_held_out.h"
+#include "cli/calibration/check_injected.h"
 #include "cli/calibration/check_mrcal.h"
 #include "cli/calibration/check_section.h"
 #include "cli/calibration/solver_input.h"
@@ -43,6 +45,7 @@ struct CheckArguments {
   MonteCarloResult copies;
   bool no_mrcal = false, holdout = false, halves = false;
   int splits = 100, training_frames = 0;
+  std::vector<double> injected;  ///< factors of --inject
 };
 
 /// Throws Error for options that would have no effect.
@@ -70,6 +73,9 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
   if (options.halves && frames < fewest_frames_to_divide) {
     throw Error("--halves", fmt::format("needs at least six frames; got {}", frames),
                 "give more views, or leave it out");
+  }
+  if (!options.injected.empty() && observations.size_px.size() < 2) {
+    throw Error("--inject", "needs two cameras; got one", "give views of a pair, or leave it out");
   }
   if (!options.holdout) return;
   if (observations.size_px.size() < 2 || frames < fewest_frames_to_divide) {
@@ -189,6 +195,15 @@ void run(const CheckArguments& options, Session& session) {
                                 .calibration = how},
                                session));
   }
+  if (!options.injected.empty()) {
+    add("injected", check_injected(solved.estimate, problem.observations, problem.state,
+                                   problem.problem.pixel_sigma_px,
+                                   {.psi_c = options.injected,
+                                    .draws = options.copies.trials,
+                                    .seed = options.copies.seed,
+                                    .threads = options.copies.threads},
+                                   session));
+  }
   if (options.holdout) {
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
@@ -212,7 +227,8 @@ void add_check(CLI::App& app, Session& session) {
                    "rig file with stored evidence (or give corners with the options below)");
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
-  verb->add_option("--trials", o->copies.trials, "number of Monte Carlo trials")
+  verb->add_option("--trials", o->copies.trials,
+                   "number of Monte Carlo trials, and of wrong rigs of --inject")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   verb->add_option("--seed", o->copies.seed, "random seed of the Monte Carlo noise")
@@ -226,6 +242,11 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_flag("--halves", o->halves,
                  "calibrate random halves of the views, and test whether they differ as their "
                  "covariances state");
+  verb->add_option("--inject", o->injected,
+                   "tell rigs that are wrong by draws of the covariance times these factors, as "
+                   "1,3,10,30, and compare lengths on the real boards with simulated ones")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1e4));
   verb->add_option("--splits", o->splits, "number of splits for --holdout and --halves")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

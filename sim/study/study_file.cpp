@@ -128,7 +128,7 @@ void StudyReader::check_sweep_key(const toml::table& root,
                                   const toml::node& node) const {
   const std::string head = key.substr(0, key.find('.'));
   const Keys sections{"study",   "world",  "rig", "calibration", "sources",
-                      "corners", "camera", "map", "localiser"};
+                      "corners", "camera", "map", "localiser",   "histograms"};
   if (key == "rig.file" && !(section(root, "rig") && section(root, "rig")->contains("truth"))) {
     fail(node, "a rig is its own truth unless rig.truth is given: the cells would show other rigs",
          "name the true rig as rig.truth; rig.file is then what the estimator is told of it");
@@ -269,7 +269,7 @@ void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
-              "localiser", "sweep", "one_at_a_time", "tune"},  // [tune]: sim/tuning
+              "localiser", "histograms", "sweep", "one_at_a_time", "tune"},  // [tune]: sim/tuning
              "");
   StudyFile study;
   read_study_section(root, study);

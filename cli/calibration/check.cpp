@@ -92,6 +92,14 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
   }
 }
 
+/// Halves that share a prior cannot show how far they are apart.
+void refuse_prior(const CheckArguments& options, const CalibrationOptions& how) {
+  if (options.halves && (how.prior || !how.known.empty())) {
+    throw Error("--halves", "both halves would share the prior, which hides how far they are apart",
+                "check a calibration without a prior");
+  }
+}
+
 /// A calibration to check: solver options and solution.
 struct Solved {
   CalibrationOptions how;
@@ -121,6 +129,7 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   }
   Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
+  refuse_prior(options, solved.how);
   const BoardObservations& observations = solved.from_file->evidence->observations;
   check_splits(options, observations);
   solved.estimate =
@@ -132,6 +141,7 @@ Solved solve(const CheckArguments& options, Session& session) {
   refuse_unused_options(options);
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
+  refuse_prior(options, solved.how);
   BoardObservations observations = load(options.board, session);
   check_splits(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);

@@ -71,7 +71,8 @@ TEST(InjectedError, NoiseThatIsNotToldShowsAtSmallFactorsOnly) {
   EXPECT_LT(result.levels[1].ratio(), 1.3);
 }
 
-// A factor of almost nothing is the rig as estimated; the simulated noise differs from draw to draw.
+// A factor of almost nothing is the rig as estimated; the simulated noise differs from draw to
+// draw.
 TEST(InjectedError, AlmostNoErrorIsNone) {
   const auto result = inject(solved(642, 0.2), 0.2, {.psi_c = {1e-4}, .draws = 60});
   EXPECT_NEAR(result.levels[0].median_real / result.median_real, 1, 1e-3);

@@ -17,8 +17,8 @@
 #include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "cli/stereo/disparity_picture.h"
 #include "cli/stereo/matcher_names.h"
 #include "cli/stereo/stereo_files.h"
@@ -239,7 +239,9 @@ std::string result_text(const StereoInput& input,
 /// Throws Error if an output would overwrite an input or another output.
 void check_outputs(const StereoArguments& options) {
   std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
-  if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
+  if (!options.input.rig.empty()) {
+    for (const auto& file : files_of_named_rig(options.input.rig)) inputs.push_back(file);
+  }
   const std::filesystem::path folder = options.output;
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
     throw Error(options.output, "is not a folder", "give another folder with -o");

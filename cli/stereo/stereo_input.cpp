@@ -58,6 +58,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);
   input.left_valid = std::move(images.left_valid);
+  input.left_noise = images.left_noise;
   if (rig.cameras[0].size_px != rig.cameras[1].size_px) return;
   input.exchanged = [rig, geometry, raw, threads = o.threads] {
     return rectified_images(rig, geometry, raw.right, raw.left, threads).pair;

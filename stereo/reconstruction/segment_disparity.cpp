@@ -165,6 +165,7 @@ SegmentDisparity part_of(const Edge& edge,
   part.left_px = {a.place, b.place};
   part.a_disparity_px = line.at(a.along_px);
   part.b_disparity_px = line.at(b.along_px);
+  part.disparity_noise_px2 = {line.noise_variance(a.along_px), line.noise_variance(b.along_px)};
   part.covariance_px2 = EndCovariance(edge, line, a, b).matrix();
   part.rms_px = line.rms_px;
   for (const DisparitySample& s : line.samples) part.points.push_back(s.point);

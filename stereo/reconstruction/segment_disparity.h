@@ -49,6 +49,9 @@ struct SegmentDisparity {
   /// Covariance from image and matcher errors, in the order a_u a_v b_u b_v a_disparity
   /// b_disparity.
   Eigen::Matrix<double, 6, 6> covariance_px2 = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Variances of the two disparities from noise alone, at ends held fixed along the edge: what
+  /// scatters between looks at the same scene. The rest of covariance_px2 all looks share.
+  Eigen::Vector2d disparity_noise_px2{0, 0};
   int edge_points = 0;      ///< of the part
   std::vector<int> points;  ///< inliers, as indices into the edges
   double rms_px = 0;        ///< RMS residual of their disparities

@@ -12,6 +12,8 @@
 #include "stereo/grey_levels.h"
 #include "stereo/image/resampled_image.h"
 #include "stereo/rectification.h"
+#include "stereo/image/image_noise.h"
+#include "stereo/image/matrix_of.h"
 #include "stereo/rectification/raw_pixels.h"
 
 namespace vernier::stereo {
@@ -81,6 +83,8 @@ RectifiedImages rectified_images(const Rig& rig,
   RectifiedImages images;
   rectify(rig, geometry, 0, left, threads, images.pair.left, images.left_valid);
   rectify(rig, geometry, 1, right, threads, images.pair.right, images.right_valid);
+  images.left_noise = image_noise(matrix_of(left));
+  images.right_noise = image_noise(matrix_of(right));
   return images;
 }
 

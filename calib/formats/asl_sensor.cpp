@@ -13,8 +13,8 @@
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
-#include "calib/formats/imported_rig.h"
 #include "calib/error.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/formats/yaml_node.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
@@ -41,8 +41,8 @@ OpenCvIntrinsics asl_intrinsics(const YamlNode& root) {
   in.coefficients = root.at("distortion_coefficients").numbers();
   const std::size_t n = in.coefficients.size();
   if (n != 4 && !(radial && n == 5)) {
-    throw Error(root.at("distortion_coefficients").place(),
-                fmt::format("holds {} coefficients", n), "give four");
+    throw Error(root.at("distortion_coefficients").place(), fmt::format("holds {} coefficients", n),
+                "give four");
   }
   return in;
 }

@@ -22,8 +22,8 @@
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/camera/rig_limits.h"
-#include "calib/formats/imported_rig.h"
 #include "calib/error.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
 
@@ -105,8 +105,8 @@ void take_unnamed(const std::vector<double>& v, const std::string& place, CalibT
   for (std::size_t at = 0; at < v.size(); at += matrix_numbers) {
     const std::size_t i = at / matrix_numbers;
     const std::string name = v.size() > 2 * matrix_numbers ? fmt::format("P{}", i) : "";
-    read.projections.push_back({name, fmt::format("{}: matrix {}", place, i + 1),
-                                matrix_of(v.data() + at)});
+    read.projections.push_back(
+        {name, fmt::format("{}: matrix {}", place, i + 1), matrix_of(v.data() + at)});
   }
 }
 
@@ -159,9 +159,9 @@ PlacedCamera camera_of(const Projection& projection,
                        const ImportOptions& options) {
   const Eigen::Matrix3d K = projection.P.leftCols<3>();
   PlacedCamera placed;
-  placed.camera = camera_from_opencv(intrinsics_of_camera_matrix(K, projection.place),
-                                     size_of(projection, read, options), projection.place,
-                                     options.model);
+  placed.camera =
+      camera_from_opencv(intrinsics_of_camera_matrix(K, projection.place),
+                         size_of(projection, read, options), projection.place, options.model);
   placed.camera.name = projection.name;
   placed.T_camera_reference.t =
       translation(K.inverse() * projection.P.col(3), options.unit_m, projection.place);
@@ -180,12 +180,10 @@ ImportedRig parse_kitti_calib(const std::string& text,
     cameras.push_back(camera_of(projection, read, options));
   }
   if (!read.ignored.empty()) {
-    imported.notes.push_back(fmt::format("{}: {}{} ignored: only rectified images are described",
-                                         place, read.ignored.front(),
-                                         read.ignored.size() == 1
-                                             ? " is"
-                                             : fmt::format(" and {} others are",
-                                                           read.ignored.size() - 1)));
+    imported.notes.push_back(fmt::format(
+        "{}: {}{} ignored: only rectified images are described", place, read.ignored.front(),
+        read.ignored.size() == 1 ? " is"
+                                 : fmt::format(" and {} others are", read.ignored.size() - 1)));
   }
   imported.rig = rig_of(std::move(cameras));
   return imported;

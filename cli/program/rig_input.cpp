@@ -13,17 +13,17 @@
 #include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
-#include "calib/formats/imported_rig.h"
-#include "cli/program/session.h"
 #include "calib/error.h"
 #include "calib/formats/asl_sensor.h"
 #include "calib/formats/colmap_cameras.h"
+#include "calib/formats/imported_rig.h"
 #include "calib/formats/kalibr_camchain.h"
 #include "calib/formats/kitti_calib.h"
 #include "calib/formats/mrcal_cameramodel.h"
 #include "calib/formats/opencv_calibration_file.h"
 #include "calib/formats/ros_camera_info.h"
 #include "calib/rig_file.h"
+#include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "stereo/grey_levels.h"
 
@@ -32,8 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<RigFormat, 8> formats{RigFormat::vernier, RigFormat::mrcal,  RigFormat::opencv,
-                                           RigFormat::kalibr,  RigFormat::ros,    RigFormat::colmap,
+constexpr std::array<RigFormat, 8> formats{RigFormat::vernier, RigFormat::mrcal, RigFormat::opencv,
+                                           RigFormat::kalibr,  RigFormat::ros,   RigFormat::colmap,
                                            RigFormat::asl,     RigFormat::kitti};
 
 /// Whether a line of the text starts with the key.
@@ -121,8 +121,7 @@ RigFormat named_format(const std::vector<fs::path>& files) {
   if (files.size() > 1) return input_format(files);
   const std::string end = files[0].extension().string();
   const bool folder = fs::is_directory(files[0], fault);
-  const bool shipped =
-      folder && !shipped_file("rigs/" + files[0].string() + ".rig.json").empty();
+  const bool shipped = folder && !shipped_file("rigs/" + files[0].string() + ".rig.json").empty();
   const bool foreign = end == ".yaml" || end == ".yml" || end == ".txt" || end == ".cameramodel";
   if (folder && !shipped) return folder_format(files[0]);
   if (!foreign || !fs::is_regular_file(files[0], fault)) return RigFormat::vernier;

@@ -15,10 +15,10 @@
 
 #include "calib/base/shown_text.h"
 #include "calib/base/text_lines.h"
-#include "calib/pose.h"
 #include "calib/error.h"
 #include "calib/formats/colmap_poses.h"
 #include "calib/formats/imported_rig.h"
+#include "calib/pose.h"
 #include "localise/trajectory.h"
 
 namespace vernier::localise::internal {
@@ -79,8 +79,7 @@ CameraPoses read_asl(const std::filesystem::path& file) {
       throw Error(place, "is one of more than 1,000,000 poses", "split the file");
     }
     read.poses.push_back(
-        {"", time_s,
-         checked_pose(q.normalized().toRotationMatrix(), {v[1], v[2], v[3]}, place)});
+        {"", time_s, checked_pose(q.normalized().toRotationMatrix(), {v[1], v[2], v[3]}, place)});
   }
   return read;
 }
@@ -120,11 +119,10 @@ CameraPoses read_matrices(const std::filesystem::path& file) {
     if (read.poses.size() == most_poses) {
       throw Error(place, "is one of more than 1,000,000 poses", "split the file");
     }
-    read.poses.push_back(
-        {std::move(name),
-         {},
-         checked_pose(Eigen::Quaterniond(M).normalized().toRotationMatrix(),
-                      T.topRightCorner<3, 1>(), place)});
+    read.poses.push_back({std::move(name),
+                          {},
+                          checked_pose(Eigen::Quaterniond(M).normalized().toRotationMatrix(),
+                                       T.topRightCorner<3, 1>(), place)});
   }
   return read;
 }
@@ -175,11 +173,14 @@ Pose interpolated(const CameraPose& a, const CameraPose& b, double time_s) {
           (1 - u) * a.T_world_camera.t + u * b.T_world_camera.t};
 }
 
-Pose pose_at(const CameraPoses& poses, double time_s, double gap_s, const std::string& place,
+Pose pose_at(const CameraPoses& poses,
+             double time_s,
+             double gap_s,
+             const std::string& place,
              const std::string& image) {
-  const auto after = std::lower_bound(
-      poses.poses.begin(), poses.poses.end(), time_s,
-      [](const CameraPose& pose, double time) { return *pose.time_s < time; });
+  const auto after =
+      std::lower_bound(poses.poses.begin(), poses.poses.end(), time_s,
+                       [](const CameraPose& pose, double time) { return *pose.time_s < time; });
   if (after != poses.poses.end() && *after->time_s == time_s) return after->T_world_camera;
   if (after == poses.poses.begin() || after == poses.poses.end() ||
       *after->time_s - *(after - 1)->time_s > gap_s) {

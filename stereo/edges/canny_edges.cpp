@@ -213,7 +213,7 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
   const cv::Mat grey = matrix_of(image);
   const double not_stated = std::numeric_limits<double>::quiet_NaN();
-  const double noise = !options.with_sigma  ? not_stated
+  const double noise = !options.with_sigma ? not_stated
                        : options.noise > 0 ? options.noise
                                            : image_noise(grey);
   const EdgePlaces places(kernel, noise);

@@ -10,10 +10,10 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "stereo/grey_levels.h"
-#include "stereo/image/resampled_image.h"
-#include "stereo/rectification.h"
 #include "stereo/image/image_noise.h"
 #include "stereo/image/matrix_of.h"
+#include "stereo/image/resampled_image.h"
+#include "stereo/rectification.h"
 #include "stereo/rectification/raw_pixels.h"
 
 namespace vernier::stereo {

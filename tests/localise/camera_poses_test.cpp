@@ -65,8 +65,9 @@ std::string asl_text() {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Quaterniond q(poses[i].R);
     const Eigen::Vector3d& t = poses[i].t;
-    text += fmt::format("{},{},{},{},{},{},{},{},0.1,0.2,0.3\n", 1403715273000000000 + i * 100000000,
-                        t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},0.1,0.2,0.3\n", 1403715273000000000 + i * 100000000,
+                    t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
   }
   return text;
 }
@@ -109,11 +110,11 @@ TEST(CameraPoses, TimesBetweenTwoAreInterpolated) {
       read, {"1403715273000000000.png", "1403715273050000000.png", "1403715273300000000.png"}, "d");
   expect_same(found[0], poses[0], 1e-6);
   expect_same(found[2], poses[3], 1e-6);
-  expect_same({found[1].R, found[1].t},
-              {Eigen::Quaterniond(poses[0].R).slerp(0.5, Eigen::Quaterniond(poses[1].R))
-                   .toRotationMatrix(),
-               (poses[0].t + poses[1].t) / 2},
-              1e-5);
+  expect_same(
+      {found[1].R, found[1].t},
+      {Eigen::Quaterniond(poses[0].R).slerp(0.5, Eigen::Quaterniond(poses[1].R)).toRotationMatrix(),
+       (poses[0].t + poses[1].t) / 2},
+      1e-5);
   for (const char* outside : {"1403715272900000000.png", "1403715273400000000.png"}) {
     const std::string said = error_message([&] { poses_of_images(read, {outside}, "data.csv"); });
     EXPECT_NE(said.find("has no pose at the time"), std::string::npos) << said;

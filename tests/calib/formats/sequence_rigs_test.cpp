@@ -47,12 +47,16 @@ std::string sensor_text(const Camera& camera, const Pose& T_body_camera) {
       "resolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: [{}, {}, {}, {}] #fu, fv, cu, cv\n"
       "distortion_model: {}\ndistortion_coefficients: [{}]\n",
       data, camera.size_px[0], camera.size_px[1], in.fx_px, in.fy_px, in.cx_px, in.cy_px,
-      in.fisheye ? "equidistant" : k.empty() ? "none" : "radial-tangential", k);
+      in.fisheye  ? "equidistant"
+      : k.empty() ? "none"
+                  : "radial-tangential",
+      k);
 }
 
 const Pose T_body_left{rotation_from_vector({0.3, -1.4, 0.6}), {0.1, -0.2, 0.05}};
 
-std::vector<std::filesystem::path> write_sensors(const Rig& rig, const std::filesystem::path& root) {
+std::vector<std::filesystem::path> write_sensors(const Rig& rig,
+                                                 const std::filesystem::path& root) {
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const std::filesystem::path folder = root / fmt::format("cam{}", i);

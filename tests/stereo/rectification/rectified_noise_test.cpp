@@ -29,7 +29,8 @@ namespace {
 constexpr int width = 240, height = 200;
 constexpr double noise = 2;
 
-/// Two pinholes whose axes converge by 1 degree: their images are resampled at all sub-pixel places.
+/// Two pinholes whose axes converge by 1 degree: their images are resampled at all sub-pixel
+/// places.
 Rig converging_rig() {
   Rig rig;
   for (const char* name : {"left", "right"}) {

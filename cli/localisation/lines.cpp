@@ -33,7 +33,6 @@
 #include "stereo/image/depth_image.h"
 #include "stereo/reconstruction/segment_disparity.h"
 #include "stereo/reconstruction/space_segments.h"
-#include "stereo/segment.h"
 
 namespace vernier::cli {
 namespace {
@@ -88,7 +87,7 @@ std::string segments_line(const std::string& image, const DepthSegments& segment
       const Eigen::Matrix<double, 6, 1> values = s.independent_m2.row(row);
       covariance.push_back(vector(values));
     }
-    const ImageSegment& px = segments.image[i];
+    const auto& px = segments.image[i];
     list.push_back({{"image_px", {px.a_px.x(), px.a_px.y(), px.b_px.x(), px.b_px.y()}},
                     {"a_m", vector(s.segment.a_m)},
                     {"b_m", vector(s.segment.b_m)},

@@ -30,6 +30,7 @@ void add_drive(CLI::App& app, Session& session);
 void add_servo(CLI::App& app, Session& session);
 void add_render(CLI::App& app, Session& session);
 void add_study(CLI::App& app, Session& session);
+void add_tune(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
 void add_lines(CLI::App& app, Session& session);
 void add_map(CLI::App& app, Session& session);

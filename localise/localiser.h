@@ -93,7 +93,8 @@ struct LocaliserOptions {
   /// Simulated robots and pairs of images give views their corners, which cost time and memory: for
   /// a method that does not say so itself (needs_corners).
   bool corners = false;
-  PghOptions histograms;     ///< of `pgh` and the rankers by histograms
+  PghOptions histograms;  ///< of `pgh` and the rankers by histograms: in space, metres
+  PghOptions image_histograms = image_pgh_options();  ///< of `pgh_baseline`: pixels
   std::string command;       ///< of `program`: a program and its arguments, quoted as in a shell
   double time_limit_s = 10;  ///< of `program`, for a query; above 0
 };

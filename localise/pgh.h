@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "localise/place.h"
@@ -40,6 +42,12 @@ enum class PghBlur {
   fixed,      ///< angle_sigma_rad and distance_sigma, the same for all
   per_entry,  ///< the end points' errors of both lines
 };
+
+/// By their names above. Throw Error for another.
+PghType pgh_type(std::string_view name_of);
+PghBlur pgh_blur(std::string_view name_of);
+std::string name(PghType type);
+std::string name(PghBlur blur);
 
 /// Resolution and blur.
 struct PghOptions {

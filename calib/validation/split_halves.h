@@ -42,8 +42,8 @@ struct SplitHalvesResult {
 /// It tests the scatter from view to view. What all views share - board, square, lens model,
 /// detector - is alike in both halves and cannot be seen. Splits share frames, so that their
 /// distances are not independent: the mean over splits of one set of views varies more than that of
-/// so many chi-squared values. Throws Error for fewer than six frames, or if no split can be
-/// calibrated.
+/// so many chi-squared values. Throws Error for fewer than six frames, for a prior, which both
+/// halves would share, or if no split can be calibrated.
 SplitHalvesResult compare_split_halves(
     const BoardObservations& observations,
     const SplitHalvesOptions& options = {},

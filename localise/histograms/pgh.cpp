@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "localise/histograms/line_pairs.h"
 #include "localise/histograms/pair_entry.h"
@@ -153,6 +154,28 @@ int band_of(double height_m, const PghOptions& o) {
 }
 
 }  // namespace
+
+std::string name(PghType type) {
+  return type == PghType::mirror ? "mirror" : type == PghType::rotation ? "rotation" : "directed";
+}
+
+std::string name(PghBlur blur) { return blur == PghBlur::fixed ? "fixed" : "per_entry"; }
+
+PghType pgh_type(std::string_view name_of) {
+  for (const auto type : {PghType::mirror, PghType::rotation, PghType::directed}) {
+    if (name(type) == name_of) return type;
+  }
+  throw Error("type " + vernier::internal::in_quotes(std::string(name_of)), "unknown type",
+              "use mirror, rotation or directed");
+}
+
+PghBlur pgh_blur(std::string_view name_of) {
+  for (const auto blur : {PghBlur::fixed, PghBlur::per_entry}) {
+    if (name(blur) == name_of) return blur;
+  }
+  throw Error("blur " + vernier::internal::in_quotes(std::string(name_of)), "unknown blur",
+              "use fixed or per_entry");
+}
 
 PghOptions image_pgh_options() {
   return {.angle_bins = 18,

@@ -66,8 +66,8 @@ LocalisationAnswer last_node_left(const Eigen::MatrixXf& best,
 
 }  // namespace
 
-BaselineLocaliser::BaselineLocaliser(const TopologicalMap& map, const LocaliserOptions&)
-    : map_(map), options_(image_pgh_options()) {
+BaselineLocaliser::BaselineLocaliser(const TopologicalMap& map, const LocaliserOptions& options)
+    : map_(map), options_(options.image_histograms) {
   for (const MapNode& node : map.nodes) {
     histograms_.push_back(plain_histograms(image_histograms(node.view.image_lines, options_)));
   }
@@ -90,8 +90,8 @@ LocalisationAnswer BaselineLocaliser::localise(const PlaceView& query) const {
 }
 
 VectorisedBaselineLocaliser::VectorisedBaselineLocaliser(const TopologicalMap& map,
-                                                         const LocaliserOptions&)
-    : map_(map), options_(image_pgh_options()) {
+                                                         const LocaliserOptions& options)
+    : map_(map), options_(options.image_histograms) {
   for (const MapNode& node : map.nodes) {
     histograms_.push_back(image_histograms(node.view.image_lines, options_));
   }

@@ -30,7 +30,7 @@ constexpr int nodes_per_wide_candidate = 8, most_wide_candidates = 1024;
 constexpr std::size_t most_voted = 128;  ///< of these, by votes of uprights
 /// Of places that look like another: so many of the best-ranked, so far from it and from each
 /// other.
-constexpr int ranked_for_rivals = 256, most_rivals = 8;
+constexpr int ranked_for_rivals = 64, most_rivals = 8;
 constexpr double same_place_m = 1.5, rivals_apart_m = 0.75, rivals_apart_rad = 0.25;
 /// Gauss-Newton steps of a candidate and, after these, to tell it from others.
 constexpr int wide_steps = 2, refine_steps = 1;
@@ -146,6 +146,7 @@ void LineLocaliser::compare_rivals(const Pose2D& pose, Query& query) const {
   TriedPoses tried(rivals_apart_m, rivals_apart_rad);
   int rivals = 0;
   for (const RankedNode& other : ranker_->rank(map_.nodes[node].view, ranked_for_rivals)) {
+    if (other.score < ranker_->least_rival_score()) break;
     const Pose2D there =
         compose(compose(map_.nodes[other.node].pose, other.query_in_node), in_node);
     if (distance_m(there, pose) < same_place_m || !tried.add(there)) continue;

@@ -25,6 +25,8 @@ class NodeRanker {
   virtual ~NodeRanker() = default;
   /// The `most` nodes that are most alike, best first; ties keep the map's order.
   virtual std::vector<RankedNode> rank(const PlaceView& query, int most) const = 0;
+  /// The score, for a view of the map's own, below which a node is not taken for its place.
+  virtual double least_rival_score() const { return 0; }
 };
 
 /// `view` (ViewRanker), `pgh` or `pgh_aggregate` (HistogramRanker). The map must outlive it. Throws

@@ -3,6 +3,7 @@
 #include "sim/study/settings_reader.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -29,6 +30,15 @@ namespace {
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
 }  // namespace
+
+void set_swept(toml::table& study, const std::string& key, const toml::node& value) {
+  const std::size_t dot = key.find('.');
+  const std::string section = key.substr(0, dot), entry = key.substr(dot + 1);
+  if (!study.contains(section)) study.insert(section, toml::table{});
+  if (toml::table* into = study.get(section)->as_table()) {
+    value.visit([&](const auto& v) { into->insert_or_assign(entry, v); });
+  }
+}
 
 double SettingsReader::number_in(const toml::node& node,
                                  const std::string& what,
@@ -162,61 +172,6 @@ void SettingsReader::read_map(const toml::table& table, ExperimentSettings& sett
   }
 }
 
-void SettingsReader::read_localiser(const toml::table& table, ExperimentSettings& settings) const {
-  check_keys(table,
-             {"method", "looks", "knows_endpoint_sigma", "ranker", "candidates", "max_error_rate",
-              "off_map", "stages", "command", "time_limit_s", "corners", "min_corners"},
-             "[localiser]");
-  if (const auto* method = table.get("method")) {
-    settings.method = text(*method, "localiser.method");
-    const std::vector<std::string> known = localiser_names();
-    if (std::find(known.begin(), known.end(), settings.method) == known.end()) {
-      fail(*method, "unknown localiser " + in_quotes(settings.method),
-           "use " + alternatives(known));
-    }
-  }
-  if (const auto* knows = table.get("knows_endpoint_sigma")) {
-    if (!knows->is_boolean()) {
-      fail(*knows, "localiser.knows_endpoint_sigma is not a boolean", "use true or false");
-    }
-    settings.knows_endpoint_sigma = knows->as_boolean()->get();
-  }
-  if (const auto* ranker = table.get("ranker")) {
-    settings.localiser.ranker = text(*ranker, "localiser.ranker");
-    const Keys known{"view", "pgh", "pgh_aggregate"};
-    if (std::find(known.begin(), known.end(), settings.localiser.ranker) == known.end()) {
-      fail(*ranker, "unknown ranker " + in_quotes(settings.localiser.ranker),
-           "use view, pgh or pgh_aggregate");
-    }
-  }
-  if (const auto* candidates = table.get("candidates")) {
-    const std::int64_t count = integer(*candidates, "localiser.candidates");
-    if (count < 1 || count > 10'000) {
-      fail(*candidates, "localiser.candidates is not from 1 to 10000", "use 256");
-    }
-    settings.localiser.candidates = static_cast<int>(count);
-  }
-  if (const auto* rate = table.get("max_error_rate")) {
-    settings.localiser.max_error_rate = number_in(*rate, "localiser.max_error_rate", 1e-6, 1);
-  }
-  if (const auto* off_map = table.get("off_map")) {
-    settings.localiser.off_map = number_in(*off_map, "localiser.off_map", 0, 0.999);
-  }
-  if (const auto* stages = table.get("stages")) {
-    settings.localiser.stages =
-        word(*stages, "localiser.stages", [](const std::string& w) { return localiser_stages(w); });
-  }
-  if (const auto* looks = table.get("looks")) {
-    const std::int64_t count = integer(*looks, "localiser.looks");
-    if (count < 1 || count > 12) {
-      fail(*looks, "localiser.looks is not from 1 to 12", "use 1, or 2 for a second look");
-    }
-    settings.looks = static_cast<int>(count);
-  }
-  read_views(table, settings.localiser);
-  read_program(table, settings);
-}
-
 void SettingsReader::read_corners(const toml::table& table, AppearanceOptions& appearance) const {
   check_keys(table, {"view_change", "noise"}, "[corners]");
   constexpr double most = 100;
@@ -225,31 +180,6 @@ void SettingsReader::read_corners(const toml::table& table, AppearanceOptions& a
   }
   if (const auto* node = table.get("noise")) {
     appearance.noise = number_in(*node, "corners.noise", 0, most);
-  }
-}
-
-void SettingsReader::read_views(const toml::table& table, LocaliserOptions& options) const {
-  if (const auto* node = table.get("corners")) {
-    if (!node->is_boolean()) {
-      fail(*node, "localiser.corners is not a boolean", "use true or false");
-    }
-    options.corners = node->as_boolean()->get();
-  }
-  if (const auto* node = table.get("min_corners")) {
-    const std::int64_t count = integer(*node, "localiser.min_corners");
-    if (count < 4 || count > 10'000) {
-      fail(*node, "localiser.min_corners is not from 4 to 10000", "use 8");
-    }
-    options.min_corners = static_cast<int>(count);
-  }
-}
-
-void SettingsReader::read_program(const toml::table& table, ExperimentSettings& settings) const {
-  if (settings.method != "program") return;  // a sweep may set both
-  settings.localiser.command =
-      command(required(table, "command", "[localiser]"), "localiser.command");
-  if (const auto* limit = table.get("time_limit_s")) {
-    settings.localiser.time_limit_s = number_in(*limit, "localiser.time_limit_s", 1e-3, 86400);
   }
 }
 
@@ -273,6 +203,11 @@ ExperimentSettings SettingsReader::read_settings(const toml::table& root,
   if (const auto* map = section(root, "map")) read_map(*map, settings);
   if (const auto* camera = section(root, "camera")) read_camera(*camera, settings.mount);
   if (const auto* localiser = section(root, "localiser")) read_localiser(*localiser, settings);
+  if (const auto* histograms = section(root, "histograms")) {
+    const bool of_image = settings.method.starts_with("pgh_baseline");
+    LocaliserOptions& options = settings.localiser;
+    read_histograms(*histograms, of_image ? options.image_histograms : options.histograms);
+  }
   return settings;
 }
 

@@ -10,6 +10,7 @@
 #include "calib/base/toml_reader.h"
 #include "calib/error.h"
 #include "localise/localiser.h"
+#include "localise/pgh.h"
 #include "localise/place.h"
 #include "sim/corner_appearance.h"
 #include "sim/experiment.h"
@@ -17,13 +18,16 @@
 
 namespace vernier::sim::internal {
 
+/// Sets "section.entry" of a study to a value of its sweep.
+void set_swept(toml::table& study, const std::string& key, const toml::node& value);
+
 /// Reads the settings of an experiment from the tables of a study file.
 class SettingsReader : public vernier::internal::TomlReader {
  public:
   using TomlReader::TomlReader;
 
-  /// The tables [study] (seed and protocol), [sources], [corners], [camera], [map] and [localiser]
-  /// of a study; `sources` are those that it starts from.
+  /// The tables [study] (seed and protocol), [sources], [corners], [camera], [map], [localiser]
+  /// and [histograms] of a study; `sources` are those that it starts from.
   ExperimentSettings read_settings(const toml::table& root, const SourceSettings& sources) const;
 
   void read_sources(const toml::table& table, SourceSettings& sources) const;
@@ -54,6 +58,8 @@ class SettingsReader : public vernier::internal::TomlReader {
   void read_corners(const toml::table& table, AppearanceOptions& appearance) const;
   void read_localiser(const toml::table& table, ExperimentSettings& settings) const;
   void read_views(const toml::table& table, localise::LocaliserOptions& options) const;
+  /// Options of pairwise geometric histograms, as a study names them.
+  void read_histograms(const toml::table& table, localise::PghOptions& options) const;
   void read_program(const toml::table& table, ExperimentSettings& settings) const;
 };
 

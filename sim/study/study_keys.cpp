@@ -26,6 +26,7 @@
 #include "calib/error.h"
 #include "calib/interval.h"
 #include "localise/localiser.h"
+#include "localise/pgh.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
 #include "sim/study/reconstruct.h"
@@ -46,8 +47,8 @@ namespace {
 /// Incremented when the meaning of stored results changes.
 constexpr int results_version = 1;
 
-/// The same of one method: `lines` since candidates without hope are given up.
-constexpr int lines_version = 3;
+/// The same of one method: `lines` since places too unlike the answer are no rivals of it.
+constexpr int lines_version = 4;
 
 /// The same of ceilings: 2 since they are searched by several pairs of edges.
 constexpr int ceiling_version = 2;
@@ -64,6 +65,31 @@ std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
   while (in >> pair.first >> colon >> pair.second && colon == ':') pairs.push_back(pair);
   if (!in.eof()) pairs.clear();
   return pairs;
+}
+
+/// Those of the method's histograms that differ from the default, which older stores have no keys
+/// of.
+std::map<std::string, std::string> histogram_settings(const ExperimentSettings& s) {
+  const LocaliserOptions usual;
+  const bool of_image = s.method.starts_with("pgh_baseline");
+  const PghOptions& own = of_image ? s.localiser.image_histograms : s.localiser.histograms;
+  const PghOptions& other = of_image ? usual.image_histograms : usual.histograms;
+  std::map<std::string, std::string> changed;
+  const auto add = [&](const char* key, const auto& value, const auto& default_value) {
+    if (value != default_value)
+      changed[fmt::format("histograms.{}", key)] = fmt::format("{}", value);
+  };
+  constexpr double degree = std::numbers::pi / 180;
+  add("type", name(own.type), name(other.type));
+  add("blur", name(own.blur), name(other.blur));
+  add("angle_bins", own.angle_bins, other.angle_bins);
+  add("distance_bins", own.distance_bins, other.distance_bins);
+  add("height_bands", own.height_bands, other.height_bands);
+  add("max_lines", own.max_lines, other.max_lines);
+  add("max_distance", own.max_distance, other.max_distance);
+  add("angle_sigma_deg", own.angle_sigma_rad / degree, other.angle_sigma_rad / degree);
+  add("distance_sigma", own.distance_sigma, other.distance_sigma);
+  return changed;
 }
 
 /// Settings of sources that have their default and that older stores have no keys of.
@@ -138,6 +164,7 @@ std::map<std::string, std::string> settings_of(const ExperimentSettings& s) {
   if (name(s.localiser.stages) != name(usual.stages)) {
     all["localiser.stages"] = name(s.localiser.stages);
   }
+  all.merge(histogram_settings(s));
   if (needs_corners(s.method, s.localiser)) {
     all["corners.view_change"] = fmt::format("{}", s.appearance.view_change);
     all["corners.noise"] = fmt::format("{}", s.appearance.noise);

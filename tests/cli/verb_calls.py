@@ -52,6 +52,11 @@ STUDY = ('[study]\ntrials = 120\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
          '[world]\nfile = "posts.world.toml"\n[rig]\nfile = "nominal"\n[sweep]\n"sources.calibration" = [0, 1]\n')
 
 
+# Races the node spacing, and confirms in the same world seen from elsewhere.
+TUNE = (STUDY.replace('"sources.calibration" = [0, 1]', '"map.spacing_m" = [1, 2]') +
+        '[tune]\nconfirm_worlds = ["yard.world.toml"]\nconfirm_trials = 12\n')
+
+
 def matched_pairs():
     """A pairs file of the rig of stereo_test."""
     chance = random.Random(3)
@@ -139,6 +144,8 @@ def write_inputs(folder):
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
     (folder / 'study.toml').write_text(STUDY)
+    (folder / 'tune.toml').write_text(TUNE)
+    (folder / 'yard.world.toml').write_text(WORLD.replace('[5, 2]', '[6, 2]'))
     begun = folder / 'begun'
     begun.mkdir()
     (begun / 'study.toml').write_text(STUDY)
@@ -192,6 +199,7 @@ def calls():
         Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
                         '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        Call('tune', ['tune', 'tune.toml', '-o', 'out', '--threads', '1'], ['out']),
         # A study without results, which the program alone can make: it says so.
         Call('export', ['export', 'begun', '-o', 'out.csv'], ['out.csv'], code=3),
         Call('lines', ['lines', '--image', 'left.pgm', '--depth', 'depth.png', '--rig', 'rig.json',

@@ -28,6 +28,7 @@
 namespace vernier {
 
 using namespace vernier::internal;
+using namespace vernier::localise;
 using namespace vernier::sim;
 using namespace vernier::sim::internal;
 
@@ -40,11 +41,9 @@ std::string complaint_of(const std::string& text) {
 TEST(StudyFile, ShippedStudiesAreRead) {
   const std::filesystem::path folder =
       std::filesystem::path(VERNIER_SOURCE_DIR) / "datasets" / "studies";
-  const std::map<std::string, std::size_t> cells{{"board_views.toml", 4},
-                                                 {"campaign.toml", 77},
-                                                 {"each_source.toml", 47},
-                                                 {"stages.toml", 5},
-                                                 {"versions.toml", 4}};
+  const std::map<std::string, std::size_t> cells{{"board_views.toml", 4},  {"campaign.toml", 77},
+                                                 {"each_source.toml", 47}, {"stages.toml", 5},
+                                                 {"tuning.toml", 24},      {"versions.toml", 4}};
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const StudyFile study = read_study(entry.path());
@@ -144,6 +143,37 @@ TEST(StudyFile, LocaliserOptionsBelongToTheCell) {
         "off_map = 1\n", "looks = 13\n", "method = \"sift\"\n", "stages = \"align+think\"\n",
         "stages = \"align+align\"\n", "stages = \"\"\n", "stages = 3\n"}) {
     EXPECT_THROW(cell(wrong), Error) << wrong;
+  }
+}
+
+TEST(StudyFile, HistogramsAreThoseOfTheCellsMethod) {
+  const auto cells = [](const std::string& rest) {
+    return parse_study("[study]\ntrials = 10\n" + rest, "s.toml").cells;
+  };
+  const auto both = cells(
+      "[histograms]\nangle_sigma_deg = 10\nmax_distance = 3\n[sweep]\n"
+      "\"localiser.method\" = [\"pgh\", \"pgh_baseline\"]\n"
+      "\"histograms.type\" = [\"mirror\", \"directed\"]\n");
+  ASSERT_EQ(both.size(), 4u);
+  const LocaliserOptions usual;
+  const LocaliserOptions& in_space = both[1].experiment.localiser;
+  const LocaliserOptions& in_image = both[3].experiment.localiser;
+  EXPECT_EQ(in_space.histograms.type, PghType::directed);
+  EXPECT_NEAR(in_space.histograms.angle_sigma_rad, 0.17453293, 1e-8);
+  EXPECT_EQ(in_space.histograms.max_distance, 3);
+  EXPECT_EQ(in_space.image_histograms.max_distance, usual.image_histograms.max_distance);
+  EXPECT_EQ(in_image.image_histograms.type, PghType::directed);
+  EXPECT_EQ(in_image.image_histograms.max_distance, 3);
+  EXPECT_EQ(in_image.histograms.max_distance, usual.histograms.max_distance);
+  EXPECT_EQ(both[1].settings.at("histograms.type"), "directed");
+  EXPECT_EQ(both[0].settings.count("histograms.type"), 0u);  // keys of older stores hold none
+  for (const char* wrong :
+       {"type = \"mirro\"\n", "type = 1\n", "blur = \"none\"\n", "angle_bins = 0\n",
+        "angle_bins = 2.5\n", "distance_bins = 1001\n", "height_bands = 21\n", "max_lines = 1\n",
+        "max_distance = 0\n", "max_distance = inf\n", "angle_sigma_deg = nan\n",
+        "distance_sigma = 0\n", "angle_bins = 100\ndistance_bins = 100\nheight_bands = 2\n",
+        "bins = 3\n"}) {
+    EXPECT_THROW(cells(std::string("[histograms]\n") + wrong), Error) << wrong;
   }
 }
 

@@ -117,6 +117,7 @@ int main(int argc, char** argv) {
   cli::add_study(app, session);
   cli::add_tune(app, session);
   cli::add_export(app, session);
+  cli::add_lines(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);
   cli::add_odometry(app, session);

@@ -32,6 +32,7 @@ void add_render(CLI::App& app, Session& session);
 void add_study(CLI::App& app, Session& session);
 void add_tune(CLI::App& app, Session& session);
 void add_export(CLI::App& app, Session& session);
+void add_lines(CLI::App& app, Session& session);
 void add_map(CLI::App& app, Session& session);
 void add_localise(CLI::App& app, Session& session);
 void add_odometry(CLI::App& app, Session& session);

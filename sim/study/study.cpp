@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "calib/base/instruction_set.h"
+#include "calib/base/ordered_parallel.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/study/instruction_sets.h"
@@ -106,6 +108,10 @@ void record_calibrations(const Study& study,
     const std::string key = calibration_key(study, cell);
     if (stored.notes().count(key) > 0 || !recorded.insert(key).second) continue;
     constexpr int enough = 100;
+    for_each_index(enough, run.threads, [&](std::size_t draw) {
+      if (!run.stop.stop_requested()) calibrations->of(static_cast<std::uint32_t>(draw));
+    });
+    if (run.stop.stop_requested()) return;
     const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
     store.set_note(name, note);
   }

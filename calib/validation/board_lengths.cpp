@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calib/board_observations.h"
+
 namespace vernier::internal {
 
 std::vector<SeenPair> seen_pairs(const BoardObservations& observations,

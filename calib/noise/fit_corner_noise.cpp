@@ -31,7 +31,8 @@ class NoiseCost : public ceres::FirstOrderFunction {
       : likelihood_(likelihood),
         start_(likelihood.logs(start)),
         low_(std::log(shortest * spacing_m)),
-        width_(std::log(longest / shortest)) {
+        width_(std::log(longest / shortest)),
+        best_(VectorXd::Zero(start_.size())) {
     at_start_ = likelihood_.at(start, RestrictedLikelihood::Want::gradient).minus_two_log;
   }
 
@@ -46,12 +47,26 @@ class NoiseCost : public ceres::FirstOrderFunction {
         g = 0.5 * s.gradient + prior_precision * unknowns;
         if (likelihood_.parts().field) g[2] += 0.5 * s.gradient[2] * (length_slope(x[2]) - 1);
       }
+      if (*cost < best_cost_) {
+        best_cost_ = *cost;
+        best_ = unknowns;
+      }
       return std::isfinite(*cost);
     } catch (const Error&) {
       return false;
     }
   }
   int NumParameters() const override { return static_cast<int>(start_.size()); }
+
+  /// The unknowns of the least cost so far.
+  const VectorXd& best() const { return best_; }
+  /// The largest element of the gradient.
+  double gradient_at(const VectorXd& unknowns) const {
+    VectorXd gradient(unknowns.size());
+    double value = 0;
+    if (!Evaluate(unknowns.data(), &value, gradient.data())) return HUGE_VAL;
+    return gradient.cwiseAbs().maxCoeff();
+  }
 
   CornerNoise noise_at(const VectorXd& unknowns) const {
     VectorXd logs = start_ + unknowns.cwiseMax(-20.0).cwiseMin(20.0);
@@ -71,6 +86,8 @@ class NoiseCost : public ceres::FirstOrderFunction {
   const RestrictedLikelihood& likelihood_;
   VectorXd start_;
   double low_, width_, at_start_ = 0;
+  mutable VectorXd best_;  // Ceres evaluates one point at a time
+  mutable double best_cost_ = HUGE_VAL;
 };
 
 CornerNoise default_start(const RestrictedLikelihood& likelihood, double spacing_m) {
@@ -108,17 +125,17 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
   options.gradient_tolerance = 1e-3;
   options.parameter_tolerance = 1e-6;
   options.logging_type = ceres::SILENT;
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(options, problem, x.data(), &summary);
   NoiseFit fit;
+  for (int attempt = 0; attempt < 4 && !fit.converged; ++attempt) {
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(options, problem, x.data(), &summary);
+    x = cost->best();  // a line search that fails returns to its start
+    fit.iterations += static_cast<int>(summary.iterations.size());
+    fit.converged = cost->gradient_at(x) < largest_gradient;
+  }
   fit.noise = cost->noise_at(x);
   fit.parts = likelihood.parts();
   fit.solution = likelihood.at(fit.noise, RestrictedLikelihood::Want::solution);
-  VectorXd gradient(x.size());
-  double value = 0;
-  fit.converged = cost->Evaluate(x.data(), &value, gradient.data()) &&
-                  gradient.cwiseAbs().maxCoeff() < largest_gradient;
-  fit.iterations = static_cast<int>(summary.iterations.size());
   return fit;
 }
 

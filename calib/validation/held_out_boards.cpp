@@ -5,115 +5,123 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <numeric>
+#include <iterator>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calib/board_observations.h"
 #include "calib/calibrate.h"
 #include "calib/error.h"
-#include "calib/rig.h"
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/noise_of_estimate.h"
 #include "calib/rig_estimate.h"
 #include "calib/statistics/draw_sources.h"
 #include "calib/statistics/shuffled.h"
-#include "calib/triangulation.h"
 #include "calib/validation/board_lengths.h"
+#include "calib/validation/held_out_board.h"
 
 namespace vernier::internal {
 namespace {
 
 /// Sums for one kind of length.
 struct Tally {
-  int n = 0, in_honest = 0, in_mvb = 0;
-  double z2_honest = 0, z2_mvb = 0, error2 = 0, honest2 = 0, mvb2 = 0;
+  struct Stated {
+    int inside = 0;
+    double z2 = 0, variance = 0;
 
-  void add(double error, double variance_honest, double variance_mvb) {
-    constexpr double z_95 = 1.959963984540054;
+    void add(double error, double stated) {
+      constexpr double z_95 = 1.959963984540054;
+      const double squared = error * error / stated;
+      inside += squared <= z_95 * z_95;
+      z2 += squared;
+      variance += stated;
+    }
+  };
+  int n = 0;
+  double error2 = 0;
+  Stated honest, mvb, components;
+
+  void add(double error, const StatedVariances& stated) {
     ++n;
-    const double z2h = error * error / variance_honest, z2m = error * error / variance_mvb;
-    in_honest += z2h <= z_95 * z_95;
-    in_mvb += z2m <= z_95 * z_95;
-    z2_honest += z2h;
-    z2_mvb += z2m;
     error2 += error * error;
-    honest2 += variance_honest;
-    mvb2 += variance_mvb;
+    honest.add(error, stated.honest);
+    mvb.add(error, stated.mvb);
+    components.add(error, stated.components);
   }
 
   LengthCoverage coverage() const {
     const double m = std::max(n, 1);
     return {n,
-            in_honest / m,
-            in_mvb / m,
-            std::sqrt(z2_honest / m),
-            std::sqrt(z2_mvb / m),
+            honest.inside / m,
+            mvb.inside / m,
+            std::sqrt(honest.z2 / m),
+            std::sqrt(mvb.z2 / m),
             std::sqrt(error2 / m),
-            std::sqrt(honest2 / m),
-            std::sqrt(mvb2 / m)};
+            std::sqrt(honest.variance / m),
+            std::sqrt(mvb.variance / m),
+            components.inside / m,
+            std::sqrt(components.z2 / m),
+            std::sqrt(components.variance / m)};
   }
 };
 
-/// A length, or a mean of several, with its derivatives with respect to the rig and the pixels of
-/// corners.
-struct MeasuredValue {
-  double value = 0;
-  Eigen::RowVectorXd by_rig;
-  std::map<int, Eigen::RowVector4d> by_pixels;
-
-  double variance(const Eigen::MatrixXd& C, double pixel_sigma_px) const {
-    double pixels = 0;
-    for (const auto& [id, J] : by_pixels) pixels += J.squaredNorm();
-    return by_rig * C * by_rig.transpose() + pixel_sigma_px * pixel_sigma_px * pixels;
+/// Nothing for a board with fewer than four corners, or that no pose fits.
+std::optional<BoardVariances> variances_of(const RigEstimate& estimate,
+                                           const HeldOutBoard& board,
+                                           const CornerNoise& noise) {
+  if (board.corners() < 4) return {};
+  try {
+    return BoardVariances(estimate, board, noise);
+  } catch (const Error&) {
+    return {};
   }
-};
-
-MeasuredValue length(const PointTriangulation& a,
-                     const PointTriangulation& b,
-                     std::pair<int, int> ids) {
-  const Eigen::Vector3d d = b.x_m - a.x_m;
-  const Eigen::RowVector3d unit = d.transpose() / d.norm();
-  MeasuredValue m{d.norm(), unit * (b.by_rig - a.by_rig), {}};
-  m.by_pixels[ids.first] = -unit * a.by_pixels;
-  m.by_pixels[ids.second] = unit * b.by_pixels;
-  return m;
 }
 
-/// The corners that can be triangulated, by id.
-std::map<int, PointTriangulation> points_of(const Rig& rig, const SeenPair& seen) {
-  std::map<int, PointTriangulation> points;
-  for (const auto& [id, pixels] : seen) {
-    if (const auto point = triangulate_point_with_jacobian(rig, pixels)) points.emplace(id, *point);
-  }
-  return points;
-}
+/// Adds the boards of one split that its calibration did not see.
+class SplitOfBoards {
+ public:
+  SplitOfBoards(const BoardObservations& observations, BoardStand stand)
+      : observations_(observations), stand_(stand) {}
 
-/// Adds one held-out board, by its triangulated corners, to the tallies.
-void evaluate_board(const RigEstimate& estimate,
-                    const std::vector<Eigen::Vector3d>& target_m,
-                    const std::map<int, PointTriangulation>& points,
-                    Tally& edges,
-                    Tally& scale) {
-  const Eigen::MatrixXd &honest = estimate.covariance->matrix, &mvb = *estimate.covariance_mvb;
-  const double sigma = estimate.calibration->pixel_sigma_px;
-  std::vector<int> ids;
-  for (const auto& [id, point] : points) ids.push_back(id);
-  const auto pairs = board_edges(target_m, ids);
-  MeasuredValue mean{0, Eigen::RowVectorXd::Zero(honest.rows()), {}};
-  for (const auto& ends : pairs) {
-    const double truth = (target_m[ends.first] - target_m[ends.second]).norm();
-    const MeasuredValue m = length(points.at(ends.first), points.at(ends.second), ends);
-    edges.add(m.value - truth, m.variance(honest, sigma), m.variance(mvb, sigma));
-    const double weight = 1 / (truth * static_cast<double>(pairs.size()));
-    mean.value += weight * m.value;
-    mean.by_rig += weight * m.by_rig;
-    for (const auto& [id, J] : m.by_pixels) {
-      mean.by_pixels.try_emplace(id, Eigen::RowVector4d::Zero()).first->second += weight * J;
+  void add(const RigEstimate& estimate,
+           const std::vector<int>& frames,
+           HeldOutBoardsResult& result) {
+    const CornerNoiseEstimate noise =
+        estimate_corner_noise(estimate, {.motion = stand_ == BoardStand::hand_held}, false);
+    result.noise_not_found += !noise.fit.converged;
+    ++result.splits;
+    for (const int frame : frames) {
+      const SeenPair seen = seen_pairs(observations_, {frame})[0];
+      if (seen.size() < 4) continue;
+      add(estimate, HeldOutBoard(observations_, frame, seen, estimate), noise.fit.noise,
+          static_cast<int>(seen.size()), result);
     }
   }
-  scale.add(mean.value - 1, mean.variance(honest, sigma), mean.variance(mvb, sigma));
-}
+
+  Tally edges, scales;
+
+ private:
+  void add(const RigEstimate& estimate,
+           const HeldOutBoard& board,
+           const CornerNoise& noise,
+           int seen,
+           HeldOutBoardsResult& result) {
+    result.corners_left_out += seen - board.corners();
+    const std::optional<BoardVariances> found = variances_of(estimate, board, noise);
+    ++(found ? result.boards : result.boards_left_out);
+    if (!found) return;
+    const BoardVariances& variances = *found;
+    for (const MeasuredValue& length : board.lengths()) {
+      edges.add(length.value - length.truth, variances.of(length));
+    }
+    const MeasuredValue scale = board.scale();
+    scales.add(scale.value - scale.truth, variances.of(scale));
+  }
+
+  const BoardObservations& observations_;
+  BoardStand stand_;
+};
 
 }  // namespace
 
@@ -133,8 +141,7 @@ HeldOutBoardsResult evaluate_held_out_boards(
                 std::to_string(training) + " training frames of " + std::to_string(n),
                 "give at least 3, and fewer than there are");
   }
-  const std::vector<SeenPair> seen = seen_pairs(observations, frames);
-  Tally edges, scale;
+  SplitOfBoards boards(observations, options.stand);
   HeldOutBoardsResult result;
   result.training_frames = training;
   for (int split = 0; split < options.splits; ++split) {
@@ -144,17 +151,11 @@ HeldOutBoardsResult evaluate_held_out_boards(
                           .source = static_cast<std::uint32_t>(DrawSource::left_out_boards)});
     kept.resize(static_cast<std::size_t>(training));
     std::sort(kept.begin(), kept.end());
+    std::vector<int> others;
+    std::set_difference(frames.begin(), frames.end(), kept.begin(), kept.end(),
+                        std::back_inserter(others));
     try {
-      const RigEstimate estimate = calibrate(at_frames(observations, kept), options.calibration);
-      ++result.splits;
-      for (int f = 0; f < n; ++f) {
-        if (seen[f].size() < 4 || std::binary_search(kept.begin(), kept.end(), frames[f])) continue;
-        const auto points = points_of(estimate.rig, seen[f]);
-        result.corners_left_out += static_cast<int>(seen[f].size() - points.size());
-        ++(points.size() < 4 ? result.boards_left_out : result.boards);
-        if (points.size() < 4) continue;
-        evaluate_board(estimate, observations.target_m, points, edges, scale);
-      }
+      boards.add(calibrate(at_frames(observations, kept), options.calibration), others, result);
     } catch (const Error&) {
       ++result.failed;  // these frames alone do not determine the rig
     }
@@ -164,8 +165,8 @@ HeldOutBoardsResult evaluate_held_out_boards(
     throw Error("boards left out", "no split could be calibrated and evaluated",
                 "give more views, or a model with fewer parameters");
   }
-  result.edges = edges.coverage();
-  result.scale = scale.coverage();
+  result.edges = boards.edges.coverage();
+  result.scale = boards.scales.coverage();
   return result;
 }
 

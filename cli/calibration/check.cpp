@@ -29,6 +29,7 @@
 #include "cli/calibration/check_held_out.h"
 #include "cli/calibration/check_injected.h"
 #include "cli/calibration/check_mrcal.h"
+#include "cli/calibration/check_noise.h"
 #include "cli/calibration/check_section.h"
 #include "cli/calibration/solver_input.h"
 #include "cli/program/option_checks.h"
@@ -46,6 +47,7 @@ struct CheckArguments {
   bool no_mrcal = false, holdout = false, halves = false;
   int splits = 100, training_frames = 0;
   std::vector<double> injected;  ///< factors of --inject
+  std::string stand = "hand-held";
 };
 
 /// Throws Error for options that would have no effect.
@@ -57,7 +59,7 @@ void refuse_unused_options(const CheckArguments& options) {
     refuse_options(app, solver_options, "the rig file contains the solver settings", remedy);
   }
   if (!options.holdout) {
-    refuse_options(app, std::array{"--training-frames"}, "only valid with --holdout",
+    refuse_options(app, std::array{"--training-frames", "--boards"}, "only valid with --holdout",
                    "add --holdout or leave it out");
   }
   if (!options.holdout && !options.halves) {
@@ -215,11 +217,14 @@ void run(const CheckArguments& options, Session& session) {
                                    session));
   }
   if (options.holdout) {
+    const BoardStand stand = options.stand == "still" ? BoardStand::still : BoardStand::hand_held;
+    add("noise", check_corner_noise(solved.estimate, stand, session));
     add("holdout", check_held_out_boards(problem.observations,
                                          {.training_frames = options.training_frames,
                                           .splits = options.splits,
                                           .seed = options.copies.seed,
-                                          .calibration = how},
+                                          .calibration = how,
+                                          .stand = stand},
                                          session));
   }
   session.result(json, text);
@@ -263,6 +268,12 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_option("--training-frames", o->training_frames,
                    "training frames per split (default: slightly more than half)")
       ->check(CLI::NonNegativeNumber);
+  verb->add_option(
+          "--boards", o->stand,
+          "hand-held: the boards of --holdout may move between the exposures of the cameras; "
+          "still: they stand, or the cameras are synchronised")
+      ->check(CLI::IsMember({"hand-held", "still"}))
+      ->capture_default_str();
   verb->callback([o, &session] { session.action = [=, &session] { run(*o, session); }; });
 }
 

@@ -85,12 +85,12 @@ void add_left_out(const BoardObservations& observations,
                         named_coverage("scale of the board", "1", result.scale)}}};
   // Splits share boards: with a dozen boards, 0.8 is about 2.5 standard deviations below 0.95.
   for (const Json& row : json["left_out"]["rows"]) {
-    if (row["coverage_honest"] >= 0.8) continue;
+    if (row["coverage_components"] >= 0.8) continue;
     json["warnings"].push_back(fmt::format(
         "{} held-out boards: only {:.0f} % are inside their 95 % interval; the lens model, the "
         "board shape or the square size is wrong, or there are too few views",
         row["what"] == "scale of the board" ? "scale of" : "lengths on",
-        100 * row["coverage_honest"].get<double>()));
+        100 * row["coverage_components"].get<double>()));
   }
 }
 

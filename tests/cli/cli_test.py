@@ -395,6 +395,8 @@ class IdleOptions(Case):
         self.complains('check', 'nominal', '--training-frames', '9',
                        of='--training-frames: only valid with --holdout; add --holdout or leave it '
                           'out')
+        self.complains('check', 'nominal', '--boards', 'still',
+                       of='--boards: only valid with --holdout; add --holdout or leave it out')
         self.complains('check', 'nominal', '--splits', '9',
                        of='--splits: only valid with --holdout or --halves; add one of them or '
                           'leave it out')
@@ -762,6 +764,23 @@ class Check(Case):
         self.assertGreater(found['boards'], 0)
         self.assertEqual(found['boards_left_out'], 0)
         self.assertEqual(found['corners_left_out'], 0)
+
+    def test_components_of_the_corner_noise_are_told(self):
+        words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--holdout', '--splits', '2')
+        found = json.loads(self.works(*words, '--json').stdout)
+        noise = found['noise']
+        self.assertTrue(noise['converged'])
+        self.assertEqual(len(noise['motions']), found['frames'])
+        self.assertEqual(noise['moved'], [])  # simulated white noise
+        self.assertGreater(noise['motion_test']['p_value'], 0.01)
+        self.assertEqual(found['holdout']['boards_stand'], 'hand-held')
+        for kind in ('edges', 'scale'):
+            self.assertGreater(found['holdout'][kind]['sigma_components'], 0)
+        still = json.loads(self.works(*words, '--boards', 'still', '--json').stdout)
+        self.assertIsNone(still['noise']['motion_m'])
+        self.assertEqual(still['noise']['motions'], [])
+        self.assertEqual(still['holdout']['boards_stand'], 'still')
+        self.assertIn('corner noise by components', self.works(*words).stdout)
 
     def test_halves_of_the_views(self):
         words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--halves', '--splits', '8',

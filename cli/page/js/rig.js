@@ -139,7 +139,7 @@ function calibration_tiles(calibration) {
 
 function calibrations_section(rigs) {
   const left_out = (rig) => rig.proof?.models?.rows?.find((row) => row.in_use)?.held_out_rms_px;
-  const covered = (rig, key) => rig.proof?.left_out?.rows?.[0]?.[key];
+  const covered = (rig, key, row = 0) => rig.proof?.left_out?.rows?.[row]?.[key];
   const beside = (rig) => is_bound(rig) ? null : covered(rig, "coverage_mvb");
   section("calibrations", "Comparison of calibrations", table(
     "A smaller residual alone does not mean a better model: a richer model always fits its own"
@@ -153,9 +153,13 @@ function calibrations_section(rigs) {
       { head: "Held-out views", small: "RMS, px", cell: (rig) => significant(left_out(rig), 3) },
       { head: "σ over bound", small: "on average",
         cell: (rig) => significant(typical_inflation(rig), 2) },
-      { head: "Held-out boards", small: "inside 95 %",
-        cell: (rig) => percent(covered(rig, "coverage_honest"), 0) },
-      { head: "Held-out boards", small: "inside 95 %, bound",
+      { head: "Held-out boards", small: "lengths inside 95 %",
+        cell: (rig) => percent(covered(rig, "coverage_components"), 0) },
+      { head: "Held-out boards", small: "sizes inside 95 %",
+        cell: (rig) => percent(covered(rig, "coverage_components", 1), 0) },
+      { head: "Held-out boards", small: "sizes, white noise",
+        cell: (rig) => percent(covered(rig, "coverage_honest", 1), 0) },
+      { head: "Held-out boards", small: "lengths, bound",
         cell: (rig) => percent(beside(rig), 0) },
     ], rigs, { wide: false }));
 }

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/noise/corner_noise.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "calib/error.h"
+
+namespace vernier::internal {
+
+double point_spacing_m(const std::vector<Eigen::Vector3d>& target_m) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < target_m.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      least = std::min(least, (target_m[i] - target_m[j]).norm());
+    }
+  }
+  if (!(least > 0) || target_m.size() < 2) {
+    throw Error("board", "needs two points in different places", "check the board's points");
+  }
+  return least;
+}
+
+}  // namespace vernier::internal

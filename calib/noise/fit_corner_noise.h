@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/restricted_likelihood.h"
+
+namespace vernier::internal {
+
+/// Components of the corner noise by restricted maximum likelihood.
+struct NoiseFit {
+  CornerNoise noise;
+  NoiseParts parts;        ///< that were fitted
+  NoiseSolution solution;  ///< at them
+  bool converged = false;
+  int iterations = 0;
+};
+
+/// Maximises the restricted likelihood over the logarithms of the components by BFGS with a Wolfe
+/// line search (Nocedal and Wright 2006, chapters 3 and 6; Ceres), from `start` or, without one,
+/// from the size of the residuals. A component that is not there runs towards zero; a weak prior
+/// (three powers of ten or more for each component) keeps it finite. Lengths of the field stay
+/// between half and twenty spacings of the board's points.
+NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
+                          double spacing_m,
+                          const std::optional<CornerNoise>& start = {});
+
+/// The test that a group of components is absent, by twice the ratio of restricted likelihoods. On
+/// the boundary of the parameters it is, for white noise alone, at most as large as a mixture of
+/// chi-squared variables (Self and Liang 1987; Stram and Lee 1994):
+///
+///     motion   ¼ χ²_0 + ½ χ²_1 + ¼ χ²_2
+///     field    ½ χ²_1 + ½ χ²_2     (ℓ has no meaning without a field, so this is an approximation
+///                                   to the largest over ℓ: Davies 1987)
+struct ComponentTest {
+  double ratio = 0;  ///< 2 (l − l_without), not below 0
+  double p_value = 1;
+};
+
+ComponentTest motion_test(double minus_two_log, double minus_two_log_without);
+ComponentTest field_test(double minus_two_log, double minus_two_log_without);
+
+}  // namespace vernier::internal

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/noise/noise_of_estimate.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "calib/board_observations.h"
+#include "calib/board_state.h"
+#include "calib/error.h"
+#include "calib/estimate/held_parameters.h"
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/frame_rows.h"
+#include "calib/noise/restricted_likelihood.h"
+#include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
+#include "calib/statistics/distributions.h"
+
+namespace vernier::internal {
+namespace {
+
+constexpr std::size_t most_points = 80;  // a field of more is decomposed for too long
+
+BoardState state_of(const RigEstimate& estimate) {
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  return {estimate.rig, evidence.frames, evidence.T_first_board, evidence.warp_m};
+}
+
+/// The corners at no more than `most_points` of the target, evenly spaced by number; all of them if
+/// there are no more.
+BoardObservations thinned(BoardObservations observations) {
+  const std::size_t points = observations.target_m.size();
+  if (points <= most_points) return observations;
+  std::vector<bool> kept(points, false);
+  for (std::size_t i = 0; i < most_points; ++i) kept[i * points / most_points] = true;
+  for (BoardView& view : observations.views) {
+    BoardView fewer = view;
+    fewer.ids.clear();
+    fewer.pixels_px.clear();
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (!kept[static_cast<std::size_t>(view.ids[i])]) continue;
+      fewer.ids.push_back(view.ids[i]);
+      fewer.pixels_px.push_back(view.pixels_px[i]);
+    }
+    view = std::move(fewer);
+  }
+  std::erase_if(observations.views, [&](const BoardView& view) {
+    return !determines_pose(observations.target_m, view.ids);
+  });
+  return observations;
+}
+
+RigKnowledge knowledge_of(const RigEstimate& estimate,
+                          const Eigen::MatrixXd& free,
+                          Eigen::Index unknowns) {
+  if (estimate.evidence->priors.empty()) return {};
+  RigKnowledge all{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
+  const Eigen::Index n = free.cols();
+  for (const GaussianRigPrior& known : estimate.evidence->priors) {
+    const RigPrior prior = rig_prior(estimate.rig, known);
+    const PriorOffset offset = prior_offset(prior, estimate.rig);
+    const Eigen::MatrixXd J = offset.by_rig * free;
+    all.information.topLeftCorner(n, n) += J.transpose() * prior.information * J;
+    all.score.head(n) += J.transpose() * prior.information * offset.delta;
+  }
+  return all;
+}
+
+}  // namespace
+
+RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts) {
+  if (!estimate.evidence) {
+    throw Error("corner noise", "the rig holds no evidence", "calibrate without --no-evidence");
+  }
+  const CalibrationEvidence& evidence = *estimate.evidence;
+  const Eigen::MatrixXd free = free_directions(estimate.rig, held_parameters(estimate));
+  const BoardWarp warp = evidence.warp_m.isZero(0) ? BoardWarp::known : BoardWarp::free;
+  const BoardObservations observations = thinned(evidence.observations);
+  std::vector<FrameRows> frames =
+      frame_rows(observations, at_frames(state_of(estimate), frames_of(observations)), free, warp);
+  const Eigen::Index unknowns = frames.empty() ? 0 : frames[0].by_rig.cols();
+  return {std::move(frames), evidence.observations.target_m, parts,
+          knowledge_of(estimate, free, unknowns)};
+}
+
+std::vector<FrameMotion> CornerNoiseEstimate::moved() const {
+  constexpr double level = 0.01;
+  std::vector<FrameMotion> moved;
+  if (!motion || motion->p_value >= level) return moved;
+  const auto frames = static_cast<double>(fit.solution.motions.size());
+  for (const FrameMotion& m : fit.solution.motions) {
+    if (chi_squared_survival(m.chi2, 6) * frames < level) moved.push_back(m);
+  }
+  return moved;
+}
+
+CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
+                                          NoiseParts parts,
+                                          bool tests) {
+  const RestrictedLikelihood likelihood = noise_likelihood(estimate, parts);
+  const double spacing_m = point_spacing_m(estimate.evidence->observations.target_m);
+  CornerNoiseEstimate result{fit_corner_noise(likelihood, spacing_m), {}, {}};
+  if (!tests) return result;
+  const auto without = [&](bool NoiseParts::*part) {
+    NoiseParts fewer = likelihood.parts();
+    fewer.*part = false;
+    return fit_corner_noise(noise_likelihood(estimate, fewer), spacing_m, result.fit.noise)
+        .solution.minus_two_log;
+  };
+  const double all = result.fit.solution.minus_two_log;
+  if (likelihood.parts().motion) result.motion = motion_test(all, without(&NoiseParts::motion));
+  if (likelihood.parts().field) result.field = field_test(all, without(&NoiseParts::field));
+  return result;
+}
+
+}  // namespace vernier::internal

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib/noise/corner_noise.h"
+#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/restricted_likelihood.h"
+#include "calib/rig_estimate.h"
+
+namespace vernier::internal {
+
+/// The restricted likelihood of a calibration's corners, linearised at its rig and poses, with its
+/// held parameters and priors. A board whose warp is not zero is assumed to have been estimated
+/// with it. Of a target with more than 80 points, as many are used, evenly spaced by number. Throws
+/// Error if the estimate has no evidence.
+RestrictedLikelihood noise_likelihood(const RigEstimate& estimate, NoiseParts parts);
+
+/// The components of a calibration's corner noise, and whether each is there.
+struct CornerNoiseEstimate {
+  NoiseFit fit;                         ///< with all parts asked for
+  std::optional<ComponentTest> motion;  ///< nothing where it was not fitted
+  std::optional<ComponentTest> field;
+
+  /// The frames whose motion stands out: each at 1 % over the number of frames (Bonferroni), so
+  /// that no frame of a set in which nothing moves is named in 99 % of such sets. Empty unless
+  /// motions as a whole are there at 1 %.
+  std::vector<FrameMotion> moved() const;
+};
+
+/// `tests` also fits without each part, which takes as long again.
+CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
+                                          NoiseParts parts,
+                                          bool tests = true);
+
+}  // namespace vernier::internal

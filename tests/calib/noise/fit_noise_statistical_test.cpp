@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "calib/calibrate.h"
+#include "calib/noise/fit_corner_noise.h"
+#include "calib/noise/noise_of_estimate.h"
+#include "tests/support/noisy_board.h"
+#include "tests/support/scenes.h"
+
+namespace vernier {
+
+using namespace vernier::internal;
+
+namespace {
+
+constexpr int trials = 30;
+
+RigEstimate simulated(const CornerNoise& noise, std::uint32_t trial) {
+  auto drawn = test::noisy_board(
+      test::stereo_rig(), {}, {.seed = 6001, .trial = trial, .poses = trial, .frames = 14}, noise);
+  return calibrate(drawn.board.observations, {.reject_outliers = false, .check_input = false});
+}
+
+// Poses and noise drawn anew in each of 40 trials of 14 frames (12 with a shape). The mean of each
+// squared component over the true one is 1 within 3.5 standard errors of that mean and a bias of
+// 0.05; all components together raise a false alarm in less than 0.6 % of sets of trials.
+TEST(CornerNoise, ComponentsAreRecovered) {
+  const CornerNoise truth{.white_px = 0.1,
+                          .field_px = 0.08,
+                          .field_length_m = 0.06,
+                          .motion_rad = 4e-3,
+                          .motion_m = 6e-4,
+                          .shape_plane_m = 5e-5,
+                          .shape_height_m = 2e-4};
+  for (const bool shape : {false, true}) {
+    CornerNoise there = truth;
+    if (!shape) there.shape_plane_m = there.shape_height_m = 0;
+    const int trials = shape ? 12 : 40;
+    Eigen::ArrayXXd ratios(shape ? 7 : 5, trials);
+    for (int t = 0; t < trials; ++t) {
+      const RigEstimate estimate = simulated(there, static_cast<std::uint32_t>(t));
+      const RestrictedLikelihood likelihood = noise_likelihood(estimate, {.shape = shape});
+      const NoiseFit fit = fit_corner_noise(likelihood, 0.025);
+      EXPECT_TRUE(fit.converged);
+      ratios.col(t) = (2 * (likelihood.logs(fit.noise) - likelihood.logs(truth))).array().exp();
+    }
+    const char* names[] = {"white", "field", "length", "turn", "move", "plane", "height"};
+    for (Eigen::Index k = 0; k < ratios.rows(); ++k) {
+      const double mean = ratios.row(k).mean();
+      const double sd = std::sqrt((ratios.row(k) - mean).square().sum() / (trials - 1));
+      RecordProperty(std::string(names[k]) + (shape ? "_with_shape" : ""),
+                     std::to_string(mean) + " sd " + std::to_string(sd));
+      EXPECT_LT(std::abs(mean - 1), 3.5 * sd / std::sqrt(trials) + 0.05) << names[k];
+      EXPECT_LT(sd, 0.6) << names[k];
+    }
+  }
+}
+
+// White noise alone. The levels are nominal, and hold as upper bounds: 8 or more of 30 at a true
+// 5 % occur in 0.02 % of sets of trials.
+TEST(CornerNoise, AbsentComponentsAreSeldomFound) {
+  int motions = 0, fields = 0;
+  for (int t = 0; t < trials; ++t) {
+    const RigEstimate estimate =
+        simulated({.white_px = 0.15}, static_cast<std::uint32_t>(1000 + t));
+    const CornerNoiseEstimate found = estimate_corner_noise(estimate, {});
+    motions += found.motion->p_value < 0.05;
+    fields += found.field->p_value < 0.05;
+    const CornerNoise& noise = found.fit.noise;  // a field of half a square is white noise
+    EXPECT_NEAR(std::hypot(noise.white_px, noise.field_px), 0.15, 0.012);
+    EXPECT_LT(noise.motion_m, 1.5e-4);
+    if (noise.field_length_m > 0.025) {
+      EXPECT_LT(noise.field_px, 0.05);
+    }
+  }
+  RecordProperty("false_motions", motions);
+  RecordProperty("false_fields", fields);
+  EXPECT_LT(motions, 8);
+  EXPECT_LT(fields, 8);
+}
+
+// Real ones are: motions of 0.5 mm and a field of half the white noise in every trial at 1 %.
+TEST(CornerNoise, PresentComponentsAreFound) {
+  for (std::uint32_t t = 0; t < 8; ++t) {
+    const CornerNoise noise{.white_px = 0.1,
+                            .field_px = 0.05,
+                            .field_length_m = 0.06,
+                            .motion_rad = 3e-3,
+                            .motion_m = 5e-4};
+    const CornerNoiseEstimate found = estimate_corner_noise(simulated(noise, 2000 + t), {});
+    EXPECT_LT(found.motion->p_value, 0.01);
+    EXPECT_LT(found.field->p_value, 0.01);
+  }
+}
+
+// The best linear prediction of each frame's motion: its error over what the motions are is below
+// one in the mean, and the test of one frame keeps its level where nothing moved (14 x 30 frames at
+// 1 %: at most 13 are found in all but 0.02 % of sets) and finds a motion of 0.9 mm across the
+// view.
+TEST(CornerNoise, MotionsOfFramesAreTold) {
+  const CornerNoise noise{.white_px = 0.1, .motion_rad = 1e-3, .motion_m = 3e-4};
+  double error2 = 0, motion2 = 0;
+  for (std::uint32_t t = 0; t < 10; ++t) {
+    auto drawn = test::noisy_board(test::stereo_rig(), {},
+                                   {.seed = 6002, .trial = t, .poses = t, .frames = 14}, noise);
+    const RigEstimate estimate =
+        calibrate(drawn.board.observations, {.reject_outliers = false, .check_input = false});
+    const NoiseFit fit = fit_corner_noise(noise_likelihood(estimate, {.field = false}), 0.025);
+    ASSERT_EQ(fit.solution.motions.size(), drawn.motions.size());
+    for (std::size_t f = 0; f < drawn.motions.size(); ++f) {
+      const Eigen::Vector3d truth = drawn.motions[f].tail<3>();
+      error2 += (fit.solution.motions[f].predicted.tail<3>() - truth).squaredNorm();
+      motion2 += truth.squaredNorm();
+      if (truth.head<2>().norm() > 9e-4) {
+        EXPECT_GT(fit.solution.motions[f].chi2, 16.8);
+      }
+    }
+  }
+  RecordProperty("error_share", std::to_string(error2 / motion2));
+  EXPECT_LT(error2 / motion2, 0.7);
+  int found = 0;
+  for (std::uint32_t t = 0; t < trials; ++t) {
+    const RigEstimate estimate = simulated({.white_px = 0.15}, 1000 + t);
+    const NoiseFit fit = fit_corner_noise(noise_likelihood(estimate, {.field = false}), 0.025);
+    for (const FrameMotion& motion : fit.solution.motions) found += motion.chi2 > 16.812;
+  }
+  RecordProperty("false_frames", found);
+  EXPECT_LE(found, 13);
+}
+
+}  // namespace
+}  // namespace vernier

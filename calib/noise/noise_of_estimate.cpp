@@ -35,21 +35,9 @@ BoardObservations thinned(BoardObservations observations) {
   if (points <= most_points) return observations;
   std::vector<bool> kept(points, false);
   for (std::size_t i = 0; i < most_points; ++i) kept[i * points / most_points] = true;
-  for (BoardView& view : observations.views) {
-    BoardView fewer = view;
-    fewer.ids.clear();
-    fewer.pixels_px.clear();
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      if (!kept[static_cast<std::size_t>(view.ids[i])]) continue;
-      fewer.ids.push_back(view.ids[i]);
-      fewer.pixels_px.push_back(view.pixels_px[i]);
-    }
-    view = std::move(fewer);
-  }
-  std::erase_if(observations.views, [&](const BoardView& view) {
-    return !determines_pose(observations.target_m, view.ids);
+  return with_corners(std::move(observations), [&](const BoardView& view, std::size_t corner) {
+    return kept[static_cast<std::size_t>(view.ids[corner])];
   });
-  return observations;
 }
 
 RigKnowledge knowledge_of(const RigEstimate& estimate,

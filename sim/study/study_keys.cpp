@@ -71,7 +71,7 @@ std::vector<std::pair<int, int>> number_pairs(const std::string& text) {
 /// of.
 std::map<std::string, std::string> histogram_settings(const ExperimentSettings& s) {
   const LocaliserOptions usual;
-  const bool of_image = s.method.starts_with("pgh_baseline");
+  const bool of_image = uses_image_histograms(s.method);
   const PghOptions& own = of_image ? s.localiser.image_histograms : s.localiser.histograms;
   const PghOptions& other = of_image ? usual.image_histograms : usual.histograms;
   std::map<std::string, std::string> changed;

@@ -31,23 +31,6 @@ using namespace vernier::internal;
 
 namespace {
 
-/// Corners that noise carried out of their image, which no detector reports, and views of too few.
-void leave_out_unseen(const Rig& rig, BoardObservations& seen) {
-  for (BoardView& view : seen.views) {
-    const Camera& camera = rig.cameras[static_cast<std::size_t>(view.camera)];
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      if (!in_image(camera, view.pixels_px[i])) continue;
-      view.ids[kept] = view.ids[i];
-      view.pixels_px[kept++] = view.pixels_px[i];
-    }
-    view.ids.resize(kept);
-    view.pixels_px.resize(kept);
-  }
-  std::erase_if(seen.views,
-                [&](const BoardView& view) { return !determines_pose(seen.target_m, view.ids); });
-}
-
 class CalibratedRigs : public ToldRigs {
  public:
   CalibratedRigs(std::shared_ptr<const FreshCalibrations> calibrations, double psi_c)
@@ -108,8 +91,11 @@ BoardObservations FreshCalibrations::views_of(std::uint32_t draw) const {
                                              .distance_m = options_.distance_m,
                                              .tilt_rad = options_.tilt_rad})
                                  .observations;
-    leave_out_unseen(truth_, seen);
-    return seen;
+    // No detector reports a corner that noise carried out of its image.
+    return with_corners(std::move(seen), [&](const BoardView& view, std::size_t corner) {
+      return in_image(truth_.cameras[static_cast<std::size_t>(view.camera)],
+                      view.pixels_px[corner]);
+    });
   }
   std::vector<int> frames = shuffled(
       frames_of(*corners_), {.seed = seed_,

@@ -29,6 +29,7 @@
 #include "sim/study/study_keys.h"
 #include "sim/study/study_scenes.h"
 #include "sim/study/study_store.h"
+#include "sim/told/fresh_calibrations.h"
 #include "tests/support/error_message.h"
 #include "tests/support/small_office.h"
 
@@ -278,6 +279,19 @@ TEST_F(ToldStudies, OneOfSeveralShardsRecordsTheCalibrations) {
     EXPECT_EQ(stored_results(folder_).notes().count(key), i == 0 ? 1u : 0u);
   }
   EXPECT_GE(recorded, 1);
+}
+
+TEST(ToldStudy, OfManyCalibrationsThatDifferOnlyTheLatestAreKept) {
+  std::string views;
+  for (int i = 3; i < 63; ++i) views += (i > 3 ? ", " : "") + std::to_string(i);
+  const Study study = study_of("[calibration]\n[sweep]\n\"calibration.views\" = [" + views + "]\n");
+  StudyScenes scenes(study);
+  std::vector<std::weak_ptr<const FreshCalibrations>> made;
+  for (const StudyCell& cell : study.file.cells) made.push_back(scenes.calibrations(cell));
+  EXPECT_EQ(std::count_if(made.begin(), made.end(), [](const auto& of) { return !of.expired(); }),
+            30);
+  EXPECT_TRUE(made.front().expired());
+  EXPECT_EQ(scenes.calibrations(study.file.cells.back()), made.back().lock());
 }
 
 TEST(ToldStudy, TheBoardOfARigFileIsNotRecordedAsASetting) {

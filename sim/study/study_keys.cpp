@@ -190,7 +190,9 @@ std::string cell_key(const Study& study, const StudyCell& cell) {
   }
   if (!cell.told.observations.empty()) key["corners"] = study.corners_fingerprint;
   const std::set<std::string> left_out = newer_at_default(cell.experiment.sources);
-  for (const auto& [name, value] : cell.settings) {
+  std::map<std::string, std::string> settings = cell.settings;
+  settings.merge(settings_of(cell.told));  // also those that are not shown, as all stores have them
+  for (const auto& [name, value] : settings) {
     if (name == "localiser.knows_endpoint_sigma" || left_out.contains(name)) continue;
     if (!names_a_file(name)) key[name] = value;
   }

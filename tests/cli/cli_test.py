@@ -1166,7 +1166,9 @@ class Study(Case):
         file = self.folder / 's.toml'
         file.write_text('[study]\ntrials = 18\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
                         '[sweep]\n"sources.calibration" = [0.1, 30, 100, 1000]\n')
-        done = self.works('study', file, '-o', self.folder / 'out', '--json', '-q')
+        done = vernier('study', file, '-o', self.folder / 'out', '--json', '-q')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('told a rig that no cameras can have (psi_c = 1000)', done.stderr)
         found = json.loads(done.stdout)['comparisons']
         self.assertEqual(len(found), 3)
         least = 0

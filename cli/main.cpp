@@ -115,7 +115,9 @@ int main(int argc, char** argv) {
   cli::add_servo(app, session);
   cli::add_render(app, session);
   cli::add_study(app, session);
+  cli::add_tune(app, session);
   cli::add_export(app, session);
+  cli::add_lines(app, session);
   cli::add_map(app, session);
   cli::add_localise(app, session);
   cli::add_odometry(app, session);

@@ -5,6 +5,8 @@ set(vernier_fuzz_targets
   fuzz/example_rigs.cpp
   fuzz/fuzz_target.cpp
   fuzz/same_values.cpp
+  fuzz/targets/asl_sensor.cpp
+  fuzz/targets/camera_poses.cpp
   fuzz/targets/colmap.cpp
   fuzz/targets/corners_vnl.cpp
   fuzz/targets/disparity_map.cpp
@@ -14,6 +16,7 @@ set(vernier_fuzz_targets
   fuzz/targets/json.cpp
   fuzz/targets/kalibr_camchain.cpp
   fuzz/targets/kalibr_target.cpp
+  fuzz/targets/kitti_calib.cpp
   fuzz/targets/map_file.cpp
   fuzz/targets/matcher_command.cpp
   fuzz/targets/mesh_file.cpp

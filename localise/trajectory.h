@@ -23,8 +23,9 @@ struct TimedPose {
 };
 
 /// Reads a trajectory: lines `time_s x y z qx qy qz qw` (TUM), or rows of 3 x 4 matrices (KITTI),
-/// whose times are 0, 1, 2 … Comments begin with #. Throws Error with file and line for a line of
-/// other fields, a rotation that is none, and times that do not ascend.
+/// whose times are 0, 1, 2 …; lines of KITTI's may be joined. Comments begin with #. Throws Error
+/// with file and line for a line of other fields, a rotation that is none, and times that do not
+/// ascend.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& file);
 
 /// The text of a TUM file, as evo reads it.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "calib/rig.h"
@@ -28,6 +29,9 @@ struct RecordedLooks {
 /// for more than 100,000 positions, 64 looks or 10,000 lines in one.
 std::vector<RecordedLooks> read_views(const std::filesystem::path& file,
                                       const std::shared_ptr<const Rig>& rig = nullptr);
+
+/// One line of such a file, with its end.
+std::string view_line(const RecordedLooks& view);
 
 /// Writes what read_views() reads, complete or not at all. Throws Error if it cannot.
 void write_views(const std::filesystem::path& file, std::span<const RecordedLooks> views);

@@ -141,7 +141,7 @@ class Trials:
     def trial(self, call, chance):
         """One kill. Returns (state when killed, faults)."""
         folder = self.place(call.name)
-        had_old = call.name != 'study' and chance.random() < 0.5
+        had_old = call.name not in ('study', 'tune') and chance.random() < 0.5
         if had_old:
             self.put_old_files(call, folder)
         aimed = chance.random() < 0.5

@@ -25,7 +25,11 @@ struct CannyOptions {
   double low = 2;  ///< hysteresis threshold below which points are discarded, grey levels per pixel
   /// Hysteresis threshold: an edge needs one point above it, grey levels per pixel.
   double high = 5;
-  int min_points = 10;     ///< shorter edges are dropped
+  int min_points = 10;  ///< shorter edges are dropped
+  /// White noise of the image, grey levels; 0: estimated from it. An image that is interpolated
+  /// from another one shows too little of it: interpolation takes the high frequencies by which
+  /// noise is estimated, and leaves those that move edges. Give that of the image it is made from.
+  double noise = 0;
   bool with_sigma = true;  ///< false: sigma_px is NaN, which saves a quarter of the time
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calib/camera.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 
 namespace vernier::internal {
@@ -23,7 +24,8 @@ struct ImportOptions {
 /// A rig imported from another tool's files.
 struct ImportedRig {
   Rig rig;
-  std::vector<std::string> notes;  ///< assumptions, and information that a rig cannot hold
+  std::vector<std::string> notes;         ///< assumptions, and information that a rig cannot hold
+  std::optional<Pose> T_body_first = {};  ///< of the first camera on what carries it, where stated
 };
 
 /// An exported file of another tool's format; a rig may need several.

@@ -14,6 +14,7 @@
 #include "calib/planning/views_needed.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
+#include "calib/rig_prior.h"
 #include "calib/sampler.h"
 #include "calib/simulated_board.h"
 #include "calib/solver/normal_equations.h"
@@ -33,6 +34,18 @@ std::vector<Eigen::MatrixXd> in_directions(const std::vector<Eigen::MatrixXd>& v
     restricted_views.emplace_back(free.transpose() * S * free);
   }
   return restricted_views;
+}
+
+/// That of all priors of a calibration; empty without one.
+Eigen::MatrixXd prior_information(const RigEstimate& calibration, const Eigen::MatrixXd& free) {
+  Eigen::MatrixXd information;
+  for (const GaussianRigPrior& known : calibration.evidence->priors) {
+    const RigPrior prior = rig_prior(calibration.rig, known);
+    const Eigen::MatrixXd J = prior_offset(prior, calibration.rig).by_rig * free;
+    const Eigen::MatrixXd P = J.transpose() * prior.information * J;
+    information = information.size() > 0 ? Eigen::MatrixXd(information + P) : P;
+  }
+  return information;
 }
 
 }  // namespace
@@ -63,11 +76,12 @@ ViewKnowledge knowledge_of(const RigEstimate& calibration,
       reduced_normal_equations(evidence.observations, state, 1).frame_information, free);
   const PosePopulation population =
       pose_population(evidence.T_first_board, evidence.observations.target_m);
+  const Eigen::MatrixXd prior = prior_information(calibration, free);
   for (std::uint32_t pool = 0; pool < pool_count; ++pool) {
     const std::vector<Eigen::MatrixXd> views =
         population_views(calibration.rig, evidence.observations.target_m, evidence.warp_m,
                          redrawn(population, seed, pool), views_per_pool, seed, pool);
-    known.pools.push_back({calibration.rig, free, taken, in_directions(views, free)});
+    known.pools.push_back({calibration.rig, free, taken, in_directions(views, free), prior});
   }
   return known;
 }
@@ -91,7 +105,7 @@ ViewKnowledge knowledge_of_datasheet(const RigEstimate& datasheet,
       options.frames = views_per_pool;
       const SimulatedBoard seen = simulate_board(rig, board, options);
       const auto equations = reduced_normal_equations(seen.observations, seen.truth, 1);
-      known.pools.push_back({rig, free, {}, in_directions(equations.frame_information, free)});
+      known.pools.push_back({rig, free, {}, in_directions(equations.frame_information, free), {}});
     } catch (const Error& error) {
       why = error.fault();
     }

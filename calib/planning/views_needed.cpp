@@ -22,6 +22,7 @@ namespace vernier::internal {
 namespace {
 
 constexpr auto plan_source = static_cast<std::uint32_t>(DrawSource::planned_views);
+constexpr int fewest_to_calibrate = 3;
 constexpr int drawn_one_by_one = 100;  ///< later views are as informative as the mean of a pool
 
 /// A pool with what all of its sequences need.
@@ -69,7 +70,9 @@ class Sequence {
                 .eye = 2}),
         noise_px_(known.noise_px * std::exp(known.noise_log_sd * draws_.normal())),
         information_(pool.taken),
-        views_(known.taken) {}
+        views_(known.taken) {
+    if (pool.pool->prior.size() > 0) information_ += noise_px_ * noise_px_ * pool.pool->prior;
+  }
 
   int views() const { return views_; }
   double sd() const { return noise_px_ * unit_sd(pool_.gradient, information_); }
@@ -87,6 +90,7 @@ class Sequence {
 
   /// The first number of views that reaches the target, at most `most`.
   int first_within(double target_sd, int most) {
+    while (views_ < fewest_to_calibrate) add_view();
     for (int i = 0; i < drawn_one_by_one && views_ < most; ++i) {
       if (sd() <= target_sd) return views_;
       add_view();

@@ -22,15 +22,17 @@ struct ViewPool {
   std::vector<Eigen::MatrixXd>
       taken;  ///< information S_f of the views so far, at 1 px; free x free
   std::vector<Eigen::MatrixXd> views;  ///< the same of views that could follow
+  Eigen::MatrixXd prior;  ///< information of the calibration's priors, free x free; empty: none
 };
 
 /// What is known before more views are taken. The standard deviation of a quantity with gradient g
 /// after views f is
 ///
-///     sd² = (σ φ)² g (Σ_f S_f)⁻¹ gᵀ
+///     sd² = g (P + Σ_f S_f / (σ φ)²)⁻¹ gᵀ
 ///
-/// with S_f the information of a view at 1 px (calib/solver/normal_equations.h), σ the noise of a
-/// coordinate, and φ² the inflation of the bound by noise that is correlated within a view.
+/// with S_f the information of a view at 1 px (calib/solver/normal_equations.h), P that of priors,
+/// σ the noise of a coordinate, and φ² the inflation of the bound by noise that is correlated
+/// within a view.
 struct ViewKnowledge {
   std::vector<ViewPool> pools;
   int taken = 0;            ///< number of views so far
@@ -42,7 +44,7 @@ struct ViewKnowledge {
 /// From a calibration, by its evidence: σ φ is the noise of its residuals that varies smoothly over
 /// the board (calib/planning/smooth_noise.h). Each pool has views of the calibration's pose
 /// population, redrawn (calib/planning/view_population.h). Throws Error(`place`) if the estimate
-/// has no evidence of board views, or of fewer than five.
+/// has no evidence of board views, or of fewer than five. Priors of the calibration count.
 ViewKnowledge knowledge_of(const RigEstimate& calibration,
                            std::uint64_t seed,
                            const std::string& place);
@@ -64,8 +66,8 @@ struct ViewPlanOptions {
   std::uint64_t seed = 1;
 };
 
-/// The number of views in all, those taken included, after which a standard deviation is at its
-/// target for the first time, as views are added one by one.
+/// The number of views in all, those taken included and at least three, after which a standard
+/// deviation is at its target for the first time, as views are added one by one.
 struct ViewsNeeded {
   int views = 0;           ///< the median; most_views if not reached
   Interval interval;       ///< `confidence` of the sequences lie within

@@ -43,6 +43,7 @@ enum class DrawSource : std::uint32_t {
   split_halves = 39,        // which frames make the halves of a split
   calibration_views = 40,   // which views of a board a calibration takes
   planned_views = 41,       // kinds and sequences of views that a plan expects
+  injected_noise = 42,      // noise of simulated boards beside real ones
   // 9 is reserved, for the rig that a map was recorded with; 15, 18 to 21 and 24 are retired or
   // reserved. A new source takes the number after the largest, and a row in docs/conventions.md.
 };

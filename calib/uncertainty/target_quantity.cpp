@@ -75,8 +75,9 @@ Eigen::MatrixXd depth_gradient(const Rig& rig, double at_m) {
                 "choose another distance");
   }
   const PixelPair pair{project(rig.cameras[0], x), project(rig.cameras[1], x_right)};
-  return derivative(rig, [&](const Rig& moved) {
-    return Eigen::VectorXd::Constant(1, triangulated_depth_m(moved, pair));
+  // The inverse depth is nearly linear in the parameters, however small the disparity.
+  return -at_m * at_m * derivative(rig, [&](const Rig& moved) {
+    return Eigen::VectorXd::Constant(1, 1 / triangulated_depth_m(moved, pair));
   });
 }
 
@@ -165,8 +166,9 @@ double sd_of(const TargetQuantity& wanted, const Eigen::MatrixXd& factor) {
 }
 
 TargetQuantity target_quantity(const Rig& rig, const std::string& what, double at_m) {
-  if (!(at_m > 0) || std::isinf(at_m)) {
-    throw Error(what, "its distance is not a number above 0", "give metres");
+  constexpr double farthest_m = 1e6;
+  if (!(at_m > 0 && at_m <= farthest_m)) {
+    throw Error(what, "its distance is not above 0 and at most 1e6 m", "give metres");
   }
   if (what == "depth") {
     require_a_pair(rig, what);

@@ -67,6 +67,10 @@ SplitHalvesResult compare_split_halves(const BoardObservations& observations,
   if (frames.size() < fewest_frames_to_divide) {
     throw Error("halves", "needs at least six frames", "give more views");
   }
+  if (options.calibration.prior || !options.calibration.known.empty()) {
+    throw Error("halves", "both halves share the prior, which hides how far they are apart",
+                "calibrate without a prior");
+  }
   const auto count = static_cast<std::size_t>(options.splits);
   std::vector<std::optional<ComparedHalves>> compared(count);
   std::mutex mutex;

@@ -49,8 +49,8 @@ struct SplitHalvesResult {
 /// the error of that shape is in both covariances, though its prior's part is common to the halves:
 /// the distance is then a little below that of independent halves. Splits share frames, so that
 /// their distances are not independent: the mean over splits of one set of views varies more than
-/// that of so many chi-squared values. Throws Error for fewer than six frames, or if no split can
-/// be calibrated.
+/// that of so many chi-squared values. Throws Error for fewer than six frames, for a prior, which
+/// both halves would share, or if no split can be calibrated.
 SplitHalvesResult compare_split_halves(
     const BoardObservations& observations,
     const SplitHalvesOptions& options = {},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/base/error_place.h"
 #include "calib/board_observations.h"
@@ -26,6 +27,7 @@
 #include "cli/calibration/check_file.h"
 #include "cli/calibration/check_halves.h"
 #include "cli/calibration/check_held_out.h"
+#include "cli/calibration/check_injected.h"
 #include "cli/calibration/check_mrcal.h"
 #include "cli/calibration/check_noise.h"
 #include "cli/calibration/check_section.h"
@@ -44,6 +46,7 @@ struct CheckArguments {
   MonteCarloResult copies;
   bool no_mrcal = false, holdout = false, halves = false;
   int splits = 100, training_frames = 0;
+  std::vector<double> injected;  ///< factors of --inject
   std::string stand = "hand-held";
 };
 
@@ -73,6 +76,9 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
     throw Error("--halves", fmt::format("needs at least six frames; got {}", frames),
                 "give more views, or leave it out");
   }
+  if (!options.injected.empty() && observations.size_px.size() < 2) {
+    throw Error("--inject", "needs two cameras; got one", "give views of a pair, or leave it out");
+  }
   if (!options.holdout) return;
   if (observations.size_px.size() < 2 || frames < fewest_frames_to_divide) {
     throw Error(
@@ -85,6 +91,14 @@ void check_splits(const CheckArguments& options, const BoardObservations& observ
   if (training != 0 && (training < fewest_to_calibrate || training >= frames)) {
     throw Error("--training-frames", fmt::format("{} of {} frames", training, frames),
                 "give at least 3 and fewer than the number of frames");
+  }
+}
+
+/// Halves that share a prior cannot show how far they are apart.
+void refuse_prior(const CheckArguments& options, const CalibrationOptions& how) {
+  if (options.halves && (how.prior || !how.known.empty())) {
+    throw Error("--halves", "both halves would share the prior, which hides how far they are apart",
+                "check a calibration without a prior");
   }
 }
 
@@ -117,6 +131,7 @@ Solved solve_again(const CheckArguments& options, Session& session) {
   }
   Solved solved{options_of_file(with_default_names(file.estimate)), {}, std::move(file.estimate)};
   solved.how.check_input = true;
+  refuse_prior(options, solved.how);
   const BoardObservations& observations = solved.from_file->evidence->observations;
   check_splits(options, observations);
   solved.estimate =
@@ -128,6 +143,7 @@ Solved solve(const CheckArguments& options, Session& session) {
   refuse_unused_options(options);
   if (!options.rig.empty()) return solve_again(options, session);
   Solved solved{calibration_options(options.solver, session), {}, {}};
+  refuse_prior(options, solved.how);
   BoardObservations observations = load(options.board, session);
   check_splits(options, observations);
   solved.estimate = calibrate(std::move(observations), solved.how);
@@ -195,6 +211,15 @@ void run(const CheckArguments& options, Session& session) {
                                 .calibration = how},
                                session));
   }
+  if (!options.injected.empty()) {
+    add("injected", check_injected(solved.estimate, problem.observations, problem.state,
+                                   problem.problem.pixel_sigma_px,
+                                   {.psi_c = options.injected,
+                                    .draws = options.copies.trials,
+                                    .seed = options.copies.seed,
+                                    .threads = options.copies.threads},
+                                   session));
+  }
   if (options.holdout) {
     const BoardStand stand = options.stand == "still" ? BoardStand::still : BoardStand::hand_held;
     add("noise", check_corner_noise(solved.estimate, stand, session));
@@ -221,7 +246,8 @@ void add_check(CLI::App& app, Session& session) {
                    "rig file with stored evidence (or give corners with the options below)");
   add_board_options(verb, o->board);
   add_solver_options(verb, o->solver);
-  verb->add_option("--trials", o->copies.trials, "number of Monte Carlo trials")
+  verb->add_option("--trials", o->copies.trials,
+                   "number of Monte Carlo trials, and of wrong rigs of --inject")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   verb->add_option("--seed", o->copies.seed, "random seed of the Monte Carlo noise")
@@ -235,6 +261,11 @@ void add_check(CLI::App& app, Session& session) {
   verb->add_flag("--halves", o->halves,
                  "calibrate random halves of the views, and test whether they differ as their "
                  "covariances state");
+  verb->add_option("--inject", o->injected,
+                   "tell rigs that are wrong by draws of the covariance times these factors, as "
+                   "1,3,10,30, and compare lengths on the real boards with simulated ones")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1e4));
   verb->add_option("--splits", o->splits, "number of splits for --holdout and --halves")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

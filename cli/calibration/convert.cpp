@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/output_files.h"
+#include "calib/base/shown_text.h"
 #include "calib/camera.h"
 #include "calib/error.h"
 #include "calib/formats/imported_rig.h"
@@ -19,8 +21,8 @@
 #include "cli/calibration/convert_formats.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 
 namespace vernier::cli {
 namespace {
@@ -32,7 +34,7 @@ using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>
 
 struct ConvertArguments {
   std::vector<std::string> inputs;
-  std::string output, from, to, model, names, size;
+  std::string output, from, to, model, cameras, names, size;
   double unit_m = 1;
 };
 
@@ -47,48 +49,55 @@ ImportOptions import_options(const ConvertArguments& options) {
   return import;
 }
 
-RigFormat format_of(const std::vector<std::filesystem::path>& inputs, const std::string& from) {
-  if (!from.empty()) return rig_format(from, "--from");
-  const RigFormat format = input_format(inputs[0]);
-  for (const std::filesystem::path& input : inputs) {
-    if (input_format(input) == format) continue;
-    throw Error(input.string(),
-                fmt::format("is not a {} file like {}", name(format), inputs[0].string()),
-                "give files of one format, or set --from");
+/// The words of a list such as "left,right".
+std::vector<std::string> listed(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream in(list);
+  for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+  return words;
+}
+
+/// Keeps the cameras of a list such as "P2,P3", in its order. What is known of the others goes, and
+/// so does a covariance, which is of all.
+void keep_cameras(ReadRig& read, const std::string& list) {
+  if (list.empty()) return;
+  RigEstimate& estimate = read.estimate;
+  const Rig& rig = estimate.rig;
+  std::vector<PlacedCamera> kept;
+  std::set<std::string> seen;
+  for (const std::string& name : listed(list)) {
+    std::size_t i = 0;
+    while (i < rig.cameras.size() && rig.cameras[i].name != name) ++i;
+    if (i == rig.cameras.size() || !seen.insert(name).second) {
+      std::string names;
+      for (const Camera& camera : rig.cameras) names += (names.empty() ? "" : ",") + camera.name;
+      throw Error("--cameras " + list,
+                  in_quotes(name) + (i == rig.cameras.size() ? " is none of the rig's cameras"
+                                                             : " is given twice"),
+                  "give some of " + names);
+    }
+    kept.push_back({rig.cameras[i], rig.T_camera_first[i]});
   }
-  return format;
+  if (kept.empty()) throw Error("--cameras", "names no camera", "give some of the rig's");
+  if (estimate.covariance || estimate.covariance_mvb) {
+    read.notes.emplace_back("the covariance is of all cameras and is dropped");
+  }
+  estimate = RigEstimate{rig_of(std::move(kept)), {}, {}, {}, {}, estimate.other_keys};
 }
 
 /// Renames the cameras from a list such as "left,right".
 void rename(RigEstimate& estimate, const std::string& list) {
   if (list.empty()) return;
-  std::vector<std::string> names;
-  std::istringstream in(list);
-  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
   try {
-    rename_cameras(estimate, names);
+    rename_cameras(estimate, listed(list));
   } catch (const Error& error) {
     throw Error("--names " + list, error.fault(), error.remedy() + ", separated by commas");
   }
 }
 
-/// The inputs and the files read along with them (COLMAP).
-std::vector<std::filesystem::path> files_read(RigFormat from,
-                                              std::vector<std::filesystem::path> inputs) {
-  if (from == RigFormat::vernier) inputs[0] = find_rig(inputs[0].string());
-  if (from != RigFormat::colmap) return inputs;
-  const bool folder = std::filesystem::is_directory(inputs[0]);
-  const std::filesystem::path beside = folder ? inputs[0] : inputs[0].parent_path();
-  inputs.clear();
-  for (const char* name : {"cameras.txt", "images.txt", "rigs.txt", "rig_config.json"}) {
-    inputs.push_back(beside / name);
-  }
-  return inputs;
-}
-
 /// Throws Error for options whose value the input already contains.
 void check_options(const ConvertArguments& options, RigFormat from) {
-  if (!options.size.empty() && from != RigFormat::opencv) {
+  if (!options.size.empty() && from != RigFormat::opencv && from != RigFormat::kitti) {
     throw Error("--size", fmt::format("{} files contain the image size", name(from)),
                 "leave it out");
   }
@@ -144,11 +153,13 @@ void report_notes(const ReadRig& read,
 
 void run(const ConvertArguments& options, Session& session) {
   const std::vector<std::filesystem::path> inputs(options.inputs.begin(), options.inputs.end());
-  const RigFormat from = format_of(inputs, options.from);
+  const RigFormat from =
+      options.from.empty() ? input_format(inputs) : rig_format(options.from, "--from");
   const RigFormat to =
-      options.to.empty() ? output_format(options.output) : rig_format(options.to, "--to");
+      options.to.empty() ? output_format(options.output) : written_format(options.to);
   check_options(options, from);
   ReadRig read = read_rig_as(from, inputs, import_options(options));
+  keep_cameras(read, options.cameras);
   rename(read.estimate, options.names);
   const Rig& rig = read.estimate.rig;
   const auto files = files_of(to, read.estimate, options.output);
@@ -188,24 +199,32 @@ void add_convert(CLI::App& app, Session& session) {
   auto o = std::make_shared<ConvertArguments>();
   CLI::App* verb = add_verb(
       app, session, "convert",
-      "convert rigs between Vernier, mrcal, OpenCV, Kalibr, ROS and COLMAP",
+      "convert rigs between Vernier, mrcal, OpenCV, Kalibr, ROS and COLMAP; read those of ASL and "
+      "KITTI",
       "vernier convert rig.json --to mrcal -o models/\n"
       "  vernier convert models/left.cameramodel models/right.cameramodel -o rig.json\n"
-      "  vernier convert intrinsics.yml extrinsics.yml --size 640x480 --unit-m 0.001 -o rig.json");
+      "  vernier convert intrinsics.yml extrinsics.yml --size 640x480 --unit-m 0.001 -o rig.json\n"
+      "  vernier convert calib.txt --cameras P2,P3 --size 1241x376 -o rig.json");
   const std::string formats = std::string("one of ") + rig_format_names;
-  verb->add_option("input", o->inputs,
-                   "file or files of one rig (mrcal and ROS: one per camera, left first), or a "
-                   "COLMAP folder")
+  verb->add_option(
+          "input", o->inputs,
+          "file or files of one rig (mrcal, ROS and ASL: one per camera, left first), or a "
+          "folder of COLMAP or ASL")
       ->required();
   verb->add_option("-o,--output", o->output,
                    "file, or folder (with a trailing slash) for formats with several files")
       ->required();
   verb->add_option("--from", o->from, formats + " (default: from file name and content)");
-  verb->add_option("--to", o->to, formats + " (default: from the output name)");
+  verb->add_option(
+      "--to", o->to,
+      std::string("one of ") + written_rig_format_names + " (default: from the output name)");
   verb->add_option("--model", o->model,
                    "camera model (default: the smallest that represents the input exactly)");
+  verb->add_option("--cameras", o->cameras,
+                   "cameras to keep, in this order, such as P2,P3; a covariance is dropped");
   verb->add_option("--names", o->names, "camera names, such as left,right");
-  verb->add_option("--size", o->size, "image size, such as 640x480, if missing in an OpenCV file");
+  verb->add_option("--size", o->size,
+                   "image size, such as 640x480, if missing in an OpenCV or KITTI file");
   verb->add_option("--unit-m", o->unit_m, "unit of length of the input, in metres (0.001: mm)")
       ->check(finite_and_positive)
       ->capture_default_str();

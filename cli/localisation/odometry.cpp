@@ -234,8 +234,8 @@ void add_odometry(CLI::App& app, Session& session) {
   verb->add_option("--rig", o->rig,
                    "rig file or shipped name (simulated robot: nominal unless given)");
   verb->add_option("--truth", o->truth,
-                   "true poses of the left camera, one for each pair of images: lines of "
-                   "time x y z qx qy qz qw (TUM), or of 3 x 4 matrices (KITTI)");
+                   "true poses of the left camera at the pairs of images: TUM's or KITTI's "
+                   "trajectory, ASL's ground truth, or a COLMAP model (docs/file-formats.md)");
   verb->add_option("--rate-hz", o->rate_hz, "pairs of images a second, for the times written")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();

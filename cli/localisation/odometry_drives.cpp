@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 #include <optional>
@@ -14,16 +15,17 @@
 
 #include "calib/base/error_place.h"
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/program/camera_images.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/source_options.h"
 #include "localise/pair_corners.h"
 #include "localise/place.h"
-#include "localise/trajectory.h"
+#include "localise/views/camera_poses.h"
 #include "sim/corner_drive.h"
 #include "sim/experiment.h"
 #include "sim/sources.h"
@@ -36,13 +38,32 @@
 namespace vernier::cli {
 namespace {
 
-RigEstimate stereo_rig_estimate(const std::string& name, Session& session) {
-  RigFile file = read_rig(find_rig(name));
-  for (const std::string& warning : file.warnings) session.warn(warning);
-  if (file.estimate.rig.cameras.size() != 2) {
-    throw Error(name, "does not have two cameras", "give a stereo rig");
+/// `image`: a file of the rig's images, of which a rig without sizes has that; empty: none.
+ReadRig stereo_rig(const std::string& name, Session& session, const std::string& image = "") {
+  ReadRig read = read_named_rig(name, session, image);
+  if (read.estimate.rig.cameras.size() != 2) {
+    throw Error(name, fmt::format("has {} cameras, not two", read.estimate.rig.cameras.size()),
+                "give a stereo rig; convert --cameras makes one of several cameras");
   }
-  return std::move(file.estimate);
+  return read;
+}
+
+/// Where the left camera was at each pair. Throws Error if the poses are those of what carries the
+/// camera and the rig does not say where on it the camera is.
+std::vector<Pose> true_poses(const std::string& truth,
+                             const std::optional<Pose>& T_body_left,
+                             const std::vector<ImageFiles>& files) {
+  const CameraPoses poses = read_camera_poses(truth);
+  if (poses.of_body && !T_body_left) {
+    throw Error(truth, "holds poses of the body, and the rig does not place its cameras on it",
+                "give the ASL folder or sensor.yaml files as --rig");
+  }
+  std::vector<std::filesystem::path> images;
+  for (const ImageFiles& pair : files) images.push_back(pair.left);
+  std::vector<Pose> T_world_left = poses_of_images(poses, images, truth);
+  if (!poses.of_body) return T_world_left;
+  for (Pose& T : T_world_left) T = T * *T_body_left;
+  return T_world_left;
 }
 
 Eigen::MatrixXd covariance_of(const RigEstimate& rig) {
@@ -71,22 +92,15 @@ const RouteLeg& chosen_leg(const World& world, const OdometryOptions& options) {
 }  // namespace
 
 OdometryDrive drive_of_images(const OdometryOptions& options, Session& session) {
-  const RigEstimate rig = stereo_rig_estimate(options.rig, session);
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
   if (files.size() < 2) {
     throw Error("--left", "one pair of images has no motion", "give two pairs or more");
   }
+  const ReadRig read = stereo_rig(options.rig, session, files.front().left.string());
+  const RigEstimate& rig = read.estimate;
   OdometryDrive drive{rig.rig, covariance_of(rig), {}, {}};
   if (!options.truth.empty()) {
-    for (const TimedPose& pose : read_trajectory(options.truth)) {
-      drive.T_world_left.push_back(pose.T_world_camera);
-    }
-    if (drive.T_world_left.size() != files.size()) {
-      throw Error(options.truth,
-                  fmt::format("has {} poses for {} pairs of images", drive.T_world_left.size(),
-                              files.size()),
-                  "give one for each pair, in the order of their numbers");
-    }
+    drive.T_world_left = true_poses(options.truth, read.T_body_first, files);
   }
   PairCornersOptions how;
   how.corners = options.corners;
@@ -107,7 +121,7 @@ void for_each_simulated_drive(const OdometryOptions& options,
                               const std::function<void(const OdometryDrive&)>& use) {
   constexpr double degree = std::numbers::pi / 180;
   const RigEstimate rig =
-      stereo_rig_estimate(options.rig.empty() ? "nominal" : options.rig, session);
+      stereo_rig(options.rig.empty() ? "nominal" : options.rig, session).estimate;
   ExperimentSettings settings;
   settings.sources = sources_of(options.sources, SourceSettings());
   settings.mount = {options.height_m, options.pitch_deg * degree};

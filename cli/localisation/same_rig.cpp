@@ -14,13 +14,21 @@
 
 namespace vernier::cli {
 
+namespace {
+
+/// Of the first two cameras; 0 for a single one.
+double baseline_m(const Rig& rig) {
+  return rig.cameras.size() < 2 ? 0 : rig.T_camera_first[1].t.norm();
+}
+
+}  // namespace
+
 void check_same_rig(const TopologicalMap& map, const Rig& rig, const std::string& map_name) {
   constexpr double same_focal_length = 0.05, same_baseline = 0.1;
   for (const MapNode& node : map.nodes) {
     if (!node.view.rig) continue;
     const Camera &a = node.view.rig->cameras[0], &b = rig.cameras[0];
-    const double baseline = rig.T_camera_first[1].t.norm();
-    const double of_map = node.view.rig->T_camera_first[1].t.norm();
+    const double baseline = baseline_m(rig), of_map = baseline_m(*node.view.rig);
     if (a.size_px == b.size_px && std::abs(a.f_px() - b.f_px()) <= same_focal_length * a.f_px() &&
         std::abs(baseline - of_map) <= same_baseline * of_map) {
       return;

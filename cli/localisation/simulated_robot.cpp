@@ -8,8 +8,8 @@
 
 #include "calib/base/error_place.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/localisation/view_options.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/source_options.h"
@@ -25,8 +25,7 @@ namespace vernier::cli {
 namespace {
 
 RigEstimate rig_of_robot(const std::string& name, bool with_covariance, Session& session) {
-  const RigFile file = read_rig(find_rig(name));
-  for (const std::string& warning : file.warnings) session.warn(warning);
+  const ReadRig file = read_named_rig(name, session);
   if (with_covariance) required_covariance(file.estimate, name);
   return file.estimate;
 }

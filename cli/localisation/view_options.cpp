@@ -15,12 +15,11 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/localisation/place_poses.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "localise/pair_view.h"
 #include "localise/place.h"
 #include "localise/view_file.h"
@@ -30,9 +29,9 @@
 namespace vernier::cli {
 namespace {
 
-RigEstimate stereo_rig(const std::string& name, Session& session) {
-  RigFile file = read_rig(find_rig(name));
-  for (const std::string& warning : file.warnings) session.warn(warning);
+/// `image`: a file of the rig's images, of which a rig without sizes has that; empty: none.
+RigEstimate stereo_rig(const std::string& name, Session& session, const std::string& image = "") {
+  ReadRig file = read_named_rig(name, session, image);
   if (file.estimate.rig.cameras.size() != 2) {
     throw Error(name, "does not have two cameras", "give a stereo rig");
   }
@@ -51,9 +50,9 @@ NamedViews views_of_file(const ViewOptions& options, Session& session) {
 }
 
 NamedViews views_of_images(const ViewOptions& options, Session& session) {
-  const RigEstimate estimate = stereo_rig(options.rig, session);
-  const auto rig = std::make_shared<const Rig>(estimate.rig);
   const std::vector<ImageFiles> files = paired_images(options.left, options.right);
+  const RigEstimate estimate = stereo_rig(options.rig, session, files.front().left.string());
+  const auto rig = std::make_shared<const Rig>(estimate.rig);
   std::map<std::string, Pose2D> poses;
   if (!options.poses.empty()) poses = read_place_poses(options.poses);
   PairViewOptions how;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -60,6 +61,9 @@ Inputs inputs_of(const ReportArguments& options) {
     } else if (!fs::exists(fs::path(name) / "study.toml")) {
       throw Error(name, "is neither a study folder nor an evaluation folder",
                   "give a folder written by vernier study -o or vernier evaluate -o");
+    } else if (std::any_of(inputs.studies.begin(), inputs.studies.end(),
+                           [&](const std::string& other) { return fs::equivalent(other, name); })) {
+      throw Error(name, "is given twice", "give each study once");
     } else {
       inputs.studies.push_back(name);
     }

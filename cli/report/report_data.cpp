@@ -37,6 +37,9 @@ namespace fs = std::filesystem;
 
 constexpr const char *script_file = "report.js", *plotly_file = "plotly.js";
 
+/// Of a study, which a page can still draw at once; of each cell its first trials.
+constexpr std::size_t most_listed = 20'000;
+
 Json trial_json(const TrialResult& t) {
   Json row{t.trial, t.truth.x_m, t.truth.y_m, t.truth.heading_rad};
   if (t.answered()) {
@@ -76,10 +79,12 @@ Json report_study(const Study& study, const StudyResults& results) {
             {"swept_keys", swept_keys_json(results)},
             {"cells", Json::array()},
             {"comparisons", comparisons_json(results)}};
+  const std::size_t most_of_a_cell = std::max<std::size_t>(20, most_listed / results.cells.size());
   for (std::size_t i = 0; i < results.cells.size(); ++i) {
     Json cell = cell_json(results.cells[i]);
     cell["trial_list"] = Json::array();
     for (const TrialResult& t : results.cells[i].trials) {
+      if (cell["trial_list"].size() == most_of_a_cell) break;
       cell["trial_list"].push_back(trial_json(t));
     }
     json["cells"].push_back(std::move(cell));

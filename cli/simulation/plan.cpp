@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "calib/base/decompositions.h"
 #include "calib/base/error_place.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
 #include "calib/board_target.h"
 #include "calib/covariance.h"
 #include "calib/error.h"
@@ -51,6 +53,7 @@ struct PlanArguments {
   double board_distance_m = 1, board_tilt_deg = 34;
   int trials = 300, threads = 0;
   std::uint64_t seed = 1;
+  const CLI::App* app = nullptr;
 };
 
 /// "0.02", or "0.02@5m": the number, and the distance if there is one.
@@ -58,12 +61,31 @@ double number_at(const std::string& text, const std::string& option, double& at_
   const std::size_t at = text.find('@');
   std::string range = at == std::string::npos ? "" : text.substr(at + 1);
   if (range.ends_with("m")) range.pop_back();
-  const double value = parse_numbers(text.substr(0, at), 1, option)[0];
-  if (at != std::string::npos) at_m = parse_numbers(range, 1, option)[0];
-  if (!(value > 0) || !(at_m > 0)) {
-    throw Error(option, in_quotes(text) + " is not above 0", "give such as 0.02@5m");
+  const auto number = [&](const std::string& word) {
+    const auto found = to_real(word);
+    if (found && *found > 0 && std::isfinite(*found)) return *found;
+    throw Error(option, in_quotes(text) + " is not such as 0.02 or 0.02@5m, in metres",
+                "give a number above 0, and after an @ the distance");
+  };
+  if (at != std::string::npos) at_m = number(range);
+  return number(text.substr(0, at));
+}
+
+/// Throws Error for options that would have no effect.
+void refuse_unused_options(const CLI::App& app, const PlanTarget& target, bool from_calibration) {
+  if (target.quantity != "success") {
+    refuse_options(app, std::array{"--world", "--protocol", "--method", "--trials"},
+                   "only valid with --success", "leave it out");
   }
-  return value;
+  if (target.quantity != "depth") {
+    refuse_options(app, std::array{"--pair-sigma-px"}, "only valid with --depth-error",
+                   "leave it out");
+  }
+  if (from_calibration) {
+    refuse_options(
+        app, std::array{"--square-m", "--board-distance-m", "--board-tilt-deg", "--pixel-sigma"},
+        "the calibration's own views say this", "leave it out, or give --board for a datasheet");
+  }
 }
 
 PlanTarget target_of(const PlanArguments& o) {
@@ -74,6 +96,9 @@ PlanTarget target_of(const PlanArguments& o) {
   }
   PlanTarget target;
   target.at_m = o.at_m;
+  if ((o.depth + o.projection).find('@') != std::string::npos) {
+    refuse_options(*o.app, std::array{"--at-m"}, "the target gives a distance after its @");
+  }
   if (!o.depth.empty()) {
     target.quantity = "depth";
     target.unit = "m";
@@ -157,6 +182,7 @@ Covariance reference_covariance(const ViewKnowledge& known) {
   const std::size_t count = pool.taken.empty() ? std::min(enough, views.size()) : views.size();
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(pool.free.cols(), pool.free.cols());
   for (std::size_t i = 0; i < count; ++i) S += views[i];
+  if (pool.prior.size() > 0) S += known.noise_px * known.noise_px * pool.prior;
   const Eigen::VectorXd scale = S.diagonal().cwiseSqrt().cwiseInverse();
   const Cholesky factor(scale.asDiagonal() * S * scale.asDiagonal());
   if (!factor.is_positive_definite()) {
@@ -273,6 +299,7 @@ void run(const PlanArguments& o, Session& session) {
   const RigFile file = read_rig(find_rig(name));
   for (const std::string& warning : file.warnings) session.warn(warning);
   know(o, file.estimate, name, plan);
+  refuse_unused_options(*o.app, plan.target, plan.from_calibration);
   if (plan.target.quantity == "success") {
     allow_for_success(o, plan, session);
   } else {
@@ -313,6 +340,7 @@ void add_plan(CLI::App& app, Session& session) {
       "vernier plan rig.json --depth-error 0.02@5m\n"
       "  vernier plan datasheet.json --board 9x6 --square-m 0.025 --projection-error 0.5@2m\n"
       "  vernier plan rig.json --success 0.95 --world workshop --trials 300");
+  o->app = verb;
   verb->add_option("rig,--rig", o->rig,
                    "calibration with its board views, or a datasheet (default: nominal)");
   verb->add_option("--depth-error,--target-depth-sigma-m", o->depth,

@@ -53,6 +53,7 @@ std::string curve_text(const PlanResult& plan) {
 
 std::string answer_text(const PlanResult& plan) {
   if (!plan.limit.empty()) return "cannot be reached: " + plan.limit + "\n";
+  if (!plan.needed) return "not known: too few trials to tell whether it can be reached\n";
   const ViewsNeeded& needed = *plan.needed;
   if (plan.from_calibration && needed.interval.high <= plan.known.taken) {
     return fmt::format("reached: the {} views so far suffice\n", plan.known.taken);
@@ -80,7 +81,7 @@ Json plan_json(const PlanResult& plan) {
             {"views_so_far", plan.known.taken},
             {"noise_px", plan.known.noise_px},
             {"inflation", plan.known.inflation},
-            {"reachable", plan.limit.empty()},
+            {"reachable", plan.is_reachable() ? Json(*plan.is_reachable()) : Json()},
             {"limit", plan.limit},
             {"views", plan.needed ? Json(plan.needed->views) : Json()},
             {"views_interval", plan.needed ? ends_json(plan.needed->interval) : Json()},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,14 +29,21 @@ struct PlanResult {
   /// Part of the target that calibration may have, of a standard deviation; for success that of
   /// the depth at which the rate is met. Empty if the rest alone exceeds the target.
   std::optional<double> sd_allowed;
-  double pixel_noise_sd = 0;  ///< of the depth of one match, without any error of the calibration
-  double pair_sigma_px = 0;   ///< included in the target if above 0
+  /// Of the depth of one match, without any error of the calibration; not a number if unknown.
+  double pixel_noise_sd = std::numeric_limits<double>::quiet_NaN();
+  double pair_sigma_px = 0;  ///< included in the target if above 0
   std::optional<ViewsNeeded> needed;
   std::vector<SdAfter> curve;
   std::vector<SuccessAt> successes;  ///< of a success rate
   std::optional<ScaleNeeded> scale;
   std::vector<LimitingCause> causes;  ///< if no calibration is good enough
   std::string limit;                  ///< why it cannot be reached, and what limits; else empty
+
+  /// Nothing if the trials leave open whether the target can be reached.
+  std::optional<bool> is_reachable() const {
+    if (!limit.empty()) return false;
+    return needed ? std::optional(true) : std::nullopt;
+  }
 };
 
 Json plan_json(const PlanResult& plan);

@@ -17,8 +17,8 @@
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
-#include "calib/rig_file.h"
 #include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/comparison_report.h"
@@ -100,7 +100,8 @@ std::string folder_of(std::size_t pose, std::size_t poses) {
 
 /// Throws Error if a file to be written is the world or the rig.
 void check_outputs(const RenderArguments& options, std::size_t poses) {
-  const std::vector<std::filesystem::path> inputs{find_world(options.world), find_rig(options.rig)};
+  std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
+  inputs.push_back(find_world(options.world));
   const std::filesystem::path folder = options.output;
   for (const char* name :
        {"pairs.toml", "render.json", "comparison.json", "comparison.html", "sources.toml"}) {
@@ -128,8 +129,7 @@ ComparisonReport add_comparison(OutputFiles& outputs,
 }
 
 Rig rig_for_rendering(const RenderArguments& options, Session& session) {
-  const RigFile file = read_rig(find_rig(options.rig));
-  for (const std::string& warning : file.warnings) session.warn(warning);
+  const ReadRig file = read_named_rig(options.rig, session);
   if (file.estimate.rig.cameras.size() != 2) {
     throw Error(options.rig, fmt::format("has {} cameras", file.estimate.rig.cameras.size()),
                 "use a rig of two cameras");

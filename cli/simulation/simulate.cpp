@@ -17,8 +17,8 @@
 #include "calib/formats/rig_json.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/program/option_checks.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/observation_json.h"
@@ -63,8 +63,7 @@ void run(const SimulateArguments& options, Session& session) {
   const std::filesystem::path file = find_world(options.world);
   World world = with_errors_of(file.string(), [&] { return build_world(read_world(file)); });
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
-  const RigFile rig = read_rig(find_rig(options.rig));
-  for (const std::string& warning : rig.warnings) session.warn(warning);
+  const ReadRig rig = read_named_rig(options.rig, session);
   constexpr double degree = std::numbers::pi / 180;
   const Pose2D pose{at[0], at[1], at[2] * degree};
 

@@ -4,12 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <optional>
 #include <utility>
 
-#include "calib/base/shown_text.h"
 #include "calib/error.h"
-#include "cli/program/ending_signals.h"
 #include "cli/program/machine.h"
 #include "cli/program/session.h"
 #include "cli/simulation/folder_claim.h"
@@ -18,9 +15,8 @@
 #include "cli/simulation/study_inputs.h"
 #include "cli/simulation/study_merge.h"
 #include "cli/simulation/study_processes.h"
+#include "cli/simulation/study_run.h"
 #include "cli/simulation/study_table.h"
-#include "sim/sources.h"
-#include "sim/study/cell_summary.h"
 #include "sim/study/instruction_sets.h"
 
 namespace vernier::cli {
@@ -40,59 +36,23 @@ struct StudyArguments {
   }
 };
 
-void print(const Study& study, const fs::path& folder, Session& session) {
-  const StudyResults results = study_results(study, folder);
+/// A cell that was never told a rig says nothing.
+void tell_failed_calibrations(const StudyResults& results, Session& session) {
   for (const CellResult& cell : results.cells) {
-    const int failed = summarise(cell).failed;
-    if (failed == 0) continue;
-    const SourceSettings& sources = cell.cell.experiment.sources;
-    if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
-      session.warn(
-          fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "
-                      "those of their maps, did",
-                      failed, cell.trials.size(), cell.cell.label));
-      continue;
-    }
-    session.add_trust_warning(fmt::format(
-        "{} failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
-        "settings says why",
-        sources.command.empty() && sources.own.empty() ? "the localiser"
-                                                       : "the localiser or a source of error",
-        failed, cell.trials.size(), cell.cell.label));
+    const auto& record = cell.calibrations;
+    if (!record || record->calibrations == 0 || record->failed < record->calibrations) continue;
+    session.add_trust_warning(
+        fmt::format("{}: all {} calibrations failed, the first by: {}; give more views, or others",
+                    cell.cell.label.empty() ? "the study" : cell.cell.label, record->calibrations,
+                    record->why_failed));
   }
-  session.result(study_json(study, results), study_table(study, results));
 }
 
-/// Runs the study until it is done or a signal comes, reporting how far it is.
-void run_in(const FolderClaim& claim, const Study& study, StudyRun job, Session& session) {
-  const StopSignal stop;
-  int blocks_done = 0;
-  job.stop = stop.token();
-  std::optional<Progress> ceilings, blocks;
-  job.ceiling_progress = [&](int done, int total) {
-    if (!ceilings) ceilings.emplace(session, "study: world ceiling queries");
-    ceilings->update(done, total);
-  };
-  job.progress = [&](int done, int total) {
-    ceilings.reset();
-    if (!blocks) blocks.emplace(session, "study: blocks");
-    blocks->update(done, total);
-    blocks_done = done;
-  };
-  const auto end = [&] {
-    blocks.reset();
-    claim.withdraw(job.shard);
-    stop.end(fmt::format("after {} blocks, which are stored; go on with: {}", blocks_done,
-                         session.command));
-  };
-  job.on_stop = end;
-  try {
-    run_study(study, job);
-  } catch (...) {
-    claim.withdraw(job.shard);
-    throw;
-  }
-  if (stop.came()) end();
+void print(const Study& study, const fs::path& folder, Session& session) {
+  const StudyResults results = study_results(study, folder);
+  tell_failed_trials(results, session);
+  tell_failed_calibrations(results, session);
+  session.result(study_json(study, results), study_table(study, results));
 }
 
 void run(const StudyArguments& options, Session& session) {
@@ -113,9 +73,9 @@ void run(const StudyArguments& options, Session& session) {
   const Study study = load_study(file, session);
   const FolderClaim claim(study, inputs_of_study(file), job.folder);
   job.on_start = [&] { claim.extend(); };
-  run_in(claim, study, job, session);
+  run_in_folder(claim, study, std::move(job), "study", session);
   processes.end();
-  print(study, job.folder, session);
+  print(study, options.folder, session);
 }
 
 void merge(const StudyArguments& options, Session& session) {

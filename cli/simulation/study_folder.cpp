@@ -35,13 +35,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A setting as a JSON number, Boolean or string.
-Json value_json(const std::string& text) {
-  if (text == "true" || text == "false") return text == "true";
-  const std::optional<double> value = to_real(text);
-  return value ? Json(*value) : Json(text);
-}
-
 /// Stated against observed error rates; empty for a method that states none.
 Json reliability_json(const std::vector<TrialResult>& trials) {
   Json json = Json::array();
@@ -110,6 +103,12 @@ Json calibrations_json(const std::optional<CalibrationRecord>& record) {
 
 }  // namespace
 
+Json setting_json(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  const std::optional<double> value = to_real(text);
+  return value ? Json(*value) : Json(text);
+}
+
 std::vector<fs::path> study_folder_files(const fs::path& folder) {
   std::vector<fs::path> files = store_files(folder);
   for (fs::path& file : input_files(folder)) files.push_back(std::move(file));
@@ -137,14 +136,14 @@ std::string short_label(const StudyCell& cell) {
 Json cell_json(const CellResult& cell) {
   const CellSummary s = summarise(cell);
   Json settings;
-  for (const auto& [key, value] : cell.cell.settings) settings[key] = value_json(value);
+  for (const auto& [key, value] : cell.cell.settings) settings[key] = setting_json(value);
   const auto pair = [](const Interval& i) { return Json{i.low, i.high}; };
   // A cell without trials has no rates and times.
   const auto of_trials = [&](double value) { return s.trials > 0 ? json_number(value) : Json(); };
   const Json clustered = s.success_interval_95 ? pair(*s.success_interval_95) : Json();
   const Json missing = s.success_interval_95 ? Json() : Json(s.why_no_interval);
   Json swept = Json::object();
-  for (const auto& [key, value] : cell.cell.swept) swept[key] = value_json(value);
+  for (const auto& [key, value] : cell.cell.swept) swept[key] = setting_json(value);
   return {{"label", short_label(cell.cell)},
           {"settings", settings},
           {"swept", swept},

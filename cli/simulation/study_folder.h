@@ -12,6 +12,9 @@
 
 namespace vernier::cli {
 
+/// A setting as a JSON number, Boolean or string.
+Json setting_json(const std::string& text);
+
 /// The files of a study's folder that are read, which no output may replace.
 std::vector<std::filesystem::path> study_folder_files(const std::filesystem::path& folder);
 

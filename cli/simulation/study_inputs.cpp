@@ -171,13 +171,17 @@ Study assemble(StudyFile file, Session& session, FileOf file_of_input) {
 }  // namespace
 
 StudyInputs inputs_of_study(const fs::path& study_file) {
-  const StudyFile study = read_study(study_file);
+  return inputs_of_study(read_whole(study_file), study_file);
+}
+
+StudyInputs inputs_of_study(const std::string& text, const fs::path& place) {
+  const StudyFile study = parse_study(text, place.string());
   StudyInputs inputs;
   for (const StudyInput& input : named_files(study)) {
-    inputs.emplace_back(input.copy, read_whole(file_of(input, study_file.parent_path())));
+    inputs.emplace_back(input.copy, read_whole(file_of(input, place.parent_path())));
   }
   if (!study.sources.empty()) inputs.emplace_back(sources_name, read_whole(study.sources));
-  inputs.emplace_back(study_copy, read_whole(study_file));  // last: it makes the folder a study's
+  inputs.emplace_back(study_copy, text);  // last: it makes the folder a study's
   return inputs;
 }
 
@@ -202,8 +206,12 @@ StudyInputs inputs_of_folder(const fs::path& folder) {
 }
 
 Study load_study(const fs::path& file, Session& session) {
-  return assemble(read_study(file), session,
-                  [&](const StudyInput& input) { return file_of(input, file.parent_path()); });
+  return load_study(read_whole(file), file, session);
+}
+
+Study load_study(const std::string& text, const fs::path& place, Session& session) {
+  return assemble(parse_study(text, place.string()), session,
+                  [&](const StudyInput& input) { return file_of(input, place.parent_path()); });
 }
 
 Study open_folder(const fs::path& folder, Session& session) {

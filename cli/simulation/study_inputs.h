@@ -23,6 +23,8 @@ using StudyInputs = std::vector<std::pair<std::string, std::string>>;
 
 /// The inputs of a study file, and those that a folder has.
 StudyInputs inputs_of_study(const std::filesystem::path& study_file);
+/// The same of the text of a study file that stands, or might stand, at a place.
+StudyInputs inputs_of_study(const std::string& text, const std::filesystem::path& place);
 StudyInputs inputs_of_folder(const std::filesystem::path& folder);
 
 /// The files of a study's folder that are inputs, which an output must not replace.
@@ -30,6 +32,9 @@ std::vector<std::filesystem::path> input_files(const std::filesystem::path& fold
 
 /// Loads a study file with its worlds, rigs and corners (shipped, or relative to the study file).
 Study load_study(const std::filesystem::path& file, Session& session);
+
+/// The same of a text, as above.
+Study load_study(const std::string& text, const std::filesystem::path& place, Session& session);
 
 /// The study of a results folder, by its own copies of the inputs, so that it can be moved.
 Study open_folder(const std::filesystem::path& folder, Session& session);

@@ -204,17 +204,23 @@ std::string rig_text(const Study& study) {
   return text;
 }
 
-/// A line for each cell with [calibration].
+/// What became of the calibrations of the cells with [calibration], each once.
 std::string calibrations_text(const StudyResults& results) {
   std::string text;
+  std::set<std::string> said;
   for (const CellResult& cell : results.cells) {
     if (!cell.calibrations) continue;
     const CalibrationRecord& c = *cell.calibrations;
-    text += fmt::format(
-        "calibrations from {} views: {} of {} failed, {} more are doubted; depth at {:g} m: rms "
-        "error {:.3g} m, stated {:.3g} m\n",
-        cell.cell.told.calibration->views, c.failed, c.calibrations, c.doubtful, c.range_m,
-        c.depth_error_m, c.depth_sd_m);
+    std::string line =
+        fmt::format("calibrations from {} views: {} of {} failed, {} more are doubted",
+                    cell.cell.told.calibration->views, c.failed, c.calibrations, c.doubtful);
+    if (std::isfinite(c.depth_error_m)) {
+      line += fmt::format("; depth at {:g} m at psi_c = 1: rms error {:.3g} m, stated {:.3g} m",
+                          c.range_m, c.depth_error_m, c.depth_sd_m);
+    }
+    line += "\n";
+    if (!said.insert(line).second) continue;  // cells share calibrations
+    text += line;
     if (!c.why_failed.empty()) text += fmt::format("  failed: {}\n", c.why_failed);
     if (!c.why_doubtful.empty()) text += fmt::format("  doubted: {}\n", c.why_doubtful);
   }

@@ -22,9 +22,9 @@
 #include "calib/error.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
-#include "calib/rig_file.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/page.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
 #include "cli/program/share_folder.h"
 #include "cli/simulation/source_options.h"
@@ -170,8 +170,7 @@ void run(const ViewArguments& options, Session& session) {
   World world = build_world(read_world(file));
   const SourceSettings sources = sources_of(options.sources, {});
   if (sources.moved > 0) world = with_moved_furniture(world, sources.moved, options.seed);
-  const RigFile rig = read_rig(find_rig(options.rig));
-  for (const std::string& warning : rig.warnings) session.warn(warning);
+  const ReadRig rig = read_named_rig(options.rig, session);
   const Rig& true_rig = rig.estimate.rig;
   const Visibility visibility(world);
   const WorldExtent box = extent(world);

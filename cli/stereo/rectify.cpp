@@ -22,8 +22,8 @@
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/picture.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "cli/stereo/vertical_field_json.h"
 #include "stereo/grey_levels.h"
 #include "stereo/image/matrix_of.h"
@@ -250,9 +250,9 @@ void run(RectifyArguments options, Session& session) {
     }
     options.geometry.size_px = {width, height};
   }
-  const std::filesystem::path rig_file = find_rig(options.rig);
-  const RigFile file = read_rig(rig_file);
-  for (const std::string& warning : file.warnings) session.warn(warning);
+  const ReadRig file = read_named_rig(options.rig, session, options.left);
+  std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
+  inputs.insert(inputs.end(), {options.left, options.right});
   const Rig& rig = file.estimate.rig;
   const RectifiedGeometry wanted =
       with_errors_of(options.rig, [&] { return rectified_geometry(rig, options.geometry); });
@@ -268,7 +268,7 @@ void run(RectifyArguments options, Session& session) {
 
   const Contents files = contents(rig, geometry, images, options);
   for (const auto& [name, content] : files) {
-    check_output_is_not_input({rig_file, options.left, options.right}, name);
+    check_output_is_not_input(inputs, name);
   }
   const auto d = deviations(file.estimate, geometry, options.at_m);
   OutputFiles outputs;

@@ -17,8 +17,8 @@
 #include "calib/statistics/quantile.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "cli/stereo/disparity_picture.h"
 #include "cli/stereo/matcher_names.h"
 #include "cli/stereo/stereo_files.h"
@@ -95,7 +95,9 @@ EdgeMetrics edge_figures(const StereoResult& result, double min_angle_rad) {
 
 /// The edges of the left image at valid pixels.
 std::vector<EdgePoint> edges_of(const StereoInput& input, const std::string& file) {
-  std::vector<EdgePoint> edges = canny_edges(input.pair.left);
+  CannyOptions canny;
+  canny.noise = input.left_noise;
+  std::vector<EdgePoint> edges = canny_edges(input.pair.left, canny);
   if (input.left_valid) {
     std::erase_if(edges, [&](const EdgePoint& e) { return !(*input.left_valid)(e.x, e.y); });
   }
@@ -239,7 +241,9 @@ std::string result_text(const StereoInput& input,
 /// Throws Error if an output would overwrite an input or another output.
 void check_outputs(const StereoArguments& options) {
   std::vector<std::filesystem::path> inputs{options.input.left, options.input.right};
-  if (!options.input.rig.empty()) inputs.push_back(find_rig(options.input.rig));
+  if (!options.input.rig.empty()) {
+    for (const auto& file : files_of_named_rig(options.input.rig)) inputs.push_back(file);
+  }
   const std::filesystem::path folder = options.output;
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
     throw Error(options.output, "is not a folder", "give another folder with -o");

@@ -10,10 +10,9 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "calib/rig_estimate.h"
-#include "calib/rig_file.h"
 #include "cli/program/camera_images.h"
+#include "cli/program/rig_input.h"
 #include "cli/program/session.h"
-#include "cli/program/share_folder.h"
 #include "stereo/grey_levels.h"
 #include "stereo/matching/matcher_input.h"
 #include "stereo/rectification.h"
@@ -44,14 +43,7 @@ void check(const StereoInputOptions& o) {
   }
 }
 
-RigEstimate read_estimate(const StereoInputOptions& o, Session& session) {
-  const RigFile file = read_rig(find_rig(o.rig));
-  for (const std::string& warning : file.warnings) session.warn(warning);
-  return file.estimate;
-}
-
 void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session) {
-  input.estimate = read_estimate(o, session);
   const Rig& rig = input.estimate->rig;
   const RectifiedGeometry geometry = with_errors_of(o.rig, [&] { return rectified_geometry(rig); });
   const RectifiedPair raw = read_camera_images(rig, o.rig, o.left, o.right, session);
@@ -66,6 +58,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
   input.field = vertical_field(images, input.range);
   input.pair = std::move(images.pair);
   input.left_valid = std::move(images.left_valid);
+  input.left_noise = images.left_noise;
   if (rig.cameras[0].size_px != rig.cameras[1].size_px) return;
   input.exchanged = [rig, geometry, raw, threads = o.threads] {
     return rectified_images(rig, geometry, raw.right, raw.left, threads).pair;
@@ -76,7 +69,7 @@ void take_raw(const StereoInputOptions& o, StereoInput& input, Session& session)
 void take_cameras(const StereoInputOptions& o, StereoInput& input, Session& session) {
   const Eigen::Vector2i size(input.pair.left.width_px, input.pair.left.height_px);
   if (!o.rig.empty()) {
-    input.estimate = read_estimate(o, session);
+    input.estimate = read_named_rig(o.rig, session, o.left).estimate;
     input.geometry = geometry_of_rectified_rig(input.estimate->rig);
     if (!input.geometry || input.geometry->size_px != size) {
       throw Error(
@@ -127,7 +120,10 @@ void repair_rows(bool wanted, StereoInput& input, Session& session) {
 }
 
 int width_of(const StereoInputOptions& o, StereoInput& input, Session& session) {
-  if (!o.rectified) return read_rig(find_rig(o.rig)).estimate.rig.cameras.at(0).size_px[0];
+  if (!o.rectified) {
+    input.estimate = read_named_rig(o.rig, session, o.left).estimate;
+    return input.estimate->rig.cameras.at(0).size_px[0];
+  }
   input.pair = {read_image(o.left, session), read_image(o.right, session)};
   return input.pair.left.width_px;
 }

@@ -28,6 +28,7 @@ struct StereoInputOptions {
 struct StereoInput {
   RectifiedPair pair;
   std::optional<ValidPixels> left_valid;      ///< for raw images: pixels with a source
+  double left_noise = 0;                      ///< of the raw image, grey levels; 0: not known
   std::optional<RectifiedGeometry> geometry;  ///< empty: disparities only
   std::optional<RigEstimate> estimate;        ///< the rig of this geometry
   double offset_px = 0;                       ///< added to image disparities to get the geometry's

@@ -10,6 +10,7 @@
 #include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
 #include "sim/study/study_file.h"
+#include "sim/tuning/tune_settings.h"
 
 namespace vernier::fuzz {
 namespace {
@@ -23,9 +24,28 @@ void require_whole_study(const StudyFile& study) {
   require(study.trials >= 1 && study.trials_per_block >= 1, "a study has trials");
 }
 
+/// Its [tune]: what confirms a candidate must be a study with its cells.
+void require_confirmations(const std::string& text, const StudyFile& study) {
+  const auto settings = accepted([&] { return parse_tune(text, "study.toml", study); });
+  if (!settings) return;
+  const auto candidates = accepted([&] { return candidates_of(study, *settings, "study.toml"); });
+  if (!candidates) return;
+  for (const Candidate* candidate : {&candidates->front(), &candidates->back()}) {
+    const std::string confirming = confirmation_text(text, "study.toml", *candidate, *settings);
+    // refused where trials times worlds are too many, or a world of its own is asked for
+    const auto read = accepted([&] { return parse_study(confirming, "confirming.toml"); });
+    if (!read) continue;
+    require_whole_study(*read);
+    require(read->trials == settings->confirm_trials, "a confirmation has its trials");
+    require(worlds_of(*read) == settings->confirm_worlds, "a confirmation has its worlds");
+  }
+}
+
 void run_study_toml(std::string_view bytes) {
   const auto study = accepted([&] { return parse_study(std::string(bytes), "study.toml"); });
-  if (study) require_whole_study(*study);
+  if (!study) return;
+  require_whole_study(*study);
+  require_confirmations(std::string(bytes), *study);
 }
 
 /// A file of sources that a study refers to.
@@ -52,7 +72,11 @@ std::vector<std::string> study_toml_seeds() {
       "[study]\n[calibration]\nmodel = \"opencv4\"\nboard = \"9x6\"\nsquare_m = 0.025\n"
       "pixel_sigma_px = 0.2\ndistance_m = 1\ntilt_deg = 30\n[sweep]\n\"calibration.views\" = [3, "
       "20]\n",
-      "[study]\n[calibration]\nviews = 5\nobservations = \"corners.vnl\"\n"};
+      "[study]\n[calibration]\nviews = 5\nobservations = \"corners.vnl\"\n",
+      "[study]\ntrials = 60\n[sweep]\n\"map.spacing_m\" = [0.5, 1]\n\"localiser.method\" = "
+      "[\"lines\", \"pgh\"]\n\"sources.calibration\" = [1, 3]\n[tune]\nobjective = \"error\"\n"
+      "indifference = 0.02\nerror_rate = 0.1\nconditions = [\"sources.calibration\"]\n"
+      "confirm_worlds = [\"a\", \"b\"]\nconfirm_seed = 3\nconfirm_trials = 12\n"};
 }
 
 std::vector<std::string> sources_toml_seeds() {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/base/joined_numbers.h"
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "calib/pose.h"
@@ -18,25 +19,12 @@
 
 namespace vernier::localise {
 
-using vernier::internal::parse_real;
-using vernier::internal::split_fields;
+using vernier::internal::joined_numbers;
 using vernier::internal::TextLines;
 
 namespace {
 
 constexpr double furthest_m = 1e9;
-
-std::vector<double> numbers_of(const std::vector<std::string_view>& fields,
-                               const std::string& place) {
-  std::vector<double> numbers;
-  for (const std::string_view field : fields) {
-    numbers.push_back(parse_real(field, place, "field"));
-    if (!std::isfinite(numbers.back())) {
-      throw Error(place, "a field is not finite", "give numbers");
-    }
-  }
-  return numbers;
-}
 
 void check_position(const Eigen::Vector3d& t, const std::string& place) {
   if (t.cwiseAbs().maxCoeff() <= furthest_m) return;
@@ -52,7 +40,7 @@ Pose pose_of_tum(const std::vector<double>& v, const std::string& place) {
   return {q.normalized().toRotationMatrix(), {v[1], v[2], v[3]}};
 }
 
-Pose pose_of_kitti(const std::vector<double>& v, const std::string& place) {
+Pose pose_of_kitti(std::span<const double> v, const std::string& place) {
   Pose T;
   T.R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
   T.t << v[3], v[7], v[11];
@@ -65,41 +53,53 @@ Pose pose_of_kitti(const std::vector<double>& v, const std::string& place) {
   return T;
 }
 
+/// Appends a pose that comes after those before it.
+void append(const TimedPose& pose, const std::string& place, std::vector<TimedPose>& trajectory) {
+  constexpr std::size_t most_poses = 10'000'000;
+  if (trajectory.size() == most_poses) {
+    throw Error(place, "is one of more than 10,000,000 poses", "split the file");
+  }
+  check_position(pose.T_world_camera.t, place);
+  if (!trajectory.empty() && !(pose.time_s > trajectory.back().time_s)) {
+    throw Error(place, "its time is not after that of the line before", "sort the poses");
+  }
+  trajectory.push_back(pose);
+}
+
 }  // namespace
 
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& file) {
-  constexpr std::size_t most_poses = 10'000'000, tum_fields = 8, kitti_fields = 12;
+  constexpr std::size_t tum_fields = 8, kitti_fields = 12;
   std::vector<TimedPose> trajectory;
-  TextLines lines(file);
+  constexpr std::size_t longest_line = 100'000'000;  // matrices of a file without line ends
+  TextLines lines(file, longest_line);
   std::string_view line;
-  std::size_t fields_before = 0;
+  bool of_tum = false;
   while (lines.next(line)) {
     if (const std::size_t text = line.find_first_not_of(" \t\r");
         text == std::string_view::npos || line[text] == '#') {
       continue;
     }
     const std::string place = lines.place();
-    const std::vector<double> v = numbers_of(split_fields(line, " \t\r"), place);
-    if ((v.size() != tum_fields && v.size() != kitti_fields) ||
-        (fields_before != 0 && v.size() != fields_before)) {
+    const std::vector<double> v = joined_numbers(line, place);
+    const bool tum = v.size() == tum_fields;
+    const bool kitti = !v.empty() && v.size() % kitti_fields == 0;
+    if ((!tum && !kitti) || (!trajectory.empty() && tum != of_tum)) {
       throw Error(place,
                   fmt::format("has {} fields{}", v.size(),
-                              fields_before == 0 ? "" : ", lines before it another number"),
+                              trajectory.empty() ? "" : ", lines before it another number"),
                   "give time_s x y z qx qy qz qw (TUM), or 12 numbers of a 3 x 4 matrix (KITTI)");
     }
-    fields_before = v.size();
-    if (trajectory.size() == most_poses) {
-      throw Error(place, "is one of more than 10,000,000 poses", "split the file");
+    of_tum = tum;
+    if (tum) {
+      append({v[0], pose_of_tum(v, place)}, place, trajectory);
+      continue;
     }
-    TimedPose pose;
-    const bool tum = v.size() == tum_fields;
-    pose.time_s = tum ? v[0] : static_cast<double>(trajectory.size());
-    pose.T_world_camera = tum ? pose_of_tum(v, place) : pose_of_kitti(v, place);
-    check_position(pose.T_world_camera.t, place);
-    if (!trajectory.empty() && !(pose.time_s > trajectory.back().time_s)) {
-      throw Error(place, "its time is not after that of the line before", "sort the poses");
+    for (std::size_t at = 0; at < v.size(); at += kitti_fields) {
+      append({static_cast<double>(trajectory.size()),
+              pose_of_kitti(std::span(v).subspan(at, kitti_fields), place)},
+             place, trajectory);
     }
-    trajectory.push_back(pose);
   }
   if (trajectory.empty()) {
     throw Error(file.string(), "holds no poses",

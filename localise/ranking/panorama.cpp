@@ -173,8 +173,9 @@ int bearings_in_view(const TopologicalMap& map) {
   for (const MapNode& node : map.nodes) {
     if (!node.view.rig) continue;
     const ViewCamera camera = view_camera(node.view);
-    half = std::atan(std::max(-camera.left_px, camera.right_px) / camera.f_px);
-    break;  // one rig records a map
+    const double seen = std::atan(std::max(-camera.left_px, camera.right_px) / camera.f_px);
+    if (seen > 0) half = seen;  // a wrong calibration may look nowhere
+    break;                      // one rig records a map
   }
   return static_cast<int>(std::ceil(2 * std::min(half + beyond_rad, widest_rad) / bearing_rad));
 }

@@ -31,7 +31,9 @@ using namespace stereo::internal;
 namespace {
 
 std::vector<EdgePoint> edges_at_valid_pixels(const RectifiedImages& images) {
-  std::vector<EdgePoint> edges = canny_edges(images.pair.left);
+  CannyOptions canny;
+  canny.noise = images.left_noise;
+  std::vector<EdgePoint> edges = canny_edges(images.pair.left, canny);
   std::erase_if(edges, [&](const EdgePoint& e) { return !images.left_valid(e.x, e.y); });
   return edges;
 }

@@ -41,14 +41,16 @@ std::vector<RecordedLooks> read_views(const std::filesystem::path& file,
   return views;
 }
 
+std::string view_line(const RecordedLooks& view) {
+  Json json;
+  if (view.pose) json["pose"] = pose_json(*view.pose);
+  json["looks"] = looks_json(view.looks);
+  return json.dump() + "\n";
+}
+
 void write_views(const std::filesystem::path& file, std::span<const RecordedLooks> views) {
   FileInProgress out(file);
-  for (const RecordedLooks& recorded : views) {
-    Json json;
-    if (recorded.pose) json["pose"] = pose_json(*recorded.pose);
-    json["looks"] = looks_json(recorded.looks);
-    out.append(json.dump() + "\n");
-  }
+  for (const RecordedLooks& recorded : views) out.append(view_line(recorded));
   out.commit();
 }
 

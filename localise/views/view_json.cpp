@@ -186,7 +186,10 @@ PlaceView parse_view(const JsonNode& node, const std::shared_ptr<const Rig>& rig
   if (node.has("cameras")) {
     view.rig = std::make_shared<const Rig>(parse_cameras(node.at("cameras")));
   }
-  if (view.rig && view.rig->cameras.size() != 2) {
+  // lines may be those of one camera, as of an image with depths
+  const bool needs_pair = node.has("segments") || node.has("corners");
+  const std::size_t cameras = view.rig ? view.rig->cameras.size() : 2;
+  if (cameras != 2 && (cameras != 1 || needs_pair)) {
     throw Error(node.has("cameras") ? node.at("cameras").place() : node.place(),
                 "the rig does not have two cameras", "give a stereo rig");
   }

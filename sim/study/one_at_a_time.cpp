@@ -74,6 +74,9 @@ void read_sources(const TomlReader& reader, const toml::node& node, OneAtATime& 
     }
     read.sources.push_back(word);
   }
+  if (read.sources.empty()) {
+    reader.fail(node, "one_at_a_time.sources is empty", "list at least one, or remove it for all");
+  }
 }
 
 void read_factors(const TomlReader& reader, const toml::node& node, OneAtATime& read) {
@@ -83,6 +86,9 @@ void read_factors(const TomlReader& reader, const toml::node& node, OneAtATime& 
     if (!(factor > 0 && factor <= 1000) || factor == 1) {
       reader.fail(entry, fmt::format("one_at_a_time.factors: {} is no factor of a sweep", factor),
                   "use 0 < factor <= 1000 other than 1; the design all_but has 0");
+    }
+    if (std::find(read.factors.begin(), read.factors.end(), factor) != read.factors.end()) {
+      reader.fail(entry, fmt::format("one_at_a_time.factors lists {} twice", factor), "remove one");
     }
     read.factors.push_back(factor);
   }

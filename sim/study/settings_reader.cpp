@@ -3,6 +3,7 @@
 #include "sim/study/settings_reader.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -29,6 +30,15 @@ namespace {
 constexpr double radians_per_degree = std::numbers::pi / 180;
 
 }  // namespace
+
+void set_swept(toml::table& study, const std::string& key, const toml::node& value) {
+  const std::size_t dot = key.find('.');
+  const std::string section = key.substr(0, dot), entry = key.substr(dot + 1);
+  if (!study.contains(section)) study.insert(section, toml::table{});
+  if (toml::table* into = study.get(section)->as_table()) {
+    value.visit([&](const auto& v) { into->insert_or_assign(entry, v); });
+  }
+}
 
 double SettingsReader::number_in(const toml::node& node,
                                  const std::string& what,

@@ -18,6 +18,9 @@
 
 namespace vernier::sim::internal {
 
+/// Sets "section.entry" of a study to a value of its sweep.
+void set_swept(toml::table& study, const std::string& key, const toml::node& value);
+
 /// Reads the settings of an experiment from the tables of a study file.
 class SettingsReader : public vernier::internal::TomlReader {
  public:

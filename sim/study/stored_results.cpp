@@ -92,6 +92,16 @@ bool StoredResults::is_best(const std::filesystem::path& file,
   return files_[best->file] == file;
 }
 
+void StoredResults::read_through(const StudyStore* store, const std::filesystem::path& file) {
+  own_ = store;
+  own_file_ = file;
+}
+
+std::vector<StoredBlock> StoredResults::read_file(int file, const BlockRange& range) const {
+  const std::filesystem::path& name = files_[static_cast<std::size_t>(file)];
+  return own_ && name == own_file_ ? own_->blocks(range) : read_blocks(name, range);
+}
+
 std::vector<StoredBlock> StoredResults::read(const BlockRange& range) const {
   const auto of_cell = blocks_.find(range.cell);
   if (of_cell == blocks_.end()) return {};
@@ -103,7 +113,7 @@ std::vector<StoredBlock> StoredResults::read(const BlockRange& range) const {
   std::map<int, StoredBlock> found;
   const bool may_differ = is_mixture(instruction_sets());
   for (const int file : wanted) {
-    for (StoredBlock& block : read_blocks(files_[file], range)) {
+    for (StoredBlock& block : read_file(file, range)) {
       const auto [known, is_new] = found.try_emplace(block.block);
       StoredBlock& kept = known->second;
       if (is_new || (may_differ && block.trials.size() > kept.trials.size())) {

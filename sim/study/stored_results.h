@@ -25,6 +25,9 @@ class StoredResults {
   void add(StoreIndex index, const std::filesystem::path& file);
   /// Adds the stores of a folder.
   void add_folder(const std::filesystem::path& folder);
+  /// From now on reads this file through the store that this process writes, which must outlive
+  /// this; null: no more.
+  void read_through(const StudyStore* store, const std::filesystem::path& file);
 
   const StoreNotes& notes() const { return notes_; }
   const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -51,6 +54,7 @@ class StoredResults {
     int file = 0;
     ClusterCount count;
   };
+  std::vector<StoredBlock> read_file(int file, const BlockRange& range) const;
   void add_note(const StoreNotes::value_type& note, const std::filesystem::path& file);
   const std::vector<InFile>* places(const std::string& cell, int block) const;
 
@@ -58,6 +62,8 @@ class StoredResults {
   std::map<std::string, std::map<int, std::vector<InFile>>> blocks_;  // by cell and number
   StoreNotes notes_;
   std::vector<std::filesystem::path> files_;
+  const StudyStore* own_ = nullptr;
+  std::filesystem::path own_file_;
   std::vector<std::filesystem::path> interrupted_;  // stores that cannot be read yet
 };
 

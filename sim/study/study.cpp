@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "calib/base/instruction_set.h"
+#include "calib/base/ordered_parallel.h"
 #include "calib/base/shown_text.h"
 #include "calib/error.h"
 #include "sim/study/instruction_sets.h"
@@ -106,6 +108,10 @@ void record_calibrations(const Study& study,
     const std::string key = calibration_key(study, cell);
     if (stored.notes().count(key) > 0 || !recorded.insert(key).second) continue;
     constexpr int enough = 100;
+    for_each_index(enough, run.threads, [&](std::size_t draw) {
+      if (!run.stop.stop_requested()) calibrations->of(static_cast<std::uint32_t>(draw));
+    });
+    if (run.stop.stop_requested()) return;
     const auto [name, note] = calibration_note(key, record_of(*calibrations, enough));
     store.set_note(name, note);
   }
@@ -174,6 +180,10 @@ void run_study(const Study& study, const StudyRun& run) {
                 "not a valid index/count", "use 0 <= index < count");
   }
   const StudyWork work = study_work(study);
+  const auto missing_of = [&](const StoredResults& stored) {
+    return run.first_blocks ? missing_blocks(work, run.first_blocks(work, stored), stored)
+                            : missing_work(study, work, run.shard, stored);
+  };
   std::optional<RankZero> ranks;
   std::string sets(instruction_set());
   if (run.ranks) {
@@ -182,7 +192,7 @@ void run_study(const Study& study, const StudyRun& run) {
   }
   StoredResults stored(run.other_instruction_sets);
   stored.add_folder(run.folder);
-  if (missing_work(study, work, run.shard, stored).empty()) {
+  if (missing_of(stored).empty()) {
     if (run.progress) run.progress(0, 0);
     return;
   }
@@ -194,7 +204,8 @@ void run_study(const Study& study, const StudyRun& run) {
   std::optional<StudyStore> store(std::in_place, file, run.other_instruction_sets);
   if (run.on_start) run.on_start();
   stored.add(store->index(), file);  // it may have been written meanwhile
-  const MissingWork missing = missing_work(study, work, run.shard, stored);
+  stored.read_through(&*store, file);
+  const MissingWork missing = missing_of(stored);
   if (is_mixture(sets) || run.other_instruction_sets == OtherInstructionSets::allowed) {
     sets = all_instruction_sets(sets, stored.instruction_sets());
     if (is_mixture(sets)) store->set_note(instruction_set_note, sets);
@@ -212,11 +223,12 @@ void run_study(const Study& study, const StudyRun& run) {
   if (ranks) ranks->welcome(!blocks.empty());
   if (!blocks.empty() && !run.stop.stop_requested()) computer.prepare_maps();
   record_calibrations(study, computer.scenes(), stored, run, *store);
-  /// What is wanted next, where the width of an interval decides how far a cell goes.
+  /// What is wanted next, where results decide how far a cell goes.
   const auto next_blocks = [&] {
-    if (!study.file.interval_width || blocks.empty() || run.stop.stop_requested()) return false;
+    const bool decided = study.file.interval_width || run.first_blocks;
+    if (!decided || blocks.empty() || run.stop.stop_requested()) return false;
     stored.add(store->index(), file);
-    blocks = block_units(missing_work(study, work, run.shard, stored));
+    blocks = block_units(missing_of(stored));
     recorder.expect_blocks(blocks.size());
     return !blocks.empty();
   };

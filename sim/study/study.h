@@ -25,6 +25,8 @@
 namespace vernier::sim::internal {
 
 class Communicator;
+class StoredResults;
+struct StudyWork;
 
 /// A world or a rig with the fingerprint of its file's content.
 struct StudyWorld {
@@ -76,6 +78,11 @@ struct StudyRun {
   /// The other processes that compute for this one, which is their rank 0 (study_ranks.h); null:
   /// none. The caller tells them the end.
   Communicator* ranks = nullptr;
+  /// Which blocks are wanted, by what is stored so far: the first so many of each cell, never fewer
+  /// than before. Asked again when they are all there, until it wants no more. World ceilings are
+  /// then not computed. For one process: not with shards or ranks. Null: as the study says.
+  std::function<std::vector<int>(const StudyWork& work, const StoredResults& stored)> first_blocks =
+      {};
   /// Called with `ranks`, once it was asked to stop and all results that have come are stored. It
   /// may end the process; if it does not, the units that run here are waited for.
   std::function<void()> on_stop = {};

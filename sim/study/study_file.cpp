@@ -33,16 +33,6 @@ namespace {
 constexpr std::size_t most_cells = 10'000;
 constexpr std::int64_t most_trials = 10'000'000;  ///< of all cells together
 
-/// Sets "section.entry" of a study.
-void set(toml::table& study, const std::string& key, const toml::node& value) {
-  const std::size_t dot = key.find('.');
-  const std::string section = key.substr(0, dot), entry = key.substr(dot + 1);
-  if (!study.contains(section)) study.insert(section, toml::table{});
-  if (toml::table* into = study.get(section)->as_table()) {
-    value.visit([&](const auto& v) { into->insert_or_assign(entry, v); });
-  }
-}
-
 class StudyReader : private SettingsReader {
  public:
   using SettingsReader::SettingsReader;
@@ -189,7 +179,7 @@ void StudyReader::read_sweep(const toml::table& root, StudyFile& study) const {
              "remove one");
       }
       toml::table changed = root;  // each value separately first, so that an error has its line
-      set(changed, key, value);
+      set_swept(changed, key, value);
       read_cell(changed, value.source().begin.line);
     }
     if (values.empty())
@@ -243,7 +233,7 @@ void StudyReader::add_cells(const toml::table& root, StudyFile& study) const {
       const std::size_t i = rest / block;
       rest %= block;
       const std::string& key = study.sweep_keys[k];
-      set(changed, key, *sweep->get(key)->as_array()->get(i));
+      set_swept(changed, key, *sweep->get(key)->as_array()->get(i));
       label += (label.empty() ? "" : ", ") + key + " = " + study.sweep_values[k][i];
       swept.emplace_back(key, study.sweep_values[k][i]);
     }
@@ -279,7 +269,7 @@ void StudyReader::add_designs(const toml::table& root, StudyFile& study) const {
 StudyFile StudyReader::read(const toml::table& root, const std::filesystem::path& sources) {
   check_keys(root,
              {"study", "world", "rig", "calibration", "sources", "corners", "camera", "map",
-              "localiser", "histograms", "sweep", "one_at_a_time"},
+              "localiser", "histograms", "sweep", "one_at_a_time", "tune"},  // [tune]: sim/tuning
              "");
   StudyFile study;
   read_study_section(root, study);

@@ -234,6 +234,10 @@ StoreContent StudyStore::content() const { return stored_content(open_->database
 
 StoreIndex StudyStore::index() const { return stored_index(open_->database); }
 
+std::vector<StoredBlock> StudyStore::blocks(const BlockRange& range) const {
+  return stored_blocks(open_->database, range);
+}
+
 StoreContent read_store(const fs::path& file) {
   return read_unchanged<StoreContent>(file, stored_content);
 }

@@ -86,6 +86,8 @@ class StudyStore {
   /// Reads and checks everything. Throws Error if anything is damaged.
   StoreContent content() const;
   StoreIndex index() const;
+  /// Those of a range that are there, ascending, checked.
+  std::vector<StoredBlock> blocks(const BlockRange& range) const;
 
  private:
   struct Open;

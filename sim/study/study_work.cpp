@@ -102,6 +102,21 @@ MissingWork missing_work(const Study& study,
   return missing;
 }
 
+MissingWork missing_blocks(const StudyWork& work,
+                           const std::vector<int>& first_blocks,
+                           const StoredResults& stored) {
+  MissingWork missing;
+  missing.queries.resize(work.ceilings.size());
+  for (std::size_t i = 0; i < work.blocks.size(); ++i) {
+    const BlockJob& job = work.blocks[i];
+    if (job.block >= first_blocks[static_cast<std::size_t>(job.cell)]) continue;
+    if (stored.trials(work.cell_keys[static_cast<std::size_t>(job.cell)], job.block) < job.count) {
+      missing.blocks.push_back(static_cast<int>(i));
+    }
+  }
+  return missing;
+}
+
 Shard shard_of_store(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   Shard shard;

@@ -59,6 +59,11 @@ MissingWork missing_work(const Study& study,
                          const Shard& shard,
                          const StoredResults& stored);
 
+/// Of a process that runs alone: of the first so many blocks of each cell, and no queries.
+MissingWork missing_blocks(const StudyWork& work,
+                           const std::vector<int>& first_blocks,
+                           const StoredResults& stored);
+
 /// Shards that lack a block or a query, of every number of shards that a store is named after
 /// ("results-1-of-4.sqlite"); ascending. Empty if nothing is missing or no store is a shard's.
 std::vector<Shard> missing_shards(const Study& study,

@@ -88,6 +88,17 @@ void ToldReader::read_calibration(const toml::table& section, ToldSettings& sett
   }
   if (const auto* node = section.get("observations")) {
     settings.observations = text(*node, "calibration.observations");
+    if (settings.observations.empty()) {
+      fail(*node, "calibration.observations is empty", "name a file of corners, or remove it");
+    }
+    if (settings.observations.ends_with(".json")) {
+      for (const char* known : {"board", "square_m"}) {
+        if (const auto* other = section.get(known)) {
+          fail(*other, fmt::format("calibration.{} is that of calibration.observations", known),
+               "remove it");
+        }
+      }
+    }
     for (const char* simulated : {"pixel_sigma_px", "distance_m", "tilt_deg"}) {
       if (const auto* other = section.get(simulated)) {
         fail(*other, fmt::format("calibration.{} is of simulated views", simulated),

@@ -31,6 +31,23 @@ using namespace vernier::internal;
 
 namespace {
 
+/// Corners that noise carried out of their image, which no detector reports, and views of too few.
+void leave_out_unseen(const Rig& rig, BoardObservations& seen) {
+  for (BoardView& view : seen.views) {
+    const Camera& camera = rig.cameras[static_cast<std::size_t>(view.camera)];
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+      if (!in_image(camera, view.pixels_px[i])) continue;
+      view.ids[kept] = view.ids[i];
+      view.pixels_px[kept++] = view.pixels_px[i];
+    }
+    view.ids.resize(kept);
+    view.pixels_px.resize(kept);
+  }
+  std::erase_if(seen.views,
+                [&](const BoardView& view) { return !determines_pose(seen.target_m, view.ids); });
+}
+
 class CalibratedRigs : public ToldRigs {
  public:
   CalibratedRigs(std::shared_ptr<const FreshCalibrations> calibrations, double psi_c)
@@ -82,15 +99,17 @@ FreshCalibrations::FreshCalibrations(Rig truth,
 
 BoardObservations FreshCalibrations::views_of(std::uint32_t draw) const {
   if (!corners_) {
-    return simulate_board(truth_, options_.board,
-                          {.seed = seed_,
-                           .trial = draw,
-                           .poses = draw,
-                           .frames = options_.views,
-                           .pixel_sigma_px = options_.pixel_sigma_px,
-                           .distance_m = options_.distance_m,
-                           .tilt_rad = options_.tilt_rad})
-        .observations;
+    BoardObservations seen = simulate_board(truth_, options_.board,
+                                            {.seed = seed_,
+                                             .trial = draw,
+                                             .poses = draw,
+                                             .frames = options_.views,
+                                             .pixel_sigma_px = options_.pixel_sigma_px,
+                                             .distance_m = options_.distance_m,
+                                             .tilt_rad = options_.tilt_rad})
+                                 .observations;
+    leave_out_unseen(truth_, seen);
+    return seen;
   }
   std::vector<int> frames = shuffled(
       frames_of(*corners_), {.seed = seed_,
@@ -123,7 +142,10 @@ std::shared_ptr<const FreshCalibration> FreshCalibrations::of(std::uint32_t draw
     if (const auto found = known_.find(draw); found != known_.end()) return found->second;
   }
   auto computed = std::make_shared<const FreshCalibration>(compute(draw));
+  constexpr std::size_t most_kept = 20'000;
   const std::lock_guard lock(mutex_);
+  // Those of trials, the lower numbers, come in their order; those of maps are few.
+  if (known_.size() >= most_kept) known_.erase(known_.begin());
   return known_.emplace(draw, std::move(computed)).first->second;
 }
 

@@ -43,7 +43,8 @@ struct FreshCalibration {
 /// Simulated: poses and noise of the views are drawn by (seed, draw, frame), so those of n views
 /// are the first n of more. Real: calibration `draw` takes the first `views` of all frames in an
 /// order that is drawn by (seed, draw), so they are nested likewise. Each is computed once and
-/// kept.
+/// kept, the last 20,000 at most. Corners of simulated views that noise carries out of their image
+/// are left out.
 class FreshCalibrations {
  public:
   FreshCalibrations(Rig truth, const FreshCalibrationOptions& options, std::uint64_t seed);

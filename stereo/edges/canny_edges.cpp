@@ -196,6 +196,10 @@ void check(const GreyLevels& image, const CannyOptions& options) {
   if (!(options.scale_px >= 0.5 && options.scale_px <= 20)) {
     throw Error("canny_edges", "the scale is not between 0.5 and 20 px", "use e.g. 1 px");
   }
+  if (!(options.noise >= 0 && options.noise <= 255)) {
+    throw Error("canny_edges", "the noise is not between 0 and 255 grey levels",
+                "use 0 to estimate it from the image");
+  }
   if (!(options.low > 0 && options.high >= options.low)) {
     throw Error("canny_edges", "the thresholds are not 0 < low <= high", "use e.g. 2 and 5");
   }
@@ -209,7 +213,10 @@ std::vector<EdgePoint> canny_edges(const GreyLevels& image, const CannyOptions& 
   if (std::min(image.width_px, image.height_px) <= 2 * kernel.reach) return {};
   const cv::Mat grey = matrix_of(image);
   const double not_stated = std::numeric_limits<double>::quiet_NaN();
-  const EdgePlaces places(kernel, options.with_sigma ? image_noise(grey) : not_stated);
+  const double noise = !options.with_sigma ? not_stated
+                       : options.noise > 0 ? options.noise
+                                           : image_noise(grey);
+  const EdgePlaces places(kernel, noise);
   PeakFinder finder(grey.size(), options);
   GradientRows gradient;
   std::vector<EdgePoint> edges;

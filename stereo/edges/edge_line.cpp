@@ -97,6 +97,7 @@ void EdgeLine::propagate(const std::vector<EdgePoint>& points,
       pair(j, i);
     }
   }
+  noise_covariance = covariance;
   if (squares > expected && expected > 0) covariance *= squares / expected;
 }
 

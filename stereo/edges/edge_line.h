@@ -45,8 +45,9 @@ struct EdgeLine {
 
   Eigen::Vector2d centroid, direction, normal;  ///< the normal points towards the brighter side
   double rms_px = 0;
-  double spacing_px = 0;       ///< mean distance of consecutive points
-  Eigen::Matrix2d covariance;  ///< of the offset across at the centroid, and of the slope
+  double spacing_px = 0;             ///< mean distance of consecutive points
+  Eigen::Matrix2d covariance;        ///< of the offset across at the centroid, and of the slope
+  Eigen::Matrix2d noise_covariance;  ///< the same without the factor for too large residuals
 
  private:
   void propagate(const std::vector<EdgePoint>& points,

@@ -93,13 +93,19 @@ struct Regression {
   }
 };
 
-double shared(const DisparitySample& a, const DisparitySample& b, const DisparityLineOptions& o) {
-  const auto noise = [](const DisparitySample& s) {
+/// Covariance of the noise of two samples.
+double noise(const DisparitySample& a, const DisparitySample& b, const DisparityLineOptions& o) {
+  const auto sigma = [](const DisparitySample& s) {
     return std::sqrt(std::max(0.0, s.sigma_px * s.sigma_px - s.shared_px * s.shared_px));
   };
   const double apart = std::abs(a.along_px - b.along_px);
-  return noise(a) * noise(b) * std::max(0.0, 1 - apart / o.noise_length_px) +
-         a.shared_px * b.shared_px * std::exp(-apart / o.floor_length_px);
+  return sigma(a) * sigma(b) * std::max(0.0, 1 - apart / o.noise_length_px);
+}
+
+/// Covariance of what they share beyond it.
+double shared(const DisparitySample& a, const DisparitySample& b, const DisparityLineOptions& o) {
+  const double apart = std::abs(a.along_px - b.along_px);
+  return a.shared_px * b.shared_px * std::exp(-apart / o.floor_length_px);
 }
 
 DisparityLine fitted(Samples samples, const std::vector<int>& run, const DisparityLineOptions& o) {
@@ -115,9 +121,10 @@ DisparityLine fitted(Samples samples, const std::vector<int>& run, const Dispari
     weighted += w * off * off;
     const Eigen::Vector2d gain_a = r.gain(a);
     for (const DisparitySample& b : line.samples) {
-      const double c = shared(a, b, o);
+      const double n = noise(a, b, o), c = n + shared(a, b, o);
       const Eigen::Vector2d gain_b = r.gain(b);
       line.covariance += c * gain_a * gain_b.transpose();
+      line.noise_covariance += n * gain_a * gain_b.transpose();
       const double projection = gain_b[0] + gain_b[1] * (a.along_px - r.centre);
       expected += w * ((&a == &b ? 1 : 0) - projection) * c;
     }

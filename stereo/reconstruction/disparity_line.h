@@ -30,11 +30,15 @@ struct DisparityLine {
   double along_px = 0;  ///< s_0
   Eigen::Vector2d coefficients{0, 0};
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  /// The part of it from noise, new in every image of the same scene: without what points share,
+  /// and without the factor for residuals that are larger than expected.
+  Eigen::Matrix2d noise_covariance = Eigen::Matrix2d::Zero();
   double rms_px = 0;
   std::vector<DisparitySample> samples;  ///< samples on the line
 
   double at(double s) const { return row(s).dot(coefficients); }
   double slope() const { return coefficients[1]; }
+  double noise_variance(double s) const { return row(s).dot(noise_covariance * row(s)); }
   /// Covariance of d at two positions.
   double covariance_of(double s, double t) const { return row(s).dot(covariance * row(t)); }
 

@@ -26,10 +26,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr double patch_width_px = 9,
-                 patch_height_px = 7;  // of stereo/matching/disparity_refinement.h
-/// Covariance of a disparity with its edge's position along the row, relative to the variance of
-/// that position: 0.85 ± 0.07 measured on rendered edges; 1 for an optimal edge detector.
-constexpr double moved_alike = 0.85;
+                 patch_height_px = 7;     // of stereo/matching/disparity_refinement.h
 constexpr double max_moved_alike = 0.95;  // of the limit at which the covariance stays positive
 
 /// A segment with the data of its points.
@@ -102,7 +99,8 @@ class EndCovariance {
   EndCovariance(const Edge& edge,
                 const DisparityLine& line,
                 const SegmentEnd& a,
-                const SegmentEnd& b)
+                const SegmentEnd& b,
+                double moved_alike)
       : t_(edge.line.direction), slope_(line.slope()) {
     const Vector2d& n = edge.line.normal;
     const auto row = [&](const SegmentEnd& end) {
@@ -117,7 +115,7 @@ class EndCovariance {
     // Displacement of an end when its line moves by 1 across.
     by_across_ = {a.covariance * n / n.dot(a.covariance * n),
                   b.covariance * n / n.dot(b.covariance * n)};
-    alike_ = alike(std::abs(n.x())) * (n.x() < 0 ? -1 : 1);
+    alike_ = moved_alike == 0 ? 0 : alike(moved_alike, std::abs(n.x())) * (n.x() < 0 ? -1 : 1);
   }
 
   Eigen::Matrix<double, 6, 6> matrix() const {
@@ -139,7 +137,7 @@ class EndCovariance {
  private:
   /// Change of the disparity when the line moves by 1 across; less if the disparity is too accurate
   /// for it.
-  double alike(double n_x) const {
+  double alike(double moved_alike, double n_x) const {
     const Matrix2d root = across_.llt().matrixL();
     const Matrix2d inverse = root.inverse();
     const Eigen::SelfAdjointEigenSolver<Matrix2d> ratio(inverse * disparity_ * inverse.transpose());
@@ -165,7 +163,8 @@ SegmentDisparity part_of(const Edge& edge,
   part.left_px = {a.place, b.place};
   part.a_disparity_px = line.at(a.along_px);
   part.b_disparity_px = line.at(b.along_px);
-  part.covariance_px2 = EndCovariance(edge, line, a, b).matrix();
+  part.disparity_noise_px2 = {line.noise_variance(a.along_px), line.noise_variance(b.along_px)};
+  part.covariance_px2 = EndCovariance(edge, line, a, b, options.moved_alike).matrix();
   part.rms_px = line.rms_px;
   for (const DisparitySample& s : line.samples) part.points.push_back(s.point);
   const auto within = [&](double s) { return s >= a.along_px - 1 && s <= b.along_px + 1; };
@@ -230,7 +229,7 @@ void check(const std::vector<EdgePoint>& edges,
   }
   if (o.min_points < 3 || !(o.min_share >= 0) || !(o.max_off_sigma > 0) || !(o.reach_px >= 0) ||
       !(o.end_sigma_px > 0) || !(o.unstated_sigma_px > 0) || !(o.floor_px >= 0) ||
-      !(o.floor_length_px > 0) || !(o.scale_px > 0)) {
+      !(o.floor_length_px > 0) || !(o.scale_px > 0) || !(o.moved_alike >= 0)) {
     throw Error(place, "an option is out of range",
                 "use at least 3 points, and deviations and lengths above 0");
   }

@@ -10,6 +10,8 @@
 #include "calib/error.h"
 #include "calib/rig.h"
 #include "stereo/grey_levels.h"
+#include "stereo/image/image_noise.h"
+#include "stereo/image/matrix_of.h"
 #include "stereo/image/resampled_image.h"
 #include "stereo/rectification.h"
 #include "stereo/rectification/raw_pixels.h"
@@ -81,6 +83,8 @@ RectifiedImages rectified_images(const Rig& rig,
   RectifiedImages images;
   rectify(rig, geometry, 0, left, threads, images.pair.left, images.left_valid);
   rectify(rig, geometry, 1, right, threads, images.pair.right, images.right_valid);
+  images.left_noise = image_noise(matrix_of(left));
+  images.right_noise = image_noise(matrix_of(right));
   return images;
 }
 

@@ -823,6 +823,23 @@ class Check(Case):
                           '--splits', '2').stdout
         self.assertIn('halves of the 20 frames, calibrated apart: 2 splits, ', text)
 
+    def test_injected_errors(self):
+        words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--inject', '1,10')
+        one = json.loads(self.works(*words, '--json', '--threads', '1').stdout)['injected']
+        self.assertEqual(one, json.loads(
+            self.works(*words, '--json', '--threads', '3').stdout)['injected'])
+        self.assertEqual(one['boards'], 20)
+        self.assertEqual([level['psi_c'] for level in one['levels']], [1, 10])
+        for level in one['levels']:
+            self.assertEqual((level['draws'], level['failed']), (40, 0))
+            self.assertLess(abs(level['ratio'] - 1), 0.3)
+        self.assertIn('lengths on 20 boards by wrong rigs, 40 draws', self.works(*words).stdout)
+        for wrong in ('0', 'nan', '-1', '1e9', 'x', '1;3'):
+            done = vernier('check', 'nominal', '--inject', wrong)
+            self.assertEqual(done.returncode, 2, wrong)
+            self.assertIn('--inject', done.stderr)
+            self.assertEqual(done.stderr.count('\n'), 1)
+
     def test_noisy_copies_without_mrcal(self):
         words = ('check', 'nominal', '--trials', '40', '--no-mrcal', '--json', '--threads')
         one = json.loads(self.works(*words, '1').stdout)

@@ -75,6 +75,60 @@ class Convert(Case):
         self.assertEqual(self.out('again.cameramodel').read_text(),
                          self.out('left.cameramodel').read_text())
 
+    SENSOR = ('%YAML:1.0\nsensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, {x},\n'
+              '    0, 1, 0, 0,\n    0, 0, 1, 0,\n    0, 0, 0, 1]\nrate_hz: 20\n'
+              'resolution: [752, 480]\ncamera_model: pinhole\nintrinsics: [458, 457, 367, 248]\n'
+              'distortion_model: radial-tangential\n'
+              'distortion_coefficients: [-0.28, 0.07, 0.0002, 1e-05]\n')
+
+    def write_sensors(self):
+        for i in (0, 1):
+            self.out(f'mav0/cam{i}').mkdir(parents=True)
+            self.out(f'mav0/cam{i}/sensor.yaml').write_text(self.SENSOR.format(x=0.11 * i))
+
+    def test_asl_folders_and_files(self):
+        self.write_sensors()
+        files = [self.out(f'mav0/cam{i}/sensor.yaml') for i in (0, 1)]
+        for inputs in (files, [self.out('mav0')], [self.folder]):
+            done = self.works('convert', *inputs, '-o', self.out('back.json'), '--json')
+            said = json.loads(done.stdout)
+            self.assertEqual(said['from'], 'asl')
+            self.assertEqual([c['name'] for c in said['cameras']], ['cam0', 'cam1'])
+            rig = dict(zip(self.rig()['parameter_names'], self.rig()['parameters']))
+            self.assertAlmostEqual(rig['cam1.tx_m'], -0.11)
+        self.complains('convert', 'nominal', '--to', 'asl', '-o', self.out('x.yaml'),
+                       of='asl is only read', leaves=[self.out('x.yaml')])
+        self.complains('convert', files[0], '-o', files[0], of='', leaves=[])
+
+    def test_kitti_calibrations(self):
+        k = '700 0 600 {p} 0 700 180 0 0 0 1 0'
+        calib = self.out('calib.txt')
+        calib.write_text(''.join(f'P{i}: {k.format(p=-70 * i)}\n' for i in range(4)))
+        self.complains('convert', calib, '-o', self.out('r.json'), of='does not state the size',
+                       leaves=[self.out('r.json')])
+        self.works('convert', calib, '--cameras', 'P2,P3', '--names', 'left,right', '--size',
+                   '1241x376', '-o', self.out('back.json'))
+        rig = dict(zip(self.rig()['parameter_names'], self.rig()['parameters']))
+        self.assertAlmostEqual(rig['right.tx_m'], -0.1)
+        for wrong in ('P2,P4', 'P2,P2', ','):
+            self.complains('convert', calib, '--cameras', wrong, '--size', '1241x376', '-o',
+                           self.out('r.json'), of='--cameras', leaves=[self.out('r.json')])
+        calib.write_text(k.format(p=0) + ' ' + k.format(p=-70))
+        self.works('convert', calib, '--size', '1241x376', '-o', self.out('back.json'))
+        self.assertEqual([c['name'] for c in self.rig()['cameras']], ['left', 'right'])
+
+    def test_kept_cameras_lose_the_covariance_and_it_is_said(self):
+        done = self.works('convert', 'nominal', '--cameras', 'right', '-o', self.out('back.json'))
+        self.assertIn('the covariance is of all cameras and is dropped', done.stderr)
+        self.assertNotIn('covariance', self.rig())
+
+    def test_a_binary_colmap_model_is_refused_with_the_remedy(self):
+        self.out('model').mkdir()
+        self.out('model/cameras.bin').write_bytes(b'x')
+        for name in ('model', 'model/cameras.bin'):
+            self.complains('convert', self.out(name), '-o', self.out('r.json'),
+                           of='binary form', leaves=[self.out('r.json')])
+
     def test_what_is_lost_is_said(self):
         done = self.works('convert', 'nominal', '--to', 'opencv', '--names', 'a,b', '-o',
                           self.out('r.yml'), '--json')
@@ -164,13 +218,13 @@ class Convert(Case):
         for words, of in (
                 (['nominal', '-o', self.out('x.yaml')], 'add --to, one of vernier, mrcal'),
                 (['nominal', '--to', 'hugin', '-o', out], '--to: unknown format "hugin"'),
-                ([self.out('plain.yaml'), '-o', out], 'set --from to opencv, kalibr or ros'),
+                ([self.out('plain.yaml'), '-o', out], 'set --from to opencv, kalibr, ros or asl'),
                 ([self.out('broken.yaml'), '-o', out], 'broken.yaml:2: is not YAML'),
                 ([self.folder, '-o', out], 'is a folder without a cameras.txt'),
                 ([self.out('a.xml'), '-o', out], 'cannot tell the format from the file name'),
                 ([self.out('none.cameramodel'), '-o', out], 'none.cameramodel: cannot be read'),
                 ([self.out('k.yaml'), self.out('left.cameramodel'), '-o', out],
-                 'is not a kalibr file like'),
+                 'is not of the format kalibr like'),
                 ([self.out('k.yaml'), self.out('k.yaml'), '-o', out], 'a Kalibr rig is a single'),
                 ([self.out('k.yaml'), '--size', '640x480', '-o', out],
                  '--size: kalibr files contain the image size'),

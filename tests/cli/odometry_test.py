@@ -84,11 +84,38 @@ class Odometry(verb_calls.ProgramCase):
         self.assertEqual([float(row[0]) for row in rows], [0, 0.1, 0.2])
         self.assertAlmostEqual(float(rows[2][1]), 2 * STEP_M, delta=0.005)
         (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0 1\n')
-        self.refused(*call, '--truth', 'true.txt', says='has 1 poses for 3 pairs')
+        self.refused(*call, '--truth', 'true.txt', says='has 1 poses for 3 images')
         (self.folder / 'true.txt').write_text('0 0 0 0 0 0 0\n')
         self.refused(*call, '--truth', 'true.txt', says='true.txt:1: has 7 fields')
         self.refused(*call, '--truth', 'true.txt', '-o', 'true.txt', says='true.txt')
         self.assertIn('0 0 0', (self.folder / 'true.txt').read_text())
+
+    def test_rigs_and_poses_of_other_tools(self):
+        grey = wall()
+        for i in range(2):
+            write_pgm(self.folder / f'kl{i}.pgm', image(grey, i * STEP_M))
+            write_pgm(self.folder / f'kr{i}.pgm', image(grey, i * STEP_M + BASELINE_M))
+        k = f'{F_PX} 0 {SIZE[0] / 2} %s 0 {F_PX} {SIZE[1] / 2} 0 0 0 1 0'
+        (self.folder / 'calib.txt').write_text(k % 0 + ' ' + k % (-F_PX * BASELINE_M))
+        (self.folder / 'poses.txt').write_text(
+            ' '.join(f'1 0 0 {i * STEP_M} 0 1 0 0 0 0 1 0' for i in range(2)))
+        call = ['odometry', '--left', 'kl*.pgm', '--right', 'kr*.pgm']
+        found = json.loads(self.done(*call, '--rig', 'calib.txt', '--truth', 'poses.txt', '--json'))
+        self.assertLess(found['truth']['end_error_m'], 0.005)
+        sensor = ('%%YAML:1.0\nsensor_type: camera\nT_BS: {rows: 4, cols: 4, data: '
+                  '[0, 0, 1, 0.3, -1, 0, 0, %s, 0, -1, 0, 0, 0, 0, 0, 1]}\nresolution: [%d, %d]\n'
+                  'camera_model: pinhole\nintrinsics: [%d, %d, %d, %d]\ndistortion_model: none\n')
+        for name, y in (('a.yaml', 0), ('b.yaml', -BASELINE_M)):
+            (self.folder / name).write_text(
+                sensor % (y, *SIZE, F_PX, F_PX, SIZE[0] / 2, SIZE[1] / 2))
+        # the body looks along x; its camera moves to the right, so the body does to -y
+        (self.folder / 'data.csv').write_text('#timestamp, x, y, z\n' + ''.join(
+            f'{i + 1}000000000,7,{-i * STEP_M},0,1,0,0,0\n' for i in range(2)))
+        found = json.loads(self.done(*call, '--rig', 'a.yaml,b.yaml', '--truth', 'data.csv', '--json'))
+        self.assertLess(found['truth']['end_error_m'], 0.005)
+        self.refused(*call, '--rig', 'calib.txt', '--truth', 'data.csv', says='poses of the body')
+        self.refused(*call, '--rig', 'a.yaml', '--truth', 'data.csv', says='has 1 cameras, not two')
+        self.refused(*call, '--rig', 'a.yaml,calib.txt', says='is not of the format asl like a.yaml')
 
     def test_a_simulated_robot(self):
         plain = json.loads(self.done(*ROBOT, '--source', 'calibration=0', '--source',

@@ -93,12 +93,50 @@ class Plan(Base):
         self.assertEqual(plan['target']['quantity'], 'success')
         self.assertIn(impossible['reachable'], (True, False))
 
+    def test_too_few_trials_to_tell(self):
+        # At every scale at most 12 of 12 succeed, and the limits hold 0.97: nothing is known.
+        self.call('world', 'make', '--seed', '5', '--size-m', '10,8,2.5', '-o', 'w.world.toml')
+        words = ['plan', 'nominal', '--world', 'w.world.toml', '--trials', '12']
+        successes = [row['success'] for row in self.json(*words, '--success', '0.2')['success']]
+        self.assertLess(successes[0], 0.98)
+        plan = self.json(*words, '--success', '0.98', code=3)
+        if plan['success'][0]['success_interval_95'][1] >= 0.98:
+            self.assertIsNone(plan['reachable'])
+            self.assertIsNone(plan['views'])
+            self.assertIn('not known: ', self.call(*words, '--success', '0.98').stdout)
+        self.assertIsNone(plan['pixel_noise_sd_m'])
+
+    def test_at_least_three_views(self):
+        plan = self.json('plan', DATASHEET, '--board', '9x6', '--depth-error', '1000@5m')
+        self.assertEqual((plan['views'], plan['views_interval']), (3, [3, 3]))
+
+    def test_far_points(self):
+        # The depth error grows with the distance squared, however small the disparity.
+        sds = []
+        for at_m in (5e3, 5e4, 5e5):
+            done = self.call('plan', 'nominal', '--board', '9x6', '--depth-error', '1', '--at-m',
+                             at_m, '--json', '-q')
+            sds.append([row['sd'] for row in json.loads(done.stdout)['curve']
+                        if row['views'] == 20][0])
+        self.assertAlmostEqual(sds[1] / sds[0], 100, delta=2)
+        self.assertAlmostEqual(sds[2] / sds[1], 100, delta=2)
+
     def test_bad_input(self):
         self.refused('plan', 'nominal', about='no target given')
         self.refused('plan', 'nominal', '--depth-error', '1', '--success', '0.9',
                      about='more than one target')
         self.refused('plan', 'nominal', '--depth-error', '0.02@x', about='--depth-error')
-        self.refused('plan', 'nominal', '--depth-error', '0', about='not above 0')
+        self.refused('plan', 'nominal', '--depth-error', '0', about='"0" is not such as 0.02')
+        self.refused('plan', 'nominal', '--depth-error', '0.05@5km', about='"0.05@5km" is not such')
+        self.refused('plan', 'nominal', '--depth-error', 'nan', about='"nan" is not such')
+        self.refused('plan', 'nominal', '--depth-error', '1@7m', '--at-m', '3', about='--at-m')
+        self.refused('plan', 'nominal', '--depth-error', '1', '--at-m', '1e300', about='1e6 m')
+        self.refused('plan', 'nominal', '--depth-error', '1', '--world', 'workshop',
+                     about='--world: only valid with --success')
+        self.refused('plan', 'nominal', '--depth-error', '1', '--pixel-sigma', '1',
+                     about='--pixel-sigma: the calibration')
+        self.refused('plan', 'nominal', '--projection-error', '1', '--pair-sigma-px', '1',
+                     about='--pair-sigma-px: only valid with --depth-error')
         self.refused('plan', 'none.json', '--depth-error', '1', about='none.json')
         self.refused('plan', DATASHEET, '--board', '9by6', '--depth-error', '1', about='--board')
         self.refused('plan', 'nominal', '--success', '0.5', '--world', 'nowhere', about='nowhere')

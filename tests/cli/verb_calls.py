@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
@@ -49,6 +50,11 @@ yaw_deg = {20 * (i % 5)}
 
 STUDY = ('[study]\ntrials = 120\nprotocol = "near_path"\n[map]\nspacing_m = 2\n'
          '[world]\nfile = "posts.world.toml"\n[rig]\nfile = "nominal"\n[sweep]\n"sources.calibration" = [0, 1]\n')
+
+
+# Races the node spacing, and confirms in the same world seen from elsewhere.
+TUNE = (STUDY.replace('"sources.calibration" = [0, 1]', '"map.spacing_m" = [1, 2]') +
+        '[tune]\nconfirm_worlds = ["yard.world.toml"]\nconfirm_trials = 12\n')
 
 
 def matched_pairs():
@@ -113,6 +119,17 @@ def map_file(views):
             part(1, struct.pack('<2d', 1.2, 0) + rig) + part(2, nodes))
 
 
+def png16(rows):
+    """A PNG file of one channel of 16 bits."""
+    def chunk(kind, data):
+        return (struct.pack('>I', len(data)) + kind + data +
+                struct.pack('>I', zlib.crc32(kind + data)))
+    raw = b''.join(b'\0' + struct.pack(f'>{len(row)}H', *row) for row in rows)
+    head = struct.pack('>IIBBBBB', len(rows[0]), len(rows), 16, 0, 0, 0, 0)
+    return (b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', head) + chunk(b'IDAT', zlib.compress(raw)) +
+            chunk(b'IEND', b''))
+
+
 def write_inputs(folder):
     """What the calls read, made without the program."""
     folder = pathlib.Path(folder)
@@ -120,12 +137,15 @@ def write_inputs(folder):
         evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
     for name, rows in zip(('big_left', 'big_right', 'big_truth'), characterise_test.pair()):
         evaluate_test.write_pgm(folder / f'{name}.pgm', rows)
+    (folder / 'depth.png').write_bytes(png16([[2000] * evaluate_test.WIDTH] * evaluate_test.HEIGHT))
     (folder / 'rig.json').write_text(json.dumps(stereo_test.pinholes()))
     (folder / 'commands.csv').write_text('speed_mps,turn_radps,duration_s\n0.3,0.1,0.5\n')
     (folder / 'corners.csv').write_text('\n'.join(board_lines()))
     (folder / 'pairs.csv').write_text(matched_pairs())
     (folder / 'posts.world.toml').write_text(WORLD)
     (folder / 'study.toml').write_text(STUDY)
+    (folder / 'tune.toml').write_text(TUNE)
+    (folder / 'yard.world.toml').write_text(WORLD.replace('[5, 2]', '[6, 2]'))
     begun = folder / 'begun'
     begun.mkdir()
     (begun / 'study.toml').write_text(STUDY)
@@ -179,8 +199,11 @@ def calls():
         Call('render', ['render', '--world', 'posts.world.toml', '--pose', '3,2,90', '--samples', '1',
                         '-o', 'out'], ['out']),
         Call('study', ['study', 'study.toml', '-o', 'out', '--threads', '1'], ['out']),
+        Call('tune', ['tune', 'tune.toml', '-o', 'out', '--threads', '1'], ['out']),
         # A study without results, which the program alone can make: it says so.
         Call('export', ['export', 'begun', '-o', 'out.csv'], ['out.csv'], code=3),
+        Call('lines', ['lines', '--image', 'left.pgm', '--depth', 'depth.png', '--rig', 'rig.json',
+                       '--segments', 'out.segments', '-o', 'out.jsonl'], ['out.segments', 'out.jsonl']),
         Call('map', ['map', 'make', '--features', 'views.jsonl', '--rig', 'nominal', '-o', 'out.map'],
              ['out.map']),
         Call('map_info', ['map', 'info', 'known.map'], []),

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -127,6 +128,27 @@ TEST(CoarsePanoramas, ProductsAreWhole) {
 
 // Oracle: the search of all windows of all panoramas. The best pose is missed at most as often as
 // 5 of 200 queries in rooms that no constant was chosen on.
+// A calibration that is wrong enough has a negative focal length, or looks past its image.
+TEST(ViewRanker, AMapOfAnImpossibleRigHasAViewAllTheSame) {
+  for (const double f_px : {-300.0, 1e-9, 525.0}) {
+    for (const double centre_px : {-1e6, 320.0, 1e6}) {
+      PlaceView view = test::camera_view(around(3), {});
+      ASSERT_TRUE(view.rig);
+      Rig rig = *view.rig;
+      for (Camera& camera : rig.cameras) {
+        camera.parameters[0] = f_px;
+        camera.parameters[2] = centre_px;
+      }
+      view.rig = std::make_shared<const Rig>(rig);
+      TopologicalMap map;
+      map.nodes.push_back({{}, view});
+      const ViewRanker ranker(map);
+      EXPECT_GT(bearings_in_view(map), 0);
+      EXPECT_LE(ranker.rank(view, 4).size(), 4u);
+    }
+  }
+}
+
 TEST(ViewRanker, FindsWhatAFullSearchFinds) {
   TopologicalMap map;
   std::vector<std::vector<Panorama>> all;

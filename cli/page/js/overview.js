@@ -7,12 +7,15 @@ import { multiples_height, multiples_plot } from "./small_multiples.js";
 import { success_of } from "./sweep.js";
 import { swept_keys } from "./sweep_layout.js";
 
+/** More cells make a figure that nobody reads; each study has its own below. */
+const MOST_ROWS = 40;
+
 /** All cells of several studies in one figure and one table. */
 export function overview_section(studies) {
   const made = section("studies", "All studies", paragraph("Each study has its own queries: only"
     + " cells of one study are compared in pairs."));
   const together = joined(studies);
-  const drawn = figure("Success in all studies", "Dots: success rate of a cell; bars: 95 %"
+  const drawn = together.cells.length <= MOST_ROWS && figure("Success in all studies", "Dots: success rate of a cell; bars: 95 %"
     + " intervals.", "Success rate with 95 per cent intervals of all cells of all studies; values"
     + " are in the table below.", () => multiples_height(together),
   () => multiples_plot(together, success_of(together)));

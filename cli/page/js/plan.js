@@ -67,7 +67,8 @@ function world_words(world) {
 function plan_words(cell) {
   const trials = cell.trial_list.map(trial_of);
   const number = (outcome) => trials.filter((t) => t.outcome === outcome).length;
-  return `${cell.label ? `${cell.label}: ` : ""}${count(trials.length)} queries shown:`
+  const first = cell.trials > trials.length ? `, the first of ${count(cell.trials)}` : "";
+  return `${cell.label ? `${cell.label}: ` : ""}${count(trials.length)} queries shown${first}:`
     + ` ${count(number("success"))} localised within 1 m, ${count(number("failure"))} wrong and`
     + ` ${count(number("silent"))} unanswered.`;
 }

@@ -55,12 +55,13 @@ ViewKnowledge counting(int taken, double noise_px = 1, double log_sd = 0) {
 const char* const counted = "left.f_px";  // the first parameter
 
 TEST(ViewsNeeded, ViewsOfEqualInformationFollowTheSquareRootLaw) {
-  for (const int n : {1, 7, 80, 101, 500, 1999}) {
+  for (const int n : {3, 7, 80, 101, 500, 1999}) {
     const ViewsNeeded needed = views_needed(counting(1), counted, 1, 1.000001 / std::sqrt(n));
     EXPECT_EQ(needed.views, n);
     EXPECT_EQ(needed.interval, (Interval{double(n), double(n)}));
     EXPECT_TRUE(needed.is_reached);
   }
+  EXPECT_EQ(views_needed(counting(1), counted, 1, 10).views, 3);  // the fewest to calibrate
   const auto after = sd_after(counting(4, 3), counted, 1, {4, 9, 900});
   EXPECT_NEAR(after[0].sd, 1.5, 1e-12);
   EXPECT_NEAR(after[1].sd, 1, 1e-12);
@@ -229,5 +230,20 @@ TEST(ViewsNeeded, TakingTheViewsReachesTheTargetWithinTheInterval) {
   EXPECT_GE(within, 12);
 }
 
+// What the calibration states, prior included, is what a plan says of the views so far.
+TEST(ViewsNeeded, PriorsCount) {
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 77, .frames = 8});
+  CalibrationOptions how{.model = Radial1{}};
+  how.known = {{"left.f_px", test::stereo_rig().cameras[0].f_px(), 0.1},
+               {"right.f_px", test::stereo_rig().cameras[1].f_px(), 0.1}};
+  const auto sd_so_far = [&](const CalibrationOptions& options) {
+    const RigEstimate estimate = calibrate(board.observations, options);
+    return sd_after(knowledge_of(estimate, 1, "rig"), "left.f_px", 5, {8})[0].sd;
+  };
+  EXPECT_LT(sd_so_far(how), 0.1);
+  EXPECT_GT(sd_so_far({.model = Radial1{}}), 0.3);
+}
+
 }  // namespace
+
 }  // namespace vernier

@@ -79,6 +79,14 @@ TEST(SplitHalves, FewFramesAreRefused) {
   EXPECT_THROW(compare_split_halves(board.observations), Error);
 }
 
+// Both halves would have it, and their difference is smaller than their covariances state.
+TEST(SplitHalves, APriorIsRefused) {
+  const auto board = simulate_board(test::stereo_rig(), {}, {.seed = 464, .frames = 12});
+  CalibrationOptions how{.model = Radial1{}};
+  how.known = {{"left.f_px", test::stereo_rig().cameras[0].f_px(), 5}};
+  EXPECT_THROW(compare_split_halves(board.observations, {.splits = 2, .calibration = how}), Error);
+}
+
 }  // namespace
 
 }  // namespace vernier

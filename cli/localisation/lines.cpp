@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/base/error_place.h"
+#include "calib/base/file_in_progress.h"
+#include "calib/base/output_files.h"
+#include "calib/camera.h"
+#include "calib/error.h"
+#include "calib/pose.h"
+#include "calib/rig.h"
+#include "calib/statistics/quantile.h"
+#include "cli/program/camera_images.h"
+#include "cli/program/option_checks.h"
+#include "cli/program/output_check.h"
+#include "cli/program/rig_input.h"
+#include "cli/program/session.h"
+#include "localise/place.h"
+#include "localise/view_file.h"
+#include "localise/views/camera_poses.h"
+#include "localise/views/depth_view.h"
+#include "stereo/corners/match_images.h"
+#include "stereo/grey_levels.h"
+#include "stereo/image/depth_image.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
+
+namespace vernier::cli {
+namespace {
+
+struct LinesArguments {
+  std::string image, depth, rig, poses, up = "z", output, segments;
+  double height_m = 1.2, pitch_deg = 0, roll_deg = 0, depth_unit_m = 0.001;
+  DepthViewOptions how;
+};
+
+/// What was found in the images.
+struct LinesFigures {
+  std::vector<double> lines, sigmas_m;
+  std::size_t segments = 0, placed = 0;
+};
+
+/// The axis that points up in the world of the poses, and its sign.
+std::pair<int, int> up_axis(const std::string& word) {
+  const bool down = word.starts_with('-');
+  const std::string axis = word.substr(down ? 1 : 0);
+  if (axis != "x" && axis != "y" && axis != "z") {
+    throw Error("--up", "is no axis of the world", "give x, y, z, -x, -y or -z");
+  }
+  return {axis[0] - 'x', down ? -1 : 1};
+}
+
+/// The turn of a camera against a level one, from its pitch and roll.
+Eigen::Matrix3d turn_of(const LinesArguments& o) {
+  constexpr double degree = std::numbers::pi / 180;
+  const Pose level = T_robot_camera({1, 0}), pitched = T_robot_camera({1, o.pitch_deg * degree});
+  return level.R.transpose() * pitched.R * rotation_from_vector({0, 0, o.roll_deg * degree});
+}
+
+Camera camera_of(const LinesArguments& options, const std::string& image, Session& session) {
+  const ReadRig read = read_named_rig(options.rig, session, image);
+  if (read.estimate.rig.cameras.size() > 1) {
+    session.info(fmt::format("{}: its first camera, \"{}\", is taken", options.rig,
+                             read.estimate.rig.cameras[0].name));
+  }
+  return read.estimate.rig.cameras.at(0);
+}
+
+/// Pixels and both ends in the camera's frame, with their covariance: a x, y, z, then b.
+std::string segments_line(const std::string& image, const DepthSegments& segments) {
+  Json list = Json::array();
+  const auto vector = [](const auto& v) { return Json(std::vector<double>(v.begin(), v.end())); };
+  for (std::size_t i = 0; i < segments.image.size(); ++i) {
+    const MeasuredSegment& s = segments.in_space[i];
+    if (s.status != SegmentStatus::placed) continue;
+    Json covariance = Json::array();
+    for (int row = 0; row < 6; ++row) {
+      const Eigen::Matrix<double, 6, 1> values = s.independent_m2.row(row);
+      covariance.push_back(vector(values));
+    }
+    const auto& px = segments.image[i];
+    list.push_back({{"image_px", {px.a_px.x(), px.a_px.y(), px.b_px.x(), px.b_px.y()}},
+                    {"a_m", vector(s.segment.a_m)},
+                    {"b_m", vector(s.segment.b_m)},
+                    {"covariance_m2", covariance},
+                    {"reliable", s.segment.reliable}});
+  }
+  return Json{{"image", image}, {"segments", list}}.dump() + "\n";
+}
+
+/// Where the camera stands at an image, as far as it is known.
+struct Stance {
+  std::optional<Pose2D> pose;
+  double height_m = 0;
+  Eigen::Matrix3d R_level_camera;
+};
+
+std::vector<Stance> stances(const LinesArguments& options, const std::vector<ImageFiles>& files) {
+  std::vector<Stance> all;
+  if (options.poses.empty()) {
+    all.assign(files.size(), {{}, options.height_m, turn_of(options)});
+    return all;
+  }
+  std::vector<std::filesystem::path> images;
+  for (const ImageFiles& pair : files) images.push_back(pair.left);
+  const CameraPoses read = read_camera_poses(options.poses);
+  if (read.of_body) {
+    throw Error(options.poses, "holds poses of the body, not of the camera",
+                "give those of the camera");
+  }
+  const auto [axis, sign] = up_axis(options.up);
+  const std::vector<Pose> poses = poses_of_images(read, images, options.poses);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const LevelPose level = level_pose(poses[i], axis, sign, images[i].string());
+    all.push_back({level.pose, options.height_m + level.height_m, level.R_level_camera});
+    if (!(all.back().height_m > 0)) {
+      throw Error(images[i].string(),
+                  fmt::format("its camera is {:.2f} m above the floor", all.back().height_m),
+                  "give the height of the poses' origin above the floor, --height-m, and --up");
+    }
+  }
+  return all;
+}
+
+void check(const LinesArguments& options, const CLI::App& verb) {
+  up_axis(options.up);
+  constexpr std::array of_poses{"--up"};
+  constexpr std::array of_mount{"--pitch-deg", "--roll-deg"};
+  if (options.poses.empty()) refuse_options(verb, of_poses, "no poses are given");
+  if (!options.poses.empty()) refuse_options(verb, of_mount, "the poses say how the camera looks");
+}
+
+void check_outputs(const LinesArguments& options, const std::vector<ImageFiles>& files) {
+  std::vector<std::filesystem::path> inputs = files_of_named_rig(options.rig);
+  if (!options.poses.empty()) inputs.emplace_back(options.poses);
+  for (const ImageFiles& pair : files) inputs.insert(inputs.end(), {pair.left, pair.right});
+  check_output_is_not_input(inputs, options.output);
+  if (options.segments.empty()) return;
+  check_output_is_not_input(inputs, options.segments);
+  check_different("--segments", options.segments, options.output);
+}
+
+void report(const LinesArguments& options, const LinesFigures& f, Session& session) {
+  const auto median = [](const std::vector<double>& v) {
+    return v.empty() ? 0 : quantile(v, 0.5, QuantileKind::linear);
+  };
+  if (median(f.lines) == 0) {
+    session.add_trust_warning(
+        "most images have no reliable line in space: check that the depth maps are aligned with "
+        "the images, and their unit, --depth-unit-m");
+  }
+  Json json{{"images", f.lines.size()},
+            {"segments", f.segments},
+            {"placed", f.placed},
+            {"lines_median", median(f.lines)},
+            {"depth_sigma_median_m", median(f.sigmas_m)},
+            {"doubts", session.trust_warnings()},
+            {"output", options.output}};
+  session.result(
+      json, fmt::format("{} images: {} segments, {} of them with depths; {:.0f} reliable lines an "
+                        "image (median), standard deviation {:.3g} m\nwritten to {}\n",
+                        f.lines.size(), f.segments, f.placed, median(f.lines), median(f.sigmas_m),
+                        options.output));
+}
+
+void run(const LinesArguments& options, const CLI::App& verb, Session& session) {
+  check(options, verb);
+  const std::vector<ImageFiles> files = paired_images(options.image, options.depth);
+  check_outputs(options, files);
+  const Camera camera = camera_of(options, files.front().left.string(), session);
+  const auto rig = std::make_shared<const Rig>(rig_of({{camera, Pose{}}}));
+  const std::vector<Stance> all = stances(options, files);
+  OutputFiles outputs;
+  FileInProgress& views = outputs.add(options.output);
+  FileInProgress* const segments_file = outputs.add_wanted(options.segments);
+  LinesFigures figures;
+  Progress progress(session, "images");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const GreyLevels image = read_image(files[i].left.string(), session);
+    const DepthImage depth = read_depth_image(files[i].right, options.depth_unit_m);
+    const DepthSegments segments = with_errors_of(files[i].left.string(), [&] {
+      return depth_segments(camera, image, depth, options.how.noise);
+    });
+    RecordedLooks seen;
+    seen.pose = all[i].pose;
+    seen.looks.push_back(
+        {level_view(camera, segments, all[i].R_level_camera, all[i].height_m, options.how.lines),
+         0});
+    seen.looks[0].view.rig = rig;  // the level camera: the same pinhole
+    figures.segments += segments.image.size();
+    for (const MeasuredSegment& s : segments.in_space) {
+      figures.placed += s.status == SegmentStatus::placed;
+    }
+    figures.lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
+    for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);
+    views.append(view_line(seen));
+    if (segments_file) {
+      segments_file->append(segments_line(files[i].left.filename().string(), segments));
+    }
+    progress.update(static_cast<int>(i + 1), static_cast<int>(files.size()));
+  }
+  outputs.commit();
+  report(options, figures, session);
+}
+
+}  // namespace
+
+void add_lines(CLI::App& app, Session& session) {
+  auto o = std::make_shared<LinesArguments>();
+  CLI::App* verb = add_verb(app, session, "lines",
+                            "find lines in space in images with depth maps, as views for a map",
+                            "vernier lines --image 'walk/*.png' --depth 'depth/*.png' --rig K.txt "
+                            "--poses poses.csv --up y "
+                            "--height-m 1.6 -o walk.jsonl\n"
+                            "  vernier map make --features walk.jsonl -o walk.map");
+  verb->add_option("--image", o->image, "images (quoted pattern)")->required();
+  verb->add_option(
+          "--depth", o->depth,
+          "depth maps aligned with them, PNG of 16 bits (quoted pattern); paired by number")
+      ->required();
+  verb->add_option("--rig", o->rig, "the pinhole camera: a rig of any format, or a 3 x 3 matrix")
+      ->required();
+  verb->add_option("--depth-unit-m", o->depth_unit_m, "unit of the depth maps, metres")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  verb->add_option("--depth-sigma-m", o->how.noise.floor_m, "noise of a depth, metres")
+      ->check(CLI::Range(1e-6, 10.0))
+      ->capture_default_str();
+  verb->add_option("--depth-sigma-per-m2", o->how.noise.per_m2,
+                   "error of a depth that an edge's pixels share, of its square, 1/m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--poses", o->poses,
+                   "where the camera was: TUM, KITTI, matrices by image, or a COLMAP model");
+  verb->add_option("--up", o->up, "axis of the poses' world that points up: x, y, z, -x, -y or -z")
+      ->capture_default_str();
+  verb->add_option("--height-m", o->height_m,
+                   "of the camera above the floor; with --poses: of their origin")
+      ->check(CLI::Range(-1000.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option("--pitch-deg", o->pitch_deg, "camera pitch without poses; positive is down")
+      ->check(CLI::Range(-80.0, 80.0))
+      ->capture_default_str();
+  verb->add_option("--roll-deg", o->roll_deg, "camera roll without poses; positive is clockwise")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  verb->add_option("--segments", o->segments,
+                   "also write all segments with the covariance of both ends, a line an image");
+  verb->add_option("-o,--output", o->output, "file of views, for map make and localise --features")
+      ->required();
+  verb->callback(
+      [o, verb, &session] { session.action = [=, &session] { run(*o, *verb, session); }; });
+}
+
+}  // namespace vernier::cli

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The Vernier authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/simulation/study_run.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "cli/program/ending_signals.h"
+#include "cli/program/session.h"
+#include "cli/simulation/folder_claim.h"
+#include "sim/sources.h"
+#include "sim/study/cell_summary.h"
+#include "sim/study/study.h"
+#include "sim/told/fresh_calibrations.h"
+
+namespace vernier::cli {
+
+void run_in_folder(const FolderClaim& claim,
+                   const Study& study,
+                   StudyRun job,
+                   const std::string& what,
+                   Session& session) {
+  const StopSignal stop;
+  int blocks_done = 0;
+  job.stop = stop.token();
+  std::optional<Progress> ceilings, blocks;
+  job.ceiling_progress = [&](int done, int total) {
+    if (!ceilings) ceilings.emplace(session, what + ": world ceiling queries");
+    ceilings->update(done, total);
+  };
+  job.progress = [&](int done, int total) {
+    ceilings.reset();
+    if (!blocks) blocks.emplace(session, what + ": blocks");
+    blocks->update(done, total);
+    blocks_done = done;
+  };
+  const auto end = [&] {
+    blocks.reset();
+    claim.withdraw(job.shard);
+    stop.end(fmt::format("after {} blocks, which are stored; go on with: {}", blocks_done,
+                         session.command));
+  };
+  job.on_stop = end;
+  try {
+    run_study(study, job);
+  } catch (...) {
+    claim.withdraw(job.shard);
+    throw;
+  }
+  if (stop.came()) end();
+}
+
+void tell_failed_trials(const StudyResults& results, Session& session) {
+  for (const CellResult& cell : results.cells) {
+    const int failed = summarise(cell).failed;
+    if (failed == 0) continue;
+    const SourceSettings& sources = cell.cell.experiment.sources;
+    if (cell.calibrations && cell.calibrations->failed > 0) {  // a result, and the table has it
+      session.warn(
+          fmt::format("{} of {} trials of cell \"{}\" have failed: their calibrations, or "
+                      "those of their maps, did",
+                      failed, cell.trials.size(), cell.cell.label));
+      continue;
+    }
+    session.add_trust_warning(fmt::format(
+        "{} failed in {} of {} trials of cell \"{}\"; vernier localise with the same "
+        "settings says why",
+        sources.command.empty() && sources.own.empty() ? "the localiser"
+                                                       : "the localiser or a source of error",
+        failed, cell.trials.size(), cell.cell.label));
+  }
+}
+
+}  // namespace vernier::cli

@@ -137,9 +137,9 @@ TEST(CornerNoise, MotionsOfFramesAreTold) {
 }
 
 // Boards with a shape that move, white noise: the error of the rig, in the usual calibration's
-// standard deviations, and the squared Mahalanobis distance of the truth, over 24 sets of 14 views.
+// standard deviations, and the squared Mahalanobis distance of the truth, over 16 sets of 14 views.
 TEST(RandomEffects, RigsAreCloserToTheTruthAndSayHowClose) {
-  constexpr int sets = 24;
+  constexpr int sets = 16;
   const CornerNoise noise{.white_px = 0.1,
                           .motion_rad = 1.3e-3,
                           .motion_m = 3e-4,

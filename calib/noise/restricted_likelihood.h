@@ -73,7 +73,11 @@ class RestrictedLikelihood {
   Eigen::VectorXd logs(const CornerNoise& noise) const;
   CornerNoise noise(const Eigen::VectorXd& logs) const;
 
-  enum class Want { gradient, solution };
+  enum class Want {
+    gradient,  ///< no pose steps
+    step,      ///< no gradient and no motions
+    solution   ///< everything
+  };
   /// Throws Error if poses or rig are not determined.
   NoiseSolution at(const CornerNoise& noise, Want want) const;
 

@@ -16,6 +16,7 @@
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/frame_rows.h"
 #include "calib/noise/restricted_likelihood.h"
+#include "calib/noise/rig_knowledge.h"
 #include "calib/noise/scaled_factor.h"
 #include "calib/pose.h"
 #include "calib/rig.h"
@@ -50,23 +51,11 @@ class EffectsProblem {
       shaped.target_m[i] += shape_m.segment<3>(3 * static_cast<Index>(i));
     }
     const MatrixXd E = free(state.rig);
-    return {frame_rows(shaped, state, E), observations_.target_m, parts_, knowledge(state.rig, E),
-            shape_m};
+    return {frame_rows(shaped, state, E), observations_.target_m, parts_,
+            knowledge_of_priors(priors_, state.rig, E, E.cols()), shape_m};
   }
 
  private:
-  RigKnowledge knowledge(const Rig& rig, const MatrixXd& E) const {
-    if (priors_.empty()) return {};
-    RigKnowledge all{MatrixXd::Zero(E.cols(), E.cols()), VectorXd::Zero(E.cols())};
-    for (const RigPrior& prior : priors_) {
-      const PriorOffset offset = prior_offset(prior, rig);
-      const MatrixXd J = offset.by_rig * E;
-      all.information += J.transpose() * prior.information * J;
-      all.score += J.transpose() * prior.information * offset.delta;
-    }
-    return all;
-  }
-
   const BoardObservations& observations_;
   const std::vector<bool>& held_;
   const std::vector<RigPrior>& priors_;

@@ -11,6 +11,7 @@
 #include "calib/noise/corner_noise.h"
 #include "calib/noise/field_spectrum.h"
 #include "calib/noise/frame_rows.h"
+#include "calib/noise/rig_knowledge.h"
 #include "calib/noise/rotated_frame.h"
 #include "calib/noise/scaled_factor.h"
 #include "calib/solver/normal_equations.h"

@@ -225,6 +225,12 @@ class Localise(verb_calls.ProgramCase):
         self.refused('localise', 'rooms.map', '--left', 'left.pgm', '--rig', 'rig.json', says='one camera')
         self.refused('localise', 'rooms.map', '--world', 'workshop', '--rig', 'rig.json', '--source',
                      'none', says='another rig')
+        rig = json.loads((ROOT / 'datasets/rigs/nominal.rig.json').read_text())
+        for camera in rig['cameras']:
+            camera['parameters']['k1'] = 0.4
+        cameras = {key: rig[key] for key in ('format', 'version', 'cameras')}
+        (self.folder / 'wide.json').write_text(json.dumps(cameras))
+        self.refused(*ask[:4], '--rig', 'wide.json', says='another lens')
         self.refused('localise', 'rooms.map', '--features', 'q.jsonl', '--rig', 'nominal', '-o',
                      'rooms.map', says='rooms.map')
         self.refused('map', 'make', '--features', 'rooms.jsonl', says='no map is named')

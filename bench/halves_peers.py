@@ -10,15 +10,18 @@ without --no-evidence). Each split deals the frames that both cameras see whole 
 calibrates both, all with the same model and the same corners:
 
   vernier            `vernier calibrate`
+  warp               `vernier calibrate --warp`
   shape and motion   `vernier calibrate --board-shape --motion`
   mrcal              mrcal.optimize with the settings of mrcal-calibrate-cameras: board warp, outlier
-                     rejection, regularisation
+                     rejection, regularisation (a weak prior: centre in the middle, no distortion)
+  mrcal, no prior    the same without regularisation
   opencv             calibrateCamera for each eye, then stereoCalibrate from there, everything free
 
 The difference of a parameter is measured in standard deviations that RIG.json states for it. Prints the root
 mean square over splits and parameters, also of intrinsics and of the other camera's pose alone, and each
 divided by Vernier's. Halves say how much what is estimated scatters; an error that all views share is not
-seen. mrcal and OpenCV 4.6 run in this process (python3-mrcal, python3-opencv).
+seen, nor the bias of a prior that both halves have. mrcal and OpenCV 4.6 run in this process
+(python3-mrcal, python3-opencv).
 """
 import argparse
 import csv
@@ -93,7 +96,7 @@ def by_vernier(program, views, frames, folder, options):
     return np.array(json.loads((folder / 'half.json').read_text())['parameters'])
 
 
-def by_mrcal(views, frames):
+def by_mrcal(views, frames, regularise):
     intrinsics, rotation, translation = to_opencv(views.start)
     rows = len(views.target) // views.columns
     observed = np.ones((2 * len(frames), rows, views.columns, 3))
@@ -113,7 +116,7 @@ def by_mrcal(views, frames):
         calobject_warp=np.zeros(2), calibration_object_spacing=views.spacing,
         do_optimize_intrinsics_core=True, do_optimize_intrinsics_distortions=True,
         do_optimize_extrinsics=True, do_optimize_frames=True, do_optimize_calobject_warp=True,
-        do_apply_regularization=True, do_apply_outlier_rejection=True, verbose=False)
+        do_apply_regularization=regularise, do_apply_outlier_rejection=True, verbose=False)
     mrcal.optimize(**problem)
     pose = problem['extrinsics_rt_fromref'][0]
     return from_opencv(problem['intrinsics'], pose[:3], pose[3:])
@@ -148,9 +151,11 @@ def main():
         folder = pathlib.Path(name)
         tools = {
             'vernier': lambda half: by_vernier(options.program, views, half, folder, []),
+            'warp': lambda half: by_vernier(options.program, views, half, folder, ['--warp']),
             'shape and motion': lambda half: by_vernier(options.program, views, half, folder,
                                                         ['--board-shape', '--motion']),
-            'mrcal': lambda half: by_mrcal(views, half),
+            'mrcal': lambda half: by_mrcal(views, half, True),
+            'mrcal, no prior': lambda half: by_mrcal(views, half, False),
             'opencv': lambda half: by_opencv(views, half)}
         z = {tool: [] for tool in tools}
         for _ in range(options.splits):

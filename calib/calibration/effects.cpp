@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <vector>
 
+#include "calib/board/board_warp.h"
 #include "calib/board_observations.h"
 #include "calib/board_state.h"
 #include "calib/calibrate.h"
@@ -18,14 +20,18 @@
 namespace vernier::internal {
 namespace {
 
-/// The components and the shape of a minimum.
-CalibrationEffects effects_of(const EffectsMinimum& minimum) {
+/// The components and the shape of a minimum, warp and the rest of it together.
+CalibrationEffects effects_of(const EffectsMinimum& minimum,
+                              const std::vector<Eigen::Vector3d>& target_m) {
   const CornerNoise& noise = minimum.noise.noise;
   CalibrationEffects effects{
       noise.white_px, noise.field_px,      noise.field_length_m, noise.motion_rad,
       noise.motion_m, noise.shape_plane_m, noise.shape_height_m, {}};
-  for (Eigen::Index i = 0; i + 2 < minimum.shape_m.size(); i += 3) {
-    effects.shape_m.emplace_back(minimum.shape_m.segment<3>(i));
+  if (minimum.shape_m.size() == 0) return effects;
+  const std::vector<Eigen::Vector3d> warped = warped_target(target_m, minimum.state.warp_m);
+  for (std::size_t i = 0; i < target_m.size(); ++i) {
+    effects.shape_m.emplace_back(warped[i] - target_m[i] +
+                                 minimum.shape_m.segment<3>(3 * static_cast<Eigen::Index>(i)));
   }
   return effects;
 }
@@ -64,7 +70,7 @@ void move_to_effects(const CalibrationOptions& options,
   state = minimum.state;
   cost.free = minimum.free;
   cost.equations = minimum.equations;
-  summary.effects = effects_of(minimum);
+  summary.effects = effects_of(minimum, observations.target_m);
   if (minimum.converged) return;
   summary.trust_warnings.push_back(
       "no minimum with the board's shape and motion was found; calibrate without --board-shape "

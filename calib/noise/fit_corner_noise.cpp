@@ -109,6 +109,13 @@ CornerNoise default_start(const RestrictedLikelihood& likelihood, double spacing
   return start;
 }
 
+/// Two variances, each on the edge of its range.
+ComponentTest two_variances_test(double minus_two_log, double minus_two_log_without) {
+  const double ratio = std::max(0.0, minus_two_log_without - minus_two_log);
+  if (!(ratio > 0)) return {};
+  return {ratio, 0.5 * chi_squared_survival(ratio, 1) + 0.25 * chi_squared_survival(ratio, 2)};
+}
+
 }  // namespace
 
 NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
@@ -140,9 +147,11 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
 }
 
 ComponentTest motion_test(double minus_two_log, double minus_two_log_without) {
-  const double ratio = std::max(0.0, minus_two_log_without - minus_two_log);
-  if (!(ratio > 0)) return {};
-  return {ratio, 0.5 * chi_squared_survival(ratio, 1) + 0.25 * chi_squared_survival(ratio, 2)};
+  return two_variances_test(minus_two_log, minus_two_log_without);
+}
+
+ComponentTest shape_test(double minus_two_log, double minus_two_log_without) {
+  return two_variances_test(minus_two_log, minus_two_log_without);
 }
 
 ComponentTest field_test(double minus_two_log, double minus_two_log_without) {

@@ -33,6 +33,7 @@ NoiseFit fit_corner_noise(const RestrictedLikelihood& likelihood,
 /// chi-squared variables (Self and Liang 1987; Stram and Lee 1994):
 ///
 ///     motion   ¼ χ²_0 + ½ χ²_1 + ¼ χ²_2
+///     shape    the same
 ///     field    ½ χ²_1 + ½ χ²_2     (ℓ has no meaning without a field, so this is an approximation
 ///                                   to the largest over ℓ: Davies 1987)
 struct ComponentTest {
@@ -41,6 +42,7 @@ struct ComponentTest {
 };
 
 ComponentTest motion_test(double minus_two_log, double minus_two_log_without);
+ComponentTest shape_test(double minus_two_log, double minus_two_log_without);
 ComponentTest field_test(double minus_two_log, double minus_two_log_without);
 
 }  // namespace vernier::internal

@@ -70,9 +70,9 @@ std::vector<FrameMotion> CornerNoiseEstimate::moved() const {
   constexpr double level = 0.01;
   std::vector<FrameMotion> moved;
   if (!motion || motion->p_value >= level) return moved;
-  const auto frames = static_cast<double>(fit.solution.motions.size());
+  const auto tests = static_cast<double>(fit.solution.motions.size());
   for (const FrameMotion& m : fit.solution.motions) {
-    if (chi_squared_survival(m.chi2, 6) * frames < level) moved.push_back(m);
+    if (chi_squared_survival(m.chi2, 6) * tests < level) moved.push_back(m);
   }
   return moved;
 }
@@ -82,7 +82,7 @@ CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
                                           bool tests) {
   const RestrictedLikelihood likelihood = noise_likelihood(estimate, parts);
   const double spacing_m = point_spacing_m(estimate.evidence->observations.target_m);
-  CornerNoiseEstimate result{fit_corner_noise(likelihood, spacing_m), {}, {}};
+  CornerNoiseEstimate result{fit_corner_noise(likelihood, spacing_m), {}, {}, {}};
   if (!tests) return result;
   const auto without = [&](bool NoiseParts::*part) {
     NoiseParts fewer = likelihood.parts();
@@ -93,6 +93,7 @@ CornerNoiseEstimate estimate_corner_noise(const RigEstimate& estimate,
   const double all = result.fit.solution.minus_two_log;
   if (likelihood.parts().motion) result.motion = motion_test(all, without(&NoiseParts::motion));
   if (likelihood.parts().field) result.field = field_test(all, without(&NoiseParts::field));
+  if (likelihood.parts().shape) result.shape = shape_test(all, without(&NoiseParts::shape));
   return result;
 }
 

@@ -23,9 +23,10 @@ struct CornerNoiseEstimate {
   NoiseFit fit;                         ///< with all parts asked for
   std::optional<ComponentTest> motion;  ///< nothing where it was not fitted
   std::optional<ComponentTest> field;
+  std::optional<ComponentTest> shape;
 
-  /// The frames whose motion stands out: each at 1 % over the number of frames (Bonferroni), so
-  /// that no frame of a set in which nothing moves is named in 99 % of such sets. Empty unless
+  /// The frames and cameras whose motion stands out: each at 1 % over their number (Bonferroni), so
+  /// that none of a set in which nothing moves is named in 99 % of such sets. Empty unless
   /// motions as a whole are there at 1 %.
   std::vector<FrameMotion> moved() const;
 };

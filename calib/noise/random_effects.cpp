@@ -32,7 +32,7 @@ using Eigen::VectorXd;
 
 constexpr double settled_sigmas = 1e-5;  // length of the last step, of rig and shape
 constexpr int most_steps = 12;
-constexpr int rounds = 2;  // of components and minimum
+constexpr int rounds = 3;  // of components and minimum
 
 class EffectsProblem {
  public:
@@ -43,6 +43,8 @@ class EffectsProblem {
       : observations_(observations), held_(held), priors_(priors), parts_(parts) {}
 
   MatrixXd free(const Rig& rig) const { return free_directions(rig, held_); }
+  /// The number of fixed effects beside the rig's: the warp of the board.
+  Index warps() const { return parts_.shape ? 2 : 0; }
 
   /// Linearised at this state and shape.
   RestrictedLikelihood at(const BoardState& state, const VectorXd& shape_m) const {
@@ -51,8 +53,9 @@ class EffectsProblem {
       shaped.target_m[i] += shape_m.segment<3>(3 * static_cast<Index>(i));
     }
     const MatrixXd E = free(state.rig);
-    return {frame_rows(shaped, state, E), observations_.target_m, parts_,
-            knowledge_of_priors(priors_, state.rig, E, E.cols()), shape_m};
+    const BoardWarp warp = parts_.shape ? BoardWarp::free : BoardWarp::known;
+    return {frame_rows(shaped, state, E, warp), observations_.target_m, parts_,
+            knowledge_of_priors(priors_, state.rig, E, E.cols() + warps()), shape_m};
   }
 
  private:
@@ -62,7 +65,8 @@ class EffectsProblem {
   NoiseParts parts_;
 };
 
-/// Moves state and shape by the Gauss–Newton step; its length in standard deviations.
+/// Moves state and shape by the Gauss–Newton step, of the rig's free directions, the warp and the
+/// shape; its length in standard deviations.
 double move(const NoiseSolution& s, const MatrixXd& free, BoardState& state, VectorXd& shape_m) {
   const Index n = free.cols();
   state.rig = retract(state.rig, free * s.step.head(n));
@@ -71,13 +75,16 @@ double move(const NoiseSolution& s, const MatrixXd& free, BoardState& state, Vec
         retract(state.T_first_board[f],
                 Eigen::Matrix<double, 6, 1>(s.pose_steps.col(static_cast<Index>(f))));
   }
-  if (shape_m.size() > 0) shape_m += s.step.tail(shape_m.size());
+  if (shape_m.size() > 0) {
+    state.warp_m += s.step.segment<2>(n);
+    shape_m += s.step.tail(shape_m.size());
+  }
   return std::sqrt(std::max(0.0, s.step.dot(s.equations.information * s.step)));
 }
 
-/// The shape eliminated: with z the rig and s the shape, the score of z is moved by X = S_zs
-/// S_ss⁻¹, M = [I, −X]ᵀ; each frame keeps its own term Mᵀ S_f M, and the shape's prior becomes X P
-/// Xᵀ.
+/// Warp and shape eliminated: with z the rig and s both of these, the score of z is moved by X =
+/// S_zs S_ss⁻¹, M = [I, −X]ᵀ; each frame keeps its own term Mᵀ S_f M, and the shape's prior becomes
+/// X P Xᵀ.
 void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimum& result) {
   const Index shape = all.information.rows() - rig;
   ReducedNormalEquations& z = result.equations;
@@ -95,6 +102,17 @@ void eliminate_shape(const ReducedNormalEquations& all, Index rig, EffectsMinimu
   z.prior_information = M.transpose() * all.prior_information * M;
   const MatrixXd P = all.prior_information.bottomRightCorner(shape, shape);
   result.by_shape = ScaledFactor(z.information, "the rig").inverse() * X * P;
+}
+
+/// The likelihood can have more than one maximum: from the last components and from the usual
+/// start.
+NoiseFit best_fit(const RestrictedLikelihood& likelihood,
+                  double spacing_m,
+                  const std::optional<CornerNoise>& last) {
+  NoiseFit fit = fit_corner_noise(likelihood, spacing_m);
+  if (!last) return fit;
+  NoiseFit from_last = fit_corner_noise(likelihood, spacing_m, last);
+  return from_last.solution.minus_two_log <= fit.solution.minus_two_log ? from_last : fit;
 }
 
 }  // namespace
@@ -115,7 +133,7 @@ EffectsMinimum minimise_with_effects(const BoardObservations& observations,
   }
   std::optional<CornerNoise> last;
   for (int round = 0; round < rounds; ++round) {
-    result.noise = fit_corner_noise(problem.at(result.state, result.shape_m), spacing_m, last);
+    result.noise = best_fit(problem.at(result.state, result.shape_m), spacing_m, last);
     last = result.noise.noise;
     result.converged = false;
     for (int i = 0; i < most_steps && !result.converged; ++i) {

@@ -17,7 +17,8 @@ namespace vernier::internal {
 /// The minimum of the unified cost with random effects.
 struct EffectsMinimum {
   BoardState state;
-  Eigen::VectorXd shape_m;           ///< of the board: x, y and z of every point; empty without
+  /// Of the board beyond its warp (state): x, y and z of every point; empty without.
+  Eigen::VectorXd shape_m;
   NoiseFit noise;                    ///< at it
   Eigen::MatrixXd free;              ///< free directions of the rig, parameters x free
   ReducedNormalEquations equations;  ///< of these, shape eliminated; its prior is in theirs
@@ -27,7 +28,8 @@ struct EffectsMinimum {
   bool converged = false;
 };
 
-/// Minimises over the rig a, a pose b_f in each frame, the board's shape s and a twist u_f of the
+/// Minimises over the rig a, a pose b_f in each frame, the board's warp (calib/board/board_warp.h;
+/// with a shape, and without a prior) and shape s, and a twist u_f of the
 /// board between the exposures of each frame
 ///
 ///     Σ_f |r_f(a, b_f, s, u_f)|²_{(w² I + g² K)⁻¹} + Σ_f (|u_rot|² / s_r² + |u_trans|² / s_t²)

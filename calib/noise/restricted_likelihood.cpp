@@ -120,19 +120,23 @@ double by_log_length(const FrameRows& rows,
   return sum;
 }
 
-/// The motion of one frame by G = Mᵀ P M and h = Mᵀ P r. The residuals are predictions minus
-/// pixels, so that a motion u adds −M u to them. Of the fixed effect β = −G⁻¹ h the covariance is
-/// G⁻¹, and G⁻¹ − S if nothing moved in this frame.
-FrameMotion motion_of(int frame, const MatrixXd& G, const VectorXd& h, const CornerNoise& noise) {
+/// The motion of one frame and camera by G = Mᵀ P M and h = Mᵀ P r. The residuals are predictions
+/// minus pixels, so that a motion u adds −M u to them. Of the fixed effect β = −G⁻¹ h the
+/// covariance is G⁻¹, and G⁻¹ − S if nothing moved in this frame.
+FrameMotion motion_of(int frame,
+                      int camera,
+                      const Eigen::Matrix<double, 6, 6>& G,
+                      const Eigen::Matrix<double, 6, 1>& h,
+                      const CornerNoise& noise) {
   FrameMotion motion;
   motion.frame = frame;
+  motion.camera = camera;
   Eigen::Matrix<double, 6, 1> S;
   S << Eigen::Vector3d::Constant(noise.motion_rad * noise.motion_rad),
       Eigen::Vector3d::Constant(noise.motion_m * noise.motion_m);
-  motion.predicted = -S.cwiseProduct(h.head<6>());
-  MatrixXd C =
-      solve_symmetric(MatrixXd(G.topLeftCorner<6, 6>()), MatrixXd(MatrixXd::Identity(6, 6)));
-  const VectorXd beta = C * h.head<6>();
+  motion.predicted = -S.cwiseProduct(h);
+  MatrixXd C = solve_symmetric(MatrixXd(G), MatrixXd(MatrixXd::Identity(6, 6)));
+  const VectorXd beta = C * h;
   C.diagonal() -= S;
   motion.chi2 = beta.dot(solve_symmetric(C, beta));
   return motion;
@@ -165,7 +169,13 @@ void RestrictedLikelihood::add_gradient(const Frame& frame,
     const double s = turns ? noise.motion_rad : noise.motion_m;
     result.gradient[k + (turns ? 0 : 1)] += 2 * s * s * (G(m, m) - h[m] * h[m]);
   }
-  result.motions.push_back(motion_of(frame.rows.frame, G, h, noise));
+  if (frame.rows.views.size() < 2) return;
+  for (const ViewRows& view : frame.rows.views) {
+    if (view.camera == 0) continue;
+    const Index at = 6 * (view.camera - 1);
+    result.motions.push_back(
+        motion_of(frame.rows.frame, view.camera, G.block<6, 6>(at, at), h.segment<6>(at), noise));
+  }
 }
 
 std::vector<const FieldSpectrum*> RestrictedLikelihood::of_views(

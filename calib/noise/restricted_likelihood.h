@@ -16,11 +16,12 @@
 
 namespace vernier::internal {
 
-/// Motion of the board before the exposure of the second camera, in one frame, relative to the
-/// first exposure; the first three of each are a rotation about the centre of the corners (rad),
+/// Motion of the board before the exposure of a further camera, in one frame, relative to that of
+/// the first camera; the first three of each are a rotation about the centre of the corners (rad),
 /// the others a translation (m), along the axes of the first camera.
 struct FrameMotion {
   int frame = 0;
+  int camera = 1;
   Eigen::Matrix<double, 6, 1> predicted;  ///< best linear prediction: shrunk by its prior
   double chi2 = 0;                        ///< against none in this frame; 6 degrees of freedom
 };
@@ -32,7 +33,8 @@ struct NoiseSolution {
   Eigen::VectorXd step;              ///< of the rig's free directions, then of the shape
   Eigen::MatrixXd pose_steps;        ///< 6 x frames
   ReducedNormalEquations equations;  ///< whitened, poses and motion eliminated; prior included
-  std::vector<FrameMotion> motions;  ///< of the second camera
+  /// Of every further camera in every frame that it sees and another sees too.
+  std::vector<FrameMotion> motions;
 };
 
 /// The restricted likelihood (Patterson and Thompson 1971; Harville 1977) of the corner noise of a

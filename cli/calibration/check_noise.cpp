@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/calibration/check_noise.h"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,28 +11,26 @@
 #include "calib/noise/fit_corner_noise.h"
 #include "calib/noise/noise_of_estimate.h"
 #include "calib/noise/restricted_likelihood.h"
+#include "calib/rig.h"
 #include "calib/rig_estimate.h"
 #include "calib/validation/held_out_boards.h"
 #include "cli/calibration/check_section.h"
+#include "cli/calibration/component_test.h"
 #include "cli/program/session.h"
 
 namespace vernier::cli {
 namespace {
 
-Json motion_json(const FrameMotion& motion) {
+Json motion_json(const FrameMotion& motion, const Rig& rig) {
   const auto& u = motion.predicted;
   return {{"frame", motion.frame},
+          {"camera", rig.cameras[static_cast<std::size_t>(motion.camera)].name},
           {"rotation_rad", {u[0], u[1], u[2]}},
           {"translation_m", {u[3], u[4], u[5]}},
           {"chi2", motion.chi2}};
 }
 
-Json test_json(const std::optional<ComponentTest>& test) {
-  if (!test) return nullptr;
-  return {{"likelihood_ratio", test->ratio}, {"p_value", test->p_value}};
-}
-
-Json noise_json(const CornerNoiseEstimate& found) {
+Json noise_json(const CornerNoiseEstimate& found, const Rig& rig) {
   const CornerNoise& noise = found.fit.noise;
   Json json{{"white_px", noise.white_px},
             {"field_px", noise.field_px},
@@ -46,16 +45,15 @@ Json noise_json(const CornerNoiseEstimate& found) {
   if (!found.motion) return json;
   json["motion_rad"] = noise.motion_rad;
   json["motion_m"] = noise.motion_m;
-  for (const FrameMotion& m : found.fit.solution.motions) json["motions"].push_back(motion_json(m));
-  for (const FrameMotion& m : found.moved()) json["moved"].push_back(m.frame);
+  for (const FrameMotion& m : found.fit.solution.motions)
+    json["motions"].push_back(motion_json(m, rig));
+  for (const FrameMotion& m : found.moved()) {
+    if (json["moved"].empty() || json["moved"].back() != m.frame) json["moved"].push_back(m.frame);
+  }
   return json;
 }
 
-std::string p_text(const ComponentTest& test) {
-  return test.p_value < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.4f}", test.p_value);
-}
-
-std::string noise_text(const CornerNoiseEstimate& found) {
+std::string noise_text(const CornerNoiseEstimate& found, const Rig& rig) {
   const CornerNoise& noise = found.fit.noise;
   std::string text = fmt::format(
       "corner noise by components: {:.3f} px white\n"
@@ -67,8 +65,10 @@ std::string noise_text(const CornerNoiseEstimate& found) {
       1e3 * noise.motion_m, 1e3 * noise.motion_rad, p_text(*found.motion));
   for (const FrameMotion& m : found.moved()) {
     text += fmt::format(
-        "  the board moved {:.1f} mm and turned {:.1f} mrad between the exposures of frame {}\n",
-        1e3 * m.predicted.tail<3>().norm(), 1e3 * m.predicted.head<3>().norm(), m.frame);
+        "  the board moved {:.1f} mm and turned {:.1f} mrad between the exposures of frame {}{}\n",
+        1e3 * m.predicted.tail<3>().norm(), 1e3 * m.predicted.head<3>().norm(), m.frame,
+        rig.cameras.size() > 2 ? ", camera " + rig.cameras[static_cast<std::size_t>(m.camera)].name
+                               : "");
   }
   return text;
 }
@@ -82,8 +82,8 @@ CheckSection check_corner_noise(const RigEstimate& estimate,
   const CornerNoiseEstimate found =
       estimate_corner_noise(estimate, {.motion = stand == BoardStand::hand_held});
   CheckSection part;
-  part.json = noise_json(found);
-  part.text = noise_text(found);
+  part.json = noise_json(found, estimate.rig);
+  part.text = noise_text(found, estimate.rig);
   if (!found.fit.converged) {
     part.failures.push_back(
         "the components of the corner noise were not found: their likelihood has no clear maximum; "

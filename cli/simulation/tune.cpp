@@ -17,7 +17,6 @@ namespace {
 
 void run(const TuneOptions& options, Session& session) {
   refuse_several_processes("tune");
-  if (options.folder.empty()) throw Error("tune", "no output folder given", "give -o DIR");
   const TuneResult result = tune_study(options, session);
   const Json json = tune_json(result);
   OutputFiles files;
@@ -36,7 +35,7 @@ void add_tune(CLI::App& app, Session& session) {
       "search the settings of a study's sweep by a race on shared trials, and confirm the best",
       "vernier tune FILE.toml -o DIR         # run, or go on with the search in DIR");
   verb->add_option("file", o->file, "study file with [sweep] and [tune]")->required();
-  verb->add_option("-o,--output", o->folder, "output folder");
+  verb->add_option("-o,--output", o->folder, "output folder")->required();
   verb->add_option("--threads", o->threads, "number of threads (0: all)")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

@@ -115,6 +115,7 @@ std::string difference_text(const TuneResult& result) {
   if (d.interval_95) {
     text += fmt::format(" [{:+.2f}, {:+.2f}], p {:.2g}", 100 * d.interval_95->low,
                         100 * d.interval_95->high, *d.p_value);
+    if (d.interval_95->low < 0 && d.interval_95->high > 0) text += ": not distinguished";
   }
   return text + "\n";
 }
@@ -205,6 +206,10 @@ std::string tune_text(const TuneResult& result) {
 
 std::string doubt_of(const TuneResult& result) {
   const ConfirmedDifference& d = result.difference;
+  if (!d.p_value && result.winner.candidate != result.reference.candidate) {
+    return "too few maps where it was not searched to tell the winner from others: give at least 6 "
+           "confirm_trials";
+  }
   if (!d.p_value || *d.p_value > 0.05 || d.difference >= 0) return {};
   return fmt::format(
       "the winner of the search is worse than candidate {} where it was not searched, by {:.2f} "

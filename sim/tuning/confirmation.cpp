@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/error.h"
 #include "calib/interval.h"
@@ -24,19 +26,18 @@ using namespace vernier::internal;
 
 namespace {
 
-/// Two cells trial by trial; each block of a cell, a map, is a round.
-void add_cell(const CellResult& a, const CellResult& b, Objective objective, PairedScores& all) {
-  struct MapScores {
-    std::vector<double> a, b;
-  };
-  std::map<std::uint32_t, MapScores> maps;
-  for (std::size_t i = 0; i < a.trials.size(); ++i) {
-    MapScores& map = maps[a.trials[i].trial / static_cast<std::uint32_t>(a.trials_per_block)];
-    map.a.push_back(score(objective, a.trials[i]));
-    map.b.push_back(score(objective, b.trials[i]));
-  }
-  for (const auto& [block, map] : maps) all.add_round(map.a, map.b);
+/// The recorded maps of a study: conditions of one world share them, block by block.
+using MapKey = std::pair<std::string, std::uint32_t>;  // world, block
+
+MapKey map_of(const CellResult& cell, const TrialResult& trial) {
+  return {cell.cell.world, trial.trial / static_cast<std::uint32_t>(cell.trials_per_block)};
 }
+
+/// Scores of two candidates in one trial, over the conditions of its world, which share its query.
+struct TrialScores {
+  double a = 0, b = 0;
+  int conditions = 0;
+};
 
 PairedScores paired(const StudyResults& a, const StudyResults& b, Objective objective) {
   const auto same = [](const CellResult& x, const CellResult& y) {
@@ -47,9 +48,24 @@ PairedScores paired(const StudyResults& a, const StudyResults& b, Objective obje
     throw Error("confirmation", "the candidates have not the same trials",
                 "confirm both on the same worlds, seed and number of trials");
   }
-  PairedScores all;
+  std::map<MapKey, std::map<std::uint32_t, TrialScores>> maps;
   for (std::size_t i = 0; i < a.cells.size(); ++i) {
-    add_cell(a.cells[i], b.cells[i], objective, all);
+    const CellResult &of_a = a.cells[i], &of_b = b.cells[i];
+    for (std::size_t k = 0; k < of_a.trials.size(); ++k) {
+      TrialScores& trial = maps[map_of(of_a, of_a.trials[k])][of_a.trials[k].trial];
+      trial.a += score(objective, of_a.trials[k]);
+      trial.b += score(objective, of_b.trials[k]);
+      ++trial.conditions;
+    }
+  }
+  PairedScores all;
+  for (const auto& [map, trials] : maps) {
+    std::vector<double> of_a, of_b;
+    for (const auto& [number, trial] : trials) {
+      of_a.push_back(trial.a / trial.conditions);
+      of_b.push_back(trial.b / trial.conditions);
+    }
+    all.add_round(of_a, of_b);
   }
   return all;
 }
@@ -62,15 +78,14 @@ CandidateFigures figures_of(const StudyResults& results,
                             int blocks) {
   CandidateFigures figures;
   std::map<std::string, ClusterCount> worlds;
-  std::vector<ClusterCount> maps;
+  std::map<MapKey, ClusterCount> maps;
   int successes = 0;
   for (const int number : cells) {
     const CellResult& cell = results.cells[static_cast<std::size_t>(number)];
-    std::map<std::uint32_t, ClusterCount> of_cell;
     for (const TrialResult& trial : cell.trials) {
-      const std::uint32_t block = trial.trial / static_cast<std::uint32_t>(cell.trials_per_block);
-      if (blocks >= 0 && static_cast<int>(block) >= blocks) continue;
-      for (ClusterCount* count : {&of_cell[block], &worlds[cell.cell.world]}) {
+      const MapKey map = map_of(cell, trial);
+      if (blocks >= 0 && static_cast<int>(map.second) >= blocks) continue;
+      for (ClusterCount* count : {&maps[map], &worlds[cell.cell.world]}) {
         ++count->trials;
         count->successes += trial.success();
       }
@@ -79,18 +94,18 @@ CandidateFigures figures_of(const StudyResults& results,
       figures.score += score(objective, trial);
       figures.cpu_s += trial.cpu_ms / 1000;
     }
-    for (const auto& [block, map] : of_cell) maps.push_back(map);
   }
   if (figures.trials == 0) return figures;
   figures.score /= figures.trials;
   figures.success = static_cast<double>(successes) / figures.trials;
-  figures.maps = static_cast<int>(maps.size());
-  std::vector<ClusterCount> of_worlds;
+  std::vector<ClusterCount> of_maps, of_worlds;
+  for (const auto& [map, count] : maps) of_maps.push_back(count);
   for (const auto& [world, count] : worlds) of_worlds.push_back(count);
+  figures.maps = static_cast<int>(of_maps.size());
   figures.worlds = static_cast<int>(of_worlds.size());
   figures.success_interval_95 = interval_over_worlds_95(of_worlds);
   figures.over_worlds = figures.success_interval_95.has_value();
-  if (!figures.over_worlds) figures.success_interval_95 = clustered_interval_95(maps);
+  if (!figures.over_worlds) figures.success_interval_95 = clustered_interval_95(of_maps);
   return figures;
 }
 

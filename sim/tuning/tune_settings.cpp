@@ -88,7 +88,11 @@ class TuneReader : private SettingsReader {
         fail(one, "tune.conditions: " + in_quotes(key) + " is not swept",
              "name a key of [sweep], such as \"sources.calibration\"");
       }
-      settings.conditions.push_back(key);
+      auto& conditions = settings.conditions;
+      if (std::find(conditions.begin(), conditions.end(), key) != conditions.end()) {
+        fail(one, "tune.conditions lists " + in_quotes(key) + " twice", "remove one");
+      }
+      conditions.push_back(key);
     }
   }
 

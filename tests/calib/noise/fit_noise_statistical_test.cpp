@@ -67,13 +67,15 @@ TEST(CornerNoise, ComponentsAreRecovered) {
 // White noise alone. The levels are nominal, and hold as upper bounds: 8 or more of 30 at a true
 // 5 % occur in 0.02 % of sets of trials.
 TEST(CornerNoise, AbsentComponentsAreSeldomFound) {
-  int motions = 0, fields = 0;
+  int motions = 0, fields = 0, shapes = 0;
   for (int t = 0; t < trials; ++t) {
     const RigEstimate estimate =
         simulated({.white_px = 0.15}, static_cast<std::uint32_t>(1000 + t));
     const CornerNoiseEstimate found = estimate_corner_noise(estimate, {});
     motions += found.motion->p_value < 0.05;
     fields += found.field->p_value < 0.05;
+    const auto with_shape = estimate_corner_noise(estimate, {.field = false, .shape = true});
+    shapes += with_shape.shape->p_value < 0.05;
     const CornerNoise& noise = found.fit.noise;  // a field of half a square is white noise
     EXPECT_NEAR(std::hypot(noise.white_px, noise.field_px), 0.15, 0.012);
     EXPECT_LT(noise.motion_m, 1.5e-4);
@@ -83,21 +85,30 @@ TEST(CornerNoise, AbsentComponentsAreSeldomFound) {
   }
   RecordProperty("false_motions", motions);
   RecordProperty("false_fields", fields);
+  RecordProperty("false_shapes", shapes);
   EXPECT_LT(motions, 8);
   EXPECT_LT(fields, 8);
+  EXPECT_LT(shapes, 8);
 }
 
-// Real ones are: motions of 0.5 mm and a field of half the white noise in every trial at 1 %.
+// Real ones are: motions of 0.5 mm, a field of half the white noise and heights of 0.2 mm in every
+// trial at 1 %.
 TEST(CornerNoise, PresentComponentsAreFound) {
   for (std::uint32_t t = 0; t < 8; ++t) {
     const CornerNoise noise{.white_px = 0.1,
                             .field_px = 0.05,
                             .field_length_m = 0.06,
                             .motion_rad = 3e-3,
-                            .motion_m = 5e-4};
-    const CornerNoiseEstimate found = estimate_corner_noise(simulated(noise, 2000 + t), {});
+                            .motion_m = 5e-4,
+                            .shape_height_m = t < 4 ? 2e-4 : 0};
+    const bool shape = noise.shape_height_m > 0;
+    const CornerNoiseEstimate found =
+        estimate_corner_noise(simulated(noise, 2000 + t), {.shape = shape});
     EXPECT_LT(found.motion->p_value, 0.01);
     EXPECT_LT(found.field->p_value, 0.01);
+    if (shape) {
+      EXPECT_LT(found.shape->p_value, 0.01);
+    }
   }
 }
 

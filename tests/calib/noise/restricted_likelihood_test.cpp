@@ -129,6 +129,19 @@ TEST(RestrictedLikelihood, IsThatOfDenseMatrices) {
   }
 }
 
+// So that the ratio of the two tests whether there is a shape.
+TEST(RestrictedLikelihood, OfNoShapeIsThatWithoutOne) {
+  const RigEstimate estimate = small_calibration();
+  const auto at = [&](bool shape, double shape_m) {
+    CornerNoise noise = all_parts;
+    noise.shape_plane_m = noise.shape_height_m = shape_m;
+    return noise_likelihood(estimate, {.shape = shape})
+        .at(noise, RestrictedLikelihood::Want::gradient)
+        .minus_two_log;
+  };
+  EXPECT_NEAR(at(true, 1e-9), at(false, 0), 1e-4);
+}
+
 TEST(RestrictedLikelihood, ItsGradientIsThatOfDifferences) {
   const RigEstimate estimate = small_calibration();
   for (const bool shape : {false, true}) {

@@ -131,5 +131,25 @@ TEST_F(RaceSearches, TheDifferenceOfAStudyAndItselfIsNone) {
   EXPECT_THROW(confirmed_difference(results, fewer, Objective::success), Error);
 }
 
+// Conditions of one world share its recorded maps: one that changes nothing adds no evidence.
+TEST_F(RaceSearches, ACopyOfAConditionNarrowsNothing) {
+  run_study(study_, {folder_ / "grid", 2, {}, {}, {}});
+  const StudyResults all = study_results(study_, folder_ / "grid");
+  StudyResults a, b;
+  a.cells = {all.cells[0]};
+  b.cells = {all.cells[3]};
+  const ConfirmedDifference once = confirmed_difference(a, b, Objective::success);
+  const CandidateFigures figures = figures_of(a, {0}, Objective::success);
+  for (StudyResults* results : {&a, &b}) results->cells.resize(6, results->cells[0]);
+  const ConfirmedDifference copied = confirmed_difference(a, b, Objective::success);
+  ASSERT_TRUE(once.interval_95);
+  EXPECT_NEAR(copied.difference, once.difference, 1e-12);
+  const auto width = [](const Interval& i) { return i.high - i.low; };
+  EXPECT_NEAR(width(*copied.interval_95), width(*once.interval_95), 1e-12);
+  const CandidateFigures six = figures_of(a, {0, 1, 2, 3, 4, 5}, Objective::success);
+  EXPECT_EQ(six.maps, figures.maps);
+  EXPECT_EQ(six.trials, 6 * figures.trials);
+}
+
 }  // namespace
 }  // namespace vernier

@@ -4,13 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "calib/base/atomic_file.h"
 #include "calib/base/shown_text.h"
+#include "calib/base/text_lines.h"
 #include "calib/camera.h"
 #include "calib/camera/opencv_intrinsics.h"
 #include "calib/error.h"
@@ -86,13 +89,22 @@ ImportedRig read_asl_sensors(const std::vector<std::filesystem::path>& files_or_
 std::vector<std::filesystem::path> asl_sensor_files(const std::filesystem::path& folder) {
   std::error_code fault;
   for (const std::filesystem::path& root : {folder, folder / "mav0"}) {
-    std::vector<std::filesystem::path> files;
-    for (int i = 0;; ++i) {
-      const std::filesystem::path file = root / fmt::format("cam{}", i) / "sensor.yaml";
-      if (!std::filesystem::is_regular_file(file, fault)) break;
-      files.push_back(file);
+    std::map<int, std::filesystem::path> by_number;  // cam0, cam1 …, some of which may be missing
+    for (std::filesystem::directory_iterator at(root, fault), end; !fault && at != end;
+         at.increment(fault)) {
+      const std::string name = at->path().filename().string();
+      const std::string digits = name.starts_with("cam") ? name.substr(3) : "";
+      const bool number = !digits.empty() && digits.size() <= 3 &&
+                          std::all_of(digits.begin(), digits.end(), is_digit);
+      const std::filesystem::path file = at->path() / "sensor.yaml";
+      if (number && std::filesystem::is_regular_file(file, fault)) {
+        by_number[std::stoi(digits)] = file;
+      }
     }
-    if (!files.empty()) return files;
+    if (by_number.empty()) continue;
+    std::vector<std::filesystem::path> files;
+    for (const auto& [number, file] : by_number) files.push_back(file);
+    return files;
   }
   return {};
 }

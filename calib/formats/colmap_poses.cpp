@@ -29,9 +29,9 @@ using rig_json::Json;
 using rig_json::Node;
 
 Pose pose(const Eigen::Vector4d& wxyz, const Eigen::Vector3d& t_m, const std::string& place) {
-  if (!(std::abs(wxyz.norm() - 1) <= 1e-6)) {
+  if (!(std::abs(wxyz.norm() - 1) <= 1e-2)) {
     throw Error(place, fmt::format("its quaternion has the length {}", wxyz.norm()),
-                "it must be 1 to 1e-6");
+                "it must be 1 to 1 %");
   }
   const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   return {q.normalized().toRotationMatrix(), t_m};

@@ -149,7 +149,17 @@ Eigen::Vector2i size_of(const Projection& projection,
   if (const auto stated = read.sizes.find(number); stated != read.sizes.end()) {
     return stated->second;
   }
-  if (options.size_px) return *options.size_px;
+  if (options.size_px) {
+    const Eigen::Vector2i size_px = *options.size_px;
+    const double x = projection.P(0, 2), y = projection.P(1, 2);
+    if (!(x >= 0 && x < size_px[0] && y >= 0 && y < size_px[1])) {
+      throw Error(projection.place,
+                  fmt::format("its centre, ({:.0f}, {:.0f}), is outside images of {}x{}", x, y,
+                              size_px[0], size_px[1]),
+                  "use the calibration of these images");
+    }
+    return size_px;
+  }
   throw Error(projection.place, "the file does not state the size of the images",
               "give it: convert FILE --size WxH -o rig.json");
 }

@@ -32,7 +32,7 @@ Json parse_rig_json(const std::string& text, const std::string& place) {
   } catch (const Error&) {
     if (text.find("vernier/rig") != std::string::npos) throw;
     throw Error(place, "is not a rig file",
-                "vernier convert reads Kalibr's, OpenCV's, ROS's and mrcal's files");
+                "vernier convert reads files of Kalibr, OpenCV, ROS, mrcal, COLMAP, ASL and KITTI");
   }
 }
 

@@ -100,7 +100,10 @@ class SplitOfBoards {
     ++result.splits;
     for (const int frame : frames) {
       const SeenPair& seen = seen_.at(frame);
-      if (seen.size() < 4) continue;
+      if (seen.size() < 4) {
+        ++result.boards_left_out;
+        continue;
+      }
       add(estimate, HeldOutBoard(observations_, frame, seen, estimate), noise.fit.noise,
           static_cast<int>(seen.size()), result);
     }

@@ -49,7 +49,7 @@ struct HeldOutBoardsResult {
   int splits = 0;            ///< that could be calibrated
   int failed = 0;            ///< that could not
   int boards = 0;            ///< predictions of a board
-  int boards_left_out = 0;   ///< with fewer than four triangulated corners, or without a pose
+  int boards_left_out = 0;   ///< fewer than four corners seen by both and triangulated, or no pose
   int corners_left_out = 0;  ///< not triangulated: diverging rays, or a pixel without a ray
   int noise_not_found = 0;   ///< splits whose fit of the corner noise did not converge
 };

@@ -26,10 +26,15 @@ std::string coverage_line(const std::string& what,
 
 /// The number of corners and boards that could not be predicted, if any.
 std::string without_a_point(const HeldOutBoardsResult& result) {
-  if (result.corners_left_out == 0) return "";
-  return fmt::format(
-      " (excluded: {} corners that do not triangulate, {} boards with too few corners)",
-      result.corners_left_out, result.boards_left_out);
+  std::string text;
+  if (result.corners_left_out > 0) {
+    text += fmt::format("{} corners that do not triangulate", result.corners_left_out);
+  }
+  if (result.boards_left_out > 0) {
+    text += fmt::format("{}{} boards of which both cameras see too few corners",
+                        text.empty() ? "" : ", ", result.boards_left_out);
+  }
+  return text.empty() ? text : " (excluded: " + text + ")";
 }
 
 }  // namespace

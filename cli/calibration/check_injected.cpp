@@ -69,6 +69,11 @@ CheckSection check_injected(const RigEstimate& estimate,
   for (const InjectedErrorLevel& level : result.levels) {
     part.json["levels"].push_back(level_json(level));
     part.text += level_line(level);
+    if (2 * level.failed > options.draws) {
+      part.failures.push_back(fmt::format(
+          "at psi_c {:g} {} of {} draws are no rigs that see these boards: inject smaller errors",
+          level.psi_c, level.failed, options.draws));
+    }
   }
   return part;
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Vernier authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,6 +20,7 @@
 #include "calib/pose.h"
 #include "calib/rig.h"
 #include "calib/statistics/quantile.h"
+#include "cli/localisation/depth_image_pairs.h"
 #include "cli/program/camera_images.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
@@ -46,6 +48,8 @@ struct LinesArguments {
 /// What was found in the images.
 struct LinesFigures {
   std::vector<double> lines, sigmas_m;
+  std::vector<double> relative_sigmas;  ///< of a line's distance
+  std::vector<double> tilts_deg;        ///< of the camera against one held level
   std::size_t segments = 0, placed = 0;
 };
 
@@ -137,6 +141,9 @@ void check(const LinesArguments& options, const CLI::App& verb) {
   constexpr std::array of_mount{"--pitch-deg", "--roll-deg"};
   if (options.poses.empty()) refuse_options(verb, of_poses, "no poses are given");
   if (!options.poses.empty()) refuse_options(verb, of_mount, "the poses say how the camera looks");
+  if (options.poses.empty() && !(options.height_m > 0)) {
+    throw Error("--height-m", "is not above the floor", "give the height of the camera");
+  }
 }
 
 void check_outputs(const LinesArguments& options, const std::vector<ImageFiles>& files) {
@@ -158,6 +165,17 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
         "most images have no reliable line in space: check that the depth maps are aligned with "
         "the images, and their unit, --depth-unit-m");
   }
+  constexpr double unlikely_relative = 0.3, unlikely_tilt_deg = 60;
+  if (median(f.relative_sigmas) > unlikely_relative) {
+    session.add_trust_warning(fmt::format(
+        "lines are uncertain by {:.0f} % of their distance (median): check the unit of the depth "
+        "maps, --depth-unit-m",
+        100 * median(f.relative_sigmas)));
+  }
+  if (median(f.tilts_deg) > unlikely_tilt_deg) {
+    session.add_trust_warning(fmt::format(
+        "the camera is tilted by {:.0f} degrees (median): check --up", median(f.tilts_deg)));
+  }
   Json json{{"images", f.lines.size()},
             {"segments", f.segments},
             {"placed", f.placed},
@@ -174,7 +192,7 @@ void report(const LinesArguments& options, const LinesFigures& f, Session& sessi
 
 void run(const LinesArguments& options, const CLI::App& verb, Session& session) {
   check(options, verb);
-  const std::vector<ImageFiles> files = paired_images(options.image, options.depth);
+  const std::vector<ImageFiles> files = images_with_depths(options.image, options.depth, session);
   check_outputs(options, files);
   const Camera camera = camera_of(options, files.front().left.string(), session);
   const auto rig = std::make_shared<const Rig>(rig_of({{camera, Pose{}}}));
@@ -198,8 +216,12 @@ void run(const LinesArguments& options, const CLI::App& verb, Session& session) 
     seen.looks[0].view.rig = rig;  // the level camera: the same pinhole
     figures.segments += segments.image.size();
     for (const MeasuredSegment& s : segments.in_space) {
-      figures.placed += s.status == SegmentStatus::placed;
+      if (s.status != SegmentStatus::placed) continue;
+      ++figures.placed;
+      figures.relative_sigmas.push_back(s.relative_sigma);
     }
+    figures.tilts_deg.push_back(std::acos(std::clamp(all[i].R_level_camera(1, 1), -1.0, 1.0)) *
+                                180 / std::numbers::pi);
     figures.lines.push_back(static_cast<double>(seen.looks[0].view.lines.size()));
     for (const PlaceLine& line : seen.looks[0].view.lines) figures.sigmas_m.push_back(line.sigma_m);
     views.append(view_line(seen));
@@ -225,7 +247,8 @@ void add_lines(CLI::App& app, Session& session) {
   verb->add_option("--image", o->image, "images (quoted pattern)")->required();
   verb->add_option(
           "--depth", o->depth,
-          "depth maps aligned with them, PNG of 16 bits (quoted pattern); paired by number")
+          "depth maps aligned with them, PNG of 16 bits (quoted pattern); paired by number, or by "
+          "time")
       ->required();
   verb->add_option("--rig", o->rig, "the pinhole camera: a rig of any format, or a 3 x 3 matrix")
       ->required();

@@ -122,9 +122,8 @@ RigFormat named_format(const std::vector<fs::path>& files) {
   const std::string end = files[0].extension().string();
   const bool folder = fs::is_directory(files[0], fault);
   const bool shipped = folder && !shipped_file("rigs/" + files[0].string() + ".rig.json").empty();
-  const bool foreign = end == ".yaml" || end == ".yml" || end == ".txt" || end == ".cameramodel";
   if (folder && !shipped) return folder_format(files[0]);
-  if (!foreign || !fs::is_regular_file(files[0], fault)) return RigFormat::vernier;
+  if (end == ".json" || !fs::is_regular_file(files[0], fault)) return RigFormat::vernier;
   const std::string text = read_whole(files[0]);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool json = end != ".cameramodel" && first != std::string::npos && text[first] == '{';
@@ -158,6 +157,7 @@ RigFormat input_format(const fs::path& input) {
   if (end == ".yaml" || end == ".yml") return yaml_format(input);
   if (end == ".txt") return text_format(input);
   if (end == ".json" || end.empty()) return RigFormat::vernier;
+  if (looks_like_kitti_calib(read_whole(input))) return RigFormat::kitti;
   throw Error(input.string(), "cannot tell the format from the file name",
               std::string("add --from, one of ") + rig_format_names);
 }

@@ -87,11 +87,18 @@ void tell_failed_trials(const StudyResults& results, Session& session) {
 void tell_failed_calibrations(const StudyResults& results, Session& session) {
   for (const CellResult& cell : results.cells) {
     const auto& record = cell.calibrations;
-    if (!record || record->calibrations == 0 || record->failed < record->calibrations) continue;
+    if (!record || record->calibrations == 0) continue;
     if (cell.cell.experiment.sources.calibration == 0) continue;  // it was told the truth
-    session.add_trust_warning(
-        fmt::format("cell \"{}\": all {} calibrations failed, the first by: {}", cell.cell.label,
-                    record->calibrations, record->why_failed));
+    const int used = record->calibrations - record->failed;
+    if (used == 0) {
+      session.add_trust_warning(
+          fmt::format("cell \"{}\": all {} calibrations failed, the first by: {}", cell.cell.label,
+                      record->calibrations, record->why_failed));
+    } else if (2 * record->doubtful > used) {
+      session.add_trust_warning(
+          fmt::format("cell \"{}\": {} of {} calibrations are doubtful, the first by: {}",
+                      cell.cell.label, record->doubtful, used, record->why_doubtful));
+    }
   }
 }
 

@@ -156,16 +156,6 @@ std::filesystem::path colmap_images(const std::filesystem::path& folder) {
 }
 
 /// The time that an image is named after: seconds, or nanoseconds without a point.
-std::optional<double> time_of_name(const std::string& stem) {
-  constexpr std::size_t digits_of_nanoseconds = 16;
-  if (stem.empty() || !is_digit(stem[0])) return {};
-  const std::optional<double> value = to_real(stem);
-  if (!value || !std::isfinite(*value)) return {};
-  const bool whole = stem.find_first_not_of("0123456789") == std::string::npos;
-  if (!whole) return *value;
-  return stem.size() >= digits_of_nanoseconds ? std::optional(nanoseconds * *value) : std::nullopt;
-}
-
 Pose interpolated(const CameraPose& a, const CameraPose& b, double time_s) {
   const double u = (time_s - *a.time_s) / (*b.time_s - *a.time_s);
   const Eigen::Quaterniond from(a.T_world_camera.R), to(b.T_world_camera.R);
@@ -209,7 +199,26 @@ std::optional<std::vector<Pose>> by_time(const CameraPoses& poses,
   return found;
 }
 
+/// Times that only count the poses, as those of KITTI's files, are none: poses then go by order.
+void drop_counted_times(CameraPoses& read) {
+  double counted = 0;
+  for (const CameraPose& pose : read.poses) {
+    if (pose.time_s != counted++) return;
+  }
+  for (CameraPose& pose : read.poses) pose.time_s.reset();
+}
+
 }  // namespace
+
+std::optional<double> time_of_name(const std::string& stem) {
+  constexpr std::size_t digits_of_nanoseconds = 16;
+  if (stem.empty() || !is_digit(stem[0])) return {};
+  const std::optional<double> value = to_real(stem);
+  if (!value || !std::isfinite(*value)) return {};
+  const bool whole = stem.find_first_not_of("0123456789") == std::string::npos;
+  if (!whole) return *value;
+  return stem.size() >= digits_of_nanoseconds ? std::optional(nanoseconds * *value) : std::nullopt;
+}
 
 CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder) {
   std::error_code fault;
@@ -228,6 +237,7 @@ CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder) {
     for (const TimedPose& pose : read_trajectory(file)) {
       read.poses.push_back({"", pose.time_s, pose.T_world_camera});
     }
+    drop_counted_times(read);
   }
   if (read.poses.empty()) throw Error(file.string(), "holds no poses", "give one for each image");
   return read;

@@ -37,6 +37,10 @@ struct CameraPoses {
 /// Positions are in metres. Throws Error with file and line.
 CameraPoses read_camera_poses(const std::filesystem::path& file_or_folder);
 
+/// The time in the name of an image without its ending: seconds, or, from 16 digits on, nanoseconds
+/// as ASL has them.
+std::optional<double> time_of_name(const std::string& stem);
+
 /// The poses of images, given by name, in their order. Named poses are found by the image's name
 /// with or without its ending. Where images are named after their times (seconds, or nanoseconds as
 /// ASL has them) and poses have times, a pose is interpolated between the two around (positions

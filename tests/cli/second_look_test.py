@@ -174,7 +174,7 @@ class WrongThing(cli_test.Case):
             self.complains(*verb, empty, of='e.json: is empty')
             for file in (yaml, mrcal, jpeg):
                 self.complains(*verb, file, of=f"{file.name}: is not a rig file; vernier convert "
-                                               "reads Kalibr's, OpenCV's, ROS's and mrcal's")
+                                               "reads files of Kalibr, OpenCV, ROS, mrcal")
             self.complains(*verb, self.folder, of='is a folder')
 
     def test_slips_on_the_command_line(self):

@@ -157,7 +157,10 @@ RigFormat input_format(const fs::path& input) {
   if (end == ".yaml" || end == ".yml") return yaml_format(input);
   if (end == ".txt") return text_format(input);
   if (end == ".json" || end.empty()) return RigFormat::vernier;
-  if (looks_like_kitti_calib(read_whole(input))) return RigFormat::kitti;
+  if (std::error_code fault;
+      fs::is_regular_file(input, fault) && looks_like_kitti_calib(read_whole(input))) {
+    return RigFormat::kitti;
+  }
   throw Error(input.string(), "cannot tell the format from the file name",
               std::string("add --from, one of ") + rig_format_names);
 }

@@ -171,7 +171,7 @@ class Tune(unittest.TestCase):
         self.write(STUDY.replace('[map]', 'interval_width = 0.1\n[map]') + SWEEP + TUNE)
         self.refused('interval_width')
         self.write(STUDY + SWEEP + TUNE)
-        self.refused('-o DIR', words=('tune', 't.toml'))
+        self.refused('--output', words=('tune', 't.toml'))
         self.refused('none.toml', words=('tune', 'none.toml', '-o', 'out'))
         other = self.folder / 'other'
         other.mkdir()

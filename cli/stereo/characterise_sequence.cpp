@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stereo/characterise_sequence.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstddef>
@@ -11,15 +13,20 @@
 
 #include "calib/base/atomic_file.h"
 #include "calib/board_detection.h"
+#include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "cli/program/option_checks.h"
 #include "cli/program/output_check.h"
 #include "cli/program/rig_input.h"
+#include "cli/program/session.h"
 #include "cli/stereo/sequence_report.h"
 #include "localise/views/camera_poses.h"
 #include "localise/views/segments_file.h"
 #include "sim/sequence/measured_sequence.h"
 #include "sim/sequence/sequence_file.h"
+#include "sim/sequence/sequence_samples.h"
+#include "sim/sources/measured_sources.h"
 #include "sim/sources/sources_file.h"
 #include "stereo/image/depth_image.h"
 
@@ -34,8 +41,8 @@ constexpr std::array of_pairs{
     "--left",          "--right",         "--truth",        "--right-truth", "--truth-scale",
     "--max-disparity", "--min-disparity", "--scenes",       "--matcher",     "--command",
     "--corners",       "--repair",        "--lateral-shift"};
-constexpr std::array of_sequence{"--poses",        "--rig",         "--depth",
-                                 "--depth-unit-m", "--other-views", "--block-m"};
+constexpr std::array of_sequence{"--poses",       "--rig",           "--depth",  "--depth-unit-m",
+                                 "--other-views", "--bracket-views", "--block-m"};
 
 std::vector<SequenceView> read_sequence(const SequenceArguments& options) {
   const std::vector<SegmentsOfImage> images = read_segments(options.segments);
@@ -81,6 +88,16 @@ DepthImage depth_of(const std::filesystem::path& file, const Camera& camera, dou
                 "give depth maps aligned with the images");
   }
   return map;
+}
+
+std::string how_measured(const SequenceArguments& options) {
+  const SequenceOptions& how = options.how;
+  return fmt::format("lines of {:g} px or longer, seen by {} other views or more{}",
+                     how.min_length_px, how.other_views,
+                     how.bracket_views > 0 ? fmt::format(", by one of the {} before and one of the "
+                                                         "{} after",
+                                                         how.bracket_views, how.bracket_views)
+                                           : "");
 }
 
 /// Reports limitations of the results. Returns whether they can be written.
@@ -139,6 +156,11 @@ void add_sequence_options(CLI::App& verb, SequenceArguments& o) {
                   "of the sequence: how many others must have seen a line")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
+  verb.add_option("--bracket-views", o.how.bracket_views,
+                  "of the sequence: a line is expected between views that saw it, as many before "
+                  "and after; 0, with depth maps: in all")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   verb.add_option("--block-m", o.block_m, "of the sequence: blocks of the bootstrap, metres of way")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
@@ -186,10 +208,7 @@ void characterise_sequence(const SequenceArguments& options,
   const bool trusted = report_limits(sequence, session);
   if (!output.empty()) {
     if (trusted) {
-      write_atomically(output, sources_toml(sequence, fmt::format("lines seen by {} other views or "
-                                                                  "more, {:g} px or longer",
-                                                                  options.how.other_views,
-                                                                  options.how.min_length_px)));
+      write_atomically(output, sources_toml(sequence, how_measured(options)));
     } else {
       session.warn(output + " was not written");
     }

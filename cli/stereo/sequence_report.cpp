@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/program/session.h"
 #include "cli/stereo/characterise_report.h"
 #include "sim/sequence/measured_sequence.h"
 #include "sim/sequence/sequence_file.h"
@@ -28,7 +29,7 @@ struct NamedFigure {
   const char* about;
 };
 
-constexpr std::array figures{
+constexpr std::array sequence_figures{
     NamedFigure{"loss", &SequenceFigures::loss, "of the length of expected lines"},
     NamedFigure{"lost_whole", &SequenceFigures::lost_whole, "of expected lines"},
     NamedFigure{"loss_of_found", &SequenceFigures::loss_of_found, "of the length of lines found"},
@@ -41,7 +42,8 @@ constexpr std::array figures{
 
 Json figures_json(const SequenceFigures& f) {
   Json json = Json::object();
-  for (const NamedFigure& figure : figures) json[figure.name] = measured_json(f.*figure.value);
+  for (const NamedFigure& figure : sequence_figures)
+    json[figure.name] = measured_json(f.*figure.value);
   return json;
 }
 
@@ -58,13 +60,13 @@ Json bands_json(const std::vector<SequenceBand>& bands,
   return list;
 }
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double radians_of_degree = std::numbers::pi / 180;
 
-std::string figure_or_dash(double value) {
+std::string shown_figure(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
-std::string interval_or_dash(const MeasuredValue& measured) {
+std::string shown_interval(const MeasuredValue& measured) {
   return std::isfinite(measured.interval.low)
              ? fmt::format("{:.3g} to {:.3g}", measured.interval.low, measured.interval.high)
              : "-";
@@ -86,10 +88,10 @@ std::string bands_text(const std::vector<SequenceBand>& bands, const char* what,
                                       : fmt::format("above {:g}", std::round(band.from / unit)));
     for (const auto column : columns) {
       const MeasuredValue& value = band.figures.*column;
-      text +=
-          fmt::format(" {:>24}", value.known() ? fmt::format("{} ({})", figure_or_dash(value.value),
-                                                             interval_or_dash(value))
-                                               : "-");
+      text += fmt::format(
+          " {:>24}", value.known()
+                         ? fmt::format("{} ({})", shown_figure(value.value), shown_interval(value))
+                         : "-");
     }
     text += '\n';
   }
@@ -117,7 +119,7 @@ Json sequence_json(const MeasuredSequence& sequence) {
           {"turn_rad", json_number(sequence.turn_rad)},
           {"by_range", bands_json(sequence.by_range, "from_m", "to_m", 1)},
           {"by_length", bands_json(sequence.by_length, "from_px", "to_px", 1)},
-          {"by_angle", bands_json(sequence.by_angle, "from_deg", "to_deg", degree)}};
+          {"by_angle", bands_json(sequence.by_angle, "from_deg", "to_deg", radians_of_degree)}};
 }
 
 std::string sequence_text(const MeasuredSequence& sequence) {
@@ -125,21 +127,21 @@ std::string sequence_text(const MeasuredSequence& sequence) {
                                  "95 % interval", "n", "default", "note");
   for (const SourceEntry& entry : source_entries(sequence)) {
     text += fmt::format("{:<20} {:>9} {:>20} {:>8} {:>8}  {}{}\n", entry.key,
-                        figure_or_dash(entry.measured.value), interval_or_dash(entry.measured),
-                        entry.measured.samples, figure_or_dash(entry.otherwise),
+                        shown_figure(entry.measured.value), shown_interval(entry.measured),
+                        entry.measured.samples, shown_figure(entry.otherwise),
                         entry.written ? "" : "default used: ", entry.note);
   }
   text += fmt::format(
       "\n{} lines, {} views, {} depth maps; intervals: bootstrap over {} blocks of the way\n",
       sequence.lines, sequence.views, sequence.with_depth ? "with" : "without", sequence.clusters);
-  for (const NamedFigure& figure : figures) {
+  for (const NamedFigure& figure : sequence_figures) {
     const MeasuredValue& value = sequence.all.*figure.value;
-    text += fmt::format("{:<14} {:>9} {:>20} {:>8}  {}\n", figure.name, figure_or_dash(value.value),
-                        interval_or_dash(value), value.samples, figure.about);
+    text += fmt::format("{:<14} {:>9} {:>20} {:>8}  {}\n", figure.name, shown_figure(value.value),
+                        shown_interval(value), value.samples, figure.about);
   }
   return text + bands_text(sequence.by_range, "range, m", 1) +
          bands_text(sequence.by_length, "length, px", 1) +
-         bands_text(sequence.by_angle, "to sight, deg", degree);
+         bands_text(sequence.by_angle, "to sight, deg", radians_of_degree);
 }
 
 }  // namespace vernier::cli

@@ -6,11 +6,14 @@
 #include <cstddef>
 #include <iterator>
 
+#include "calib/camera.h"
 #include "calib/pose.h"
 #include "localise/join/line_fit.h"
 #include "sim/sequence/expected_lines.h"
 #include "sim/sequence/line_in_view.h"
 #include "sim/sequence/segments_on_line.h"
+#include "sim/sequence/sequence_samples.h"
+#include "stereo/image/depth_image.h"
 
 namespace vernier::sim::internal {
 
@@ -18,7 +21,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double margin_px = 4;
 constexpr double shown_share = 0.8, confirming_share = 0.3;
 constexpr double nearest = 0.7, farthest = 1 / nearest;  // of its distance in its own view
 constexpr int least_asked = 2;
@@ -46,7 +48,7 @@ void Confirmations::look(int view, const std::optional<stereo::internal::DepthIm
       const Vector3d middle = 0.5 * (in_world.a_m + in_world.b_m);
       const double ratio = (placed.T_camera_world * middle).norm() / (middle - T.t).norm();
       if (ratio < nearest || ratio > farthest) continue;
-      auto line = line_in_view(placed, in_world.a_m, in_world.b_m, margin_px);
+      auto line = line_in_view(placed, in_world.a_m, in_world.b_m, border_margin_px);
       if (!line || line->length_px() < options_.min_length_px) continue;
       const double inside =
           (line->at_m.back() - line->at_m.front()).norm() / (in_world.b_m - in_world.a_m).norm();

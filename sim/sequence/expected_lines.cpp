@@ -16,6 +16,7 @@
 #include "calib/statistics/quantile.h"
 #include "localise/join/line_fit.h"
 #include "localise/joined_lines.h"
+#include "sim/sequence/line_in_view.h"
 #include "sim/sequence/sequence_samples.h"
 
 namespace vernier::sim::internal {

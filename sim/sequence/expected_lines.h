@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "calib/camera.h"
+#include "calib/pose.h"
 #include "localise/join/line_fit.h"
 #include "localise/joined_lines.h"
 #include "sim/sequence/line_in_view.h"

@@ -3,6 +3,7 @@
 #include "sim/sequence/measured_sequence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -22,27 +23,35 @@ using namespace vernier::internal;
 
 namespace {
 
-constexpr double cut_deviations = 3;
-constexpr double same_end_px = 10;               // farther apart, an edge was cut short in one view
+constexpr double kept_deviations = 3;
 constexpr double most_line_variance_px2 = 0.03;  // of lines that ends are compared with
 constexpr int resamples_of_scales = 199;         // they sort or iterate over all samples
 
-/// Which samples count.
-using Part = std::function<bool(const SampleAt&)>;
+constexpr double beyond = std::numeric_limits<double>::infinity();
+constexpr std::array length_borders_px{0.0, 15.0, 30.0, 60.0, beyond};
 
-class Figures {
+/// Which samples count.
+using SequencePart = std::function<bool(const SampleAt&)>;
+
+class FiguresOf {
  public:
-  Figures(const SequenceSamples& samples,
-          const std::vector<int>& block,
-          const MeasuringOptions& options)
+  FiguresOf(const SequenceSamples& samples,
+            const std::vector<int>& block,
+            const MeasuringOptions& options)
       : samples_(samples), block_(block), options_(options), of_scales_(options) {
     of_scales_.bootstrap.resamples = std::min(options.bootstrap.resamples, resamples_of_scales);
-    const MeasuredValue lost = ratio(
-        samples.expected, [](const SampleAt&) { return true; }, loss, found_or_not);
-    if (lost.known()) lost_whole_ = std::clamp(lost.value, 0.0, 1.0);
+    for (std::size_t i = 0; i < lost_whole_.size(); ++i) {
+      const MeasuredValue lost = ratio(
+          samples.expected,
+          [&](const SampleAt& at) {
+            return at.length_px >= length_borders_px[i] && at.length_px < length_borders_px[i + 1];
+          },
+          loss, found_or_not);
+      if (lost.known()) lost_whole_[i] = std::clamp(lost.value, 0.0, 1.0);
+    }
   }
 
-  SequenceFigures of(const Part& part) const {
+  SequenceFigures of(const SequencePart& part) const {
     SequenceFigures f;
     const auto& expected = samples_.expected;
     f.loss = ratio(expected, part, loss, [](const ExpectedSample& s) {
@@ -62,7 +71,7 @@ class Figures {
     });
     f.end_across_px = across(part);
     add_along(part, f);
-    f.not_confirmed = not_confirmed(part, lost_whole_);
+    f.not_confirmed = not_confirmed(part);
     widen_to_wilson(f.not_confirmed);
     f.mismatch = mismatch(part);
     widen_to_wilson(f.mismatch);
@@ -70,11 +79,12 @@ class Figures {
   }
 
   /// Segments that no view confirms, less the true ones of which all views lost the line.
-  MeasuredValue not_confirmed(const Part& part, double lost) const {
+  MeasuredValue not_confirmed(const SequencePart& part) const {
     std::map<int, Sums> sums;
     const int count = add_to(sums, samples_.confirmed, part, [&](const ConfirmedSample& s) {
       const double none_by_chance = 1 - s.chance;
-      return Sums{double(!s.confirmed), none_by_chance, none_by_chance * std::pow(lost, s.asked)};
+      return Sums{double(!s.confirmed), none_by_chance,
+                  none_by_chance * std::pow(lost_of(s.at.length_px), s.asked)};
     });
     return measured_ratio(sums, count, options_, [](const Sums& s) {
       return std::clamp((s.part - s.chance) / (s.whole - s.chance), 0.0, 1.0);
@@ -95,11 +105,16 @@ class Figures {
   static bool shows_ends(const FoundSample& s) {
     return s.joined && s.line_variance_px2 <= most_line_variance_px2;
   }
+  double lost_of(double length_px) const {
+    std::size_t i = 0;
+    while (i + 1 < lost_whole_.size() && length_px >= length_borders_px[i + 1]) ++i;
+    return lost_whole_[i];
+  }
   static Sums found_or_not(const ExpectedSample& s) { return {double(s.found), 1, s.chance_found}; }
 
   template <class Sample, class Add>
   MeasuredValue ratio(const std::vector<Sample>& samples,
-                      const Part& part,
+                      const SequencePart& part,
                       double (*figure)(const Sums&),
                       Add add) const {
     std::map<int, Sums> sums;
@@ -110,7 +125,7 @@ class Figures {
   template <class Sample, class Add>
   int add_to(std::map<int, Sums>& sums,
              const std::vector<Sample>& samples,
-             const Part& part,
+             const SequencePart& part,
              Add add) const {
     int count = 0;
     for (const Sample& s : samples) {
@@ -126,7 +141,7 @@ class Figures {
   }
 
   /// Wrong segments on lines, less those beside lines.
-  MeasuredValue mismatch(const Part& part) const {
+  MeasuredValue mismatch(const SequencePart& part) const {
     std::map<int, Sums> sums;
     const int count = add_to(sums, samples_.found, part, [](const FoundSample& s) {
       return Sums{double(s.wrong), 1, 0};
@@ -144,10 +159,10 @@ class Figures {
       squares.push_back({s.ends_across_px * s.ends_across_px - s.line_variance_px2,
                          s.length_px * s.length_px, s.line_variance_px2});
     }
-    return variance_line(squares, cut_deviations);
+    return variance_line(squares, kept_deviations);
   }
 
-  MeasuredValue across(const Part& part) const {
+  MeasuredValue across(const SequencePart& part) const {
     ClusteredSamples<FoundSample> all;
     for (const FoundSample& s : samples_.found) {
       if (part(s.at) && shows_ends(s)) all.add(block_[s.at.view], s);
@@ -159,7 +174,7 @@ class Figures {
     return value;
   }
 
-  void add_along(const Part& part, SequenceFigures& f) const {
+  void add_along(const SequencePart& part, SequenceFigures& f) const {
     ClusteredSamples<double> same;
     std::map<int, Sums> cut;
     const int count = add_to(cut, samples_.ends, part, [&](const EndSample& s) {
@@ -182,10 +197,10 @@ class Figures {
   const std::vector<int>& block_;
   const MeasuringOptions& options_;
   MeasuringOptions of_scales_;
-  double lost_whole_ = 0;
+  std::array<double, length_borders_px.size() - 1> lost_whole_{};
 };
 
-std::vector<SequenceBand> bands(const Figures& figures,
+std::vector<SequenceBand> bands(const FiguresOf& figures,
                                 const std::vector<double>& borders,
                                 double SampleAt::*value) {
   std::vector<SequenceBand> all;
@@ -230,15 +245,15 @@ MeasuredSequence measure_sequence(const SequenceSamples& samples,
   result.views = static_cast<int>(views.size());
   result.lines = samples.lines;
   result.with_depth = samples.with_depth;
-  const Figures figures(samples, block, options);
+  const FiguresOf figures(samples, block, options);
   result.all = figures.of([](const SampleAt&) { return true; });
   result.turn_rad = figures.turn_rad();
   constexpr double degree = std::numbers::pi / 180;
-  constexpr double beyond = std::numeric_limits<double>::infinity();
   result.by_range = bands(figures, {0, 1, 2, 3, 5, 10, beyond}, &SampleAt::range_m);
   result.by_angle =
       bands(figures, {0, 30 * degree, 60 * degree, 75 * degree, 91 * degree}, &SampleAt::angle_rad);
-  result.by_length = bands(figures, {0, 15, 30, 60, beyond}, &SampleAt::length_px);
+  result.by_length =
+      bands(figures, {length_borders_px.begin(), length_borders_px.end()}, &SampleAt::length_px);
   return result;
 }
 

@@ -25,7 +25,7 @@ struct SequenceFigures {
   MeasuredValue end_along_px;  ///< from two views of the same end: robust, of those within 10 px
   MeasuredValue cut_short;     ///< share of ends that two views have farther apart
   /// False edges, as a share f of the segments: of those that k views should show, with ℓ the share
-  /// of lines lost whole, f + (1 − f) ℓᵏ are shown by none, but for chance.
+  /// of lines of that length lost whole, f + (1 − f) ℓᵏ are shown by none, but for chance.
   MeasuredValue not_confirmed;
   MeasuredValue mismatch;  ///< segments on lines whose depth is off, as a share
 };

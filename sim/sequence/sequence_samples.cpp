@@ -12,6 +12,7 @@
 
 #include "calib/camera.h"
 #include "calib/error.h"
+#include "calib/pose.h"
 #include "localise/join/line_fit.h"
 #include "localise/joined_lines.h"
 #include "sim/sequence/confirmations.h"
@@ -19,6 +20,7 @@
 #include "sim/sequence/line_in_view.h"
 #include "sim/sequence/segments_on_line.h"
 #include "stereo/image/depth_image.h"
+#include "stereo/segment.h"
 
 namespace vernier::sim::internal {
 
@@ -29,9 +31,8 @@ using stereo::internal::DepthImage;
 
 namespace {
 
-constexpr double margin_px = 4;           // from the border, where lines are cut off
+constexpr int close_views = 3;            // whose ends are compared
 constexpr double most_line_sigma_px = 1;  // a line less known is not asked for
-constexpr double same_end_px = 10;        // ends of a line in different views that are one end
 
 /// An end of a segment, as a station of its joined line.
 struct SeenEnd {
@@ -65,8 +66,8 @@ class Sampling {
       const int line = static_cast<int>(i);
       if (!lines_.is_known(line)) continue;
       const localise::JoinedLine& joined = lines_.joined().lines[i];
-      const auto in_view = line_in_view(placed, joined.a_m, joined.b_m, margin_px);
-      if (!in_view || (!depth && !lines_.is_bracketed(line, view))) continue;
+      const auto in_view = line_in_view(placed, joined.a_m, joined.b_m, border_margin_px);
+      if (!in_view || (options_.bracket_views > 0 && !lines_.is_bracketed(line, view))) continue;
       const double m_of_px =
           (in_view->at_m.back() - in_view->at_m.front()).norm() / in_view->length_px();
       const auto known = lines_.without(line, view, same_end_px * m_of_px);
@@ -86,7 +87,7 @@ class Sampling {
            const KnownLine& known,
            const std::optional<DepthImage>& depth) {
     auto in_view = line_in_view(placed, known.at(known.seen_m.front().first),
-                                known.at(known.seen_m.back().second), margin_px);
+                                known.at(known.seen_m.back().second), border_margin_px);
     if (!in_view) return;
     const Pose& T_world_camera = views_[view].T_world_camera;
     const auto station = [&](std::size_t i) {
@@ -197,8 +198,8 @@ class Sampling {
       const Vector2d& p = end == 0 ? px.a_px : px.b_px;
       ends.ends[end] = {station_of_ray(joined.a_m, (joined.b_m - joined.a_m).normalized(), T.t,
                                        T.R * placed.ray(p)),
-                        p.minCoeff() > margin_px &&
-                            (placed.size_px.cast<double>() - p).minCoeff() > margin_px + 1};
+                        p.minCoeff() > border_margin_px &&
+                            (placed.size_px.cast<double>() - p).minCoeff() > border_margin_px + 1};
     }
     if (ends.ends[0].station_m > ends.ends[1].station_m) std::swap(ends.ends[0], ends.ends[1]);
     ends.px_of_m = px.length_px() / (ends.ends[1].station_m - ends.ends[0].station_m);
@@ -209,7 +210,7 @@ class Sampling {
     for (const std::vector<SeenEnds>& seen : ends_) {
       for (std::size_t i = 1; i < seen.size(); ++i) {
         const SeenEnds &before = seen[i - 1], &now = seen[i];
-        if (now.view - before.view > options_.bracket_views) continue;
+        if (now.view - before.view > close_views) continue;
         for (int end = 0; end < 2; ++end) {
           if (!before.ends[end].inside || !now.ends[end].inside) continue;
           const double off_m = now.ends[end].station_m - before.ends[end].station_m;
@@ -244,6 +245,10 @@ SequenceSamples sequence_samples(const Camera& camera,
                                  const std::function<void(int done, int total)>& progress) {
   if (views.size() < 3) {
     throw Error("sequence", "has fewer than three views", "give more, of the same lines");
+  }
+  if (!depth && options.bracket_views < 1) {
+    throw Error("sequence", "has no depth maps, and lines are expected in all views",
+                "give depth maps, or ask only between views that saw a line");
   }
   Sampling sampling(camera, views, options);
   Confirmations confirmations(camera, views, options);

@@ -38,12 +38,15 @@ struct SequenceOptions {
   double turn_rad = 0.17;  ///< … and is turned by less
   /// With depth maps: a line is in view where a depth beside it is within floor + share of its own.
   double depth_floor_m = 0.03, depth_share = 0.02;
-  /// Without: a line is expected in views that have, within this many before and after, one that
-  /// saw it.
+  /// A line is expected in views that have, within this many before and as many after, one that saw
+  /// it: poses drift, and edges look otherwise from elsewhere. 0, with depth maps only: in all.
   int bracket_views = 3;
   int neighbour_views = 2;  ///< before and after, that a segment must be confirmed in
   double wrong_sigma = 5;   ///< a depth that is off by more is a mismatch
 };
+
+inline constexpr double border_margin_px = 4;  ///< nearer, a line is cut off by the image
+inline constexpr double same_end_px = 10;      ///< ends of a line in two views that are one end
 
 /// Where a sample was taken.
 struct SampleAt {

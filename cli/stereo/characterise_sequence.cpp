@@ -102,7 +102,7 @@ std::string how_measured(const SequenceArguments& options) {
 
 /// Reports limitations of the results. Returns whether they can be written.
 bool report_limits(const MeasuredSequence& sequence, Session& session) {
-  constexpr double most_loss = 0.6;
+  constexpr double most_loss = 0.7, most_false = 0.7;
   constexpr int least_clusters = 6;
   if (!sequence.with_depth) {
     session.warn("no depth maps: a line that something hides counts as lost");
@@ -117,6 +117,12 @@ bool report_limits(const MeasuredSequence& sequence, Session& session) {
     session.add_trust_warning(
         "nothing could be measured: fewer than 30 lines were seen by enough views; check that the "
         "poses are camera to world and belong to the images");
+  } else if (sequence.all.not_confirmed.known() && sequence.all.not_confirmed.value > most_false) {
+    any = false;
+    session.add_trust_warning(fmt::format(
+        "{:.0f} % of the segments are where the poses put them in no neighbouring view: "
+        "check the poses, and the unit of the depths",
+        100 * sequence.all.not_confirmed.value));
   } else if (sequence.all.loss.known() && sequence.all.loss.value > most_loss) {
     any = false;
     session.add_trust_warning(

@@ -24,7 +24,7 @@ using namespace vernier::internal;
 namespace {
 
 constexpr double kept_deviations = 3;
-constexpr double most_line_variance_px2 = 0.03;  // of lines that ends are compared with
+constexpr double most_line_variance_px2 = 0.01;  // of lines that ends are compared with
 constexpr int resamples_of_scales = 199;         // they sort or iterate over all samples
 
 constexpr double beyond = std::numeric_limits<double>::infinity();

@@ -171,6 +171,7 @@ def write_inputs(folder):
     (folder / 'room.ply').write_text(room())
     (folder / 'views.jsonl').write_text(features())
     write_seen(folder)
+    characterise_test.write_sequence(folder)
     (folder / 'known.map').write_bytes(map_file(features().splitlines()))
 
 
@@ -202,6 +203,7 @@ def calls():
         Call('characterise', ['characterise', '--left', 'big_left.pgm', '--right', 'big_right.pgm',
                               '--truth', 'big_truth.pgm', '--truth-scale', '4', '--max-disparity',
                               '20', '-o', 'out.toml'], ['out.toml']),
+        Call('characterise_sequence', [*characterise_test.SEQUENCE, '-o', 'out.toml'], ['out.toml']),
         Call('world', ['world', 'make', '--seed', '7', '-o', 'out.toml'], ['out.toml']),
         Call('world_import', ['world', 'import', 'room.ply', '-o', 'out.toml', '--plan', 'out.svg'],
              ['out.toml', 'out.svg']),

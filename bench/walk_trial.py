@@ -4,7 +4,8 @@
 """Localisation on a real walk, and on the same walk simulated in the world built from its views.
 
     walk_trial.py PROGRAM WALK [--half first|second|both] [--spacing-m 0.5,1] [--height-m 1.6]
-                  [--simulated N] [--source NAME=VALUE …] [--page page.html] [--json figures.json]
+                  [--simulated N] [--sources FILE] [--source NAME=VALUE …] [--page page.html]
+                  [--json figures.json]
 
 WALK is the folder of sequences/office_walk: images, depth maps, K.txt, poses.csv (world y up). Nodes
 every so many metres of the walk, the other views as queries. Lines are found by `vernier lines`, roll,
@@ -15,7 +16,7 @@ one without an answer fails. Chance answers with a node at random.
 
 With --simulated N the prediction stands beside: `world build` makes a world of all views, `simulate
 --poses` looks from the same poses N times, with other draws, for nodes and queries alike, by the sources
-that are given (--source; else the defaults). Real and predicted are paired by query: their difference is
+that are given (--sources, as characterise writes them, --source; else the defaults). Real and predicted are paired by query: their difference is
 real minus the mean of the N. Intervals of 95 % are by a bootstrap over blocks of 2 m of the walk:
 neighbouring views fail together. --page writes both on one page.
 """
@@ -25,6 +26,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import struct
 import subprocess
 import tempfile
@@ -42,6 +44,12 @@ def along(poses):
     for a, b in zip(poses, poses[1:]):
         way.append(way[-1] + math.hypot(b[0] - a[0], b[1] - a[1]))
     return way
+
+
+def sources_in(file):
+    """The values of a file of sources, as words of --source."""
+    return [f'{name}={value}' for name, value in
+            re.findall(r'^(\w+) = ([-+.\de]+)', file.read_text(), re.MULTILINE)]
 
 
 def turn_deg(a, b):
@@ -245,10 +253,13 @@ def main():
     parser.add_argument('--spacing-m', default='0.5,1')
     parser.add_argument('--height-m', type=float, default=1.6)
     parser.add_argument('--simulated', type=int, default=0, metavar='N')
+    parser.add_argument('--sources', type=pathlib.Path)
     parser.add_argument('--source', action='append', default=[])
     parser.add_argument('--page', type=pathlib.Path)
     parser.add_argument('--json', type=pathlib.Path)
     options = parser.parse_args()
+    if options.sources:
+        options.source = sources_in(options.sources) + options.source
     with tempfile.TemporaryDirectory() as folder:
         walk = Walk(options.program, options.walk, pathlib.Path(folder), options.height_m)
         print(f'{len(walk.views)} views of a walk of {walk.way[-1]:.1f} m, queries of the '

@@ -66,18 +66,6 @@ Camera camera_of(const LinesArguments& options, const std::string& image, Sessio
   return read.estimate.rig.cameras.at(0);
 }
 
-/// Those that have a place in space.
-SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segments) {
-  SegmentsOfImage result{image, {}};
-  for (std::size_t i = 0; i < segments.image.size(); ++i) {
-    const MeasuredSegment& s = segments.in_space[i];
-    if (s.status != SegmentStatus::placed) continue;
-    result.segments.push_back(
-        {segments.image[i], {s.segment.a_m, s.segment.b_m, s.independent_m2}, s.segment.reliable});
-  }
-  return result;
-}
-
 /// Where the camera stands at an image, as far as it is known.
 struct Stance {
   std::optional<Pose2D> pose;

@@ -33,4 +33,11 @@ std::pair<int, int> up_axis(const std::string& word);
 std::vector<FloorPose> floor_poses(const FloorPoseOptions& options,
                                    const std::vector<std::filesystem::path>& images);
 
+/// All poses of the file in its order, with their images' names, or numbers from 1.
+struct NamedFloorPoses {
+  std::vector<std::string> names;
+  std::vector<FloorPose> poses;
+};
+NamedFloorPoses all_floor_poses(const FloorPoseOptions& options);
+
 }  // namespace vernier::cli

@@ -10,7 +10,10 @@
 #include "calib/base/text_lines.h"
 #include "calib/error.h"
 #include "localise/joined_lines.h"
+#include "localise/views/depth_view.h"
 #include "localise/views/view_json.h"
+#include "stereo/reconstruction/segment_disparity.h"
+#include "stereo/reconstruction/space_segments.h"
 
 namespace vernier::localise::internal {
 
@@ -80,6 +83,17 @@ SegmentsOfImage parse_image(const JsonNode& node) {
 }
 
 }  // namespace
+
+SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segments) {
+  SegmentsOfImage result{image, {}};
+  for (std::size_t i = 0; i < segments.image.size(); ++i) {
+    const stereo::internal::MeasuredSegment& s = segments.in_space[i];
+    if (s.status != stereo::internal::SegmentStatus::placed) continue;
+    result.segments.push_back(
+        {segments.image[i], {s.segment.a_m, s.segment.b_m, s.independent_m2}, s.segment.reliable});
+  }
+  return result;
+}
 
 std::vector<SegmentsOfImage> read_segments(const std::filesystem::path& file) {
   constexpr std::size_t most_images = 100'000, longest_line = 256'000'000;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "localise/joined_lines.h"
+#include "localise/views/depth_view.h"
 #include "stereo/segment.h"
 
 namespace vernier::localise::internal {
@@ -24,6 +25,9 @@ struct SegmentsOfImage {
   std::string image;
   std::vector<ImageSegmentInSpace> segments;
 };
+
+/// Those of an image with depths that have a place in space.
+SegmentsOfImage segments_of(const std::string& image, const DepthSegments& segments);
 
 /// Reads such images, one a line of JSON (docs/file-formats.md, `lines --segments`). Throws Error
 /// naming file, line and key for what is malformed, not finite, beyond 1,000 m or of no length, for

@@ -144,6 +144,12 @@ def write_seen(folder):
         (folder / f'seen{i}.png').write_bytes(png16([[3000] * 160] * 120))
     (folder / 'seen.segments').write_text('\n'.join(seen) + '\n')
     (folder / 'seen.csv').write_text('\n'.join(poses) + '\n')
+    (folder / 'inside.csv').write_text(poses[0] + '\n' + ''.join(
+        f'{i},1,0,0,{3 + 0.1 * i},0,0,1,2,0,-1,0,0,0,0,0,1\n' for i in range(3)))
+    one = {'name': 'depth', 'model': 'pinhole', 'size_px': [160, 120],
+           'parameters': {'f_px': 150, 'ax': 1, 'ay': 1, 'ox_px': 79.5, 'oy_px': 59.5}}
+    (folder / 'depth.rig.json').write_text(json.dumps(
+        {'format': 'vernier/rig', 'version': 1, 'cameras': [one]}))
     (folder / 'K.txt').write_text('150 0 80\n0 150 60\n0 0 1\n')
 
 
@@ -215,6 +221,9 @@ def calls():
         Call('world_route', ['world', 'route', 'workshop', '-o', 'out.toml'], ['out.toml']),
         Call('simulate', ['simulate', '--world', 'workshop', '--rig', 'nominal', '--pose', '10,7.5,0',
                           '--picture', 'out.svg'], ['out.svg']),
+        Call('simulate_views', ['simulate', '--world', 'posts.world.toml', '--rig', 'depth.rig.json',
+                                '--poses', 'inside.csv', '--height-m', '1.2', '--features', 'out.jsonl',
+                                '--segments', 'out.segments'], ['out.jsonl', 'out.segments']),
         Call('drive', ['drive', '--pose', '10,7.5,0', '--commands', 'commands.csv', '-o', 'out.jsonl',
                        '--truth', 'out.txt', '--plan', 'out.svg'], ['out.jsonl', 'out.txt', 'out.svg']),
         Call('servo', ['servo', '--trials', '1', '--threads', '1', '-o', 'out.csv', '--plan', 'out.svg'],

@@ -71,7 +71,7 @@ class WorldBuild(verb_calls.ProgramCase):
         self.assertAlmostEqual(info['route_m'], 4 * math.hypot(0.2, 0.05), delta=0.02)
         seen = json.loads(self.done('simulate', '--world', 'b.toml', '--pose', '0.4,0.1,0', '--height-m',
                                     '1', '--source', 'none', '--json'))
-        self.assertGreater(len(seen['space']), 3)
+        self.assertGreater(len(seen['space']['a_m']), 3)
         self.done('world', 'export', 'b.toml', '-o', 'b.ply')
         # the same again gives the same bytes
         before = (self.folder / 'b.toml').read_bytes(), (self.folder / 'lines.csv').read_bytes()

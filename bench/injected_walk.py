@@ -3,15 +3,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A wrong camera told to the queries of a walk: what it does to localisation, real and simulated.
 
-    injected_walk.py PROGRAM WALK [--simulated VIEWS.jsonl] [--draws 6] [--psi-c 1,3,10,30]
+    injected_walk.py PROGRAM WALK [--simulated] [--sources FILE] [--draws 6] [--psi-c 1,3,10,30]
 
 The map has the right camera. Queries are told a depth unit, or a focal length, that is wrong by
 1 + 0.01 psi_c z, z a standard normal deviate, the same at each psi_c. *Real*: `vernier lines` finds
-the lines of the images again with the wrong camera. *Model*: the right lines, moved as the
-simulator's estimator would move them (points along their rays, or across them). Of --simulated,
-views of the same poses that a simulator made (as `lines` writes them, in the order of the images),
-both the map and the moved queries are made from these: the prediction. Intervals are by a bootstrap
-over blocks of 2 m of the walk; the slope is that of the share within 1 m on log10 psi_c.
+the lines of the images again with the wrong camera. *Model*: the right real lines, moved as the
+simulator's estimator would move them (points along their rays, or across them). With --simulated a
+third column is made wholly without the images of the queries: views of the same poses in the world
+built from the walk (walk_trial.py), by the sources of a file as `characterise` writes it or by the
+defaults, moved in the same way: the prediction. `localise` refuses queries whose focal length differs
+by more than 5 % from that of the map; so that it can be asked, their views name the map's camera.
+Intervals are by a bootstrap over blocks of 2 m of the walk; the slope is that of the share within
+1 m on log10 psi_c, without the right camera.
 """
 import argparse
 import csv
@@ -21,7 +24,7 @@ import pathlib
 import random
 import tempfile
 
-from walk_trial import BLOCK_M, DRAWS, Trial, interval, median, turn_deg
+from walk_trial import BLOCK_M, Walk, interval, is_exact, is_near, mean, median, share, sources_in
 
 SIGMA = 0.01
 LEAST_SCALE = 0.1
@@ -94,187 +97,138 @@ def move_pixels(look, move, scale):
 
     for key in ('image_lines_px', 'monocular_lines_px'):
         look[key] = [moved(*s[:2]) + moved(*s[2:]) for s in look.get(key, [])]
-    camera['f_px'] = told
 
 
-class Walk(Trial):
-    """Views of one walk, real or simulated, and answers to queries told wrong."""
-
-    def __init__(self, program, walk, folder, height_m, views=None):
-        self.walk, self.height_m = walk, height_m
-        if views is None:
-            super().__init__(program, walk, folder, height_m)
-        else:
-            self.program, self.folder, self.views = program, folder, views
-            self.poses = [json.loads(view)['pose'] for view in views]
-            self.way = along_of(self.poses)
-
-    def lines_told(self, kind, scale):
-        """Views found again with a wrong depth unit or focal length."""
-        unit, rig = 0.001, self.walk / 'K.txt'
-        if kind == 'depth':
-            unit *= scale
-        else:
-            K = [float(x) for x in rig.read_text().replace(',', ' ').split()]
-            K[0], K[4] = K[0] * scale, K[4] * scale
-            rig = self.folder / 'K_told.txt'
-            rig.write_text('\n'.join(' '.join(map(repr, K[i:i + 3])) for i in (0, 3, 6)) + '\n')
-        self.run('lines', '--image', f'{self.walk}/images/*.png', '--depth', f'{self.walk}/depth/*.png',
-                 '--rig', rig, '--poses', self.walk / 'poses.csv', '--up', 'y', '--height-m',
-                 self.height_m, '--depth-unit-m', unit, '-o', 'told.jsonl')
-        return (self.folder / 'told.jsonl').read_text().splitlines()
-
-    def make_map(self, nodes):
-        (self.folder / 'nodes.jsonl').write_text(''.join(self.views[i] + '\n' for i in nodes))
-        self.run('map', 'make', '--features', 'nodes.jsonl', '-o', 'walk.map')
-
-    def errors(self, queries, views, method):
-        """Metres and degrees of each query; infinite where there is no answer."""
-        (self.folder / 'queries.jsonl').write_text(''.join(views[i] + '\n' for i in queries))
-        self.run('localise', 'walk.map', '--features', 'queries.jsonl', '--method', method, '-o',
-                 'answers.csv')
-        errors = []
-        with open(self.folder / 'answers.csv', newline='') as text:
-            for i, answer in zip(queries, csv.DictReader(text)):
-                x, y, heading = self.poses[i]
-                if answer['status'] != 'answered':
-                    errors.append((math.inf, math.inf))
-                    continue
-                errors.append((math.hypot(float(answer['x_m']) - x, float(answer['y_m']) - y),
-                               turn_deg(math.radians(float(answer['heading_deg'])), heading)))
-        return errors
+def lines_told(walk, kind, scale):
+    """Views found again with a wrong depth unit or focal length, under the right camera's name."""
+    unit, rig = 0.001, walk.walk / 'K.txt'
+    if kind == 'depth':
+        unit *= scale
+    else:
+        K = [float(x) for x in rig.read_text().replace(',', ' ').split()]
+        K[0], K[4] = K[0] * scale, K[4] * scale
+        rig = walk.folder / 'K_told.txt'
+        rig.write_text('\n'.join(' '.join(map(repr, K[i:i + 3])) for i in (0, 3, 6)) + '\n')
+    walk.run('lines', *walk.images(), '--rig', rig, *walk.poses_at, '--depth-unit-m', unit, '-o',
+             'told.jsonl')
+    told = []
+    for right, line in zip(walk.views, (walk.folder / 'told.jsonl').read_text().splitlines()):
+        view = json.loads(line)
+        view['looks'][0]['cameras'] = json.loads(right)['looks'][0]['cameras']
+        told.append(json.dumps(view))
+    return told
 
 
-def along_of(poses):
-    way = [0.0]
-    for a, b in zip(poses, poses[1:]):
-        way.append(way[-1] + math.hypot(b[0] - a[0], b[1] - a[1]))
-    return way
+class Trial:
+    """A map by the right camera, and its queries told wrong."""
+
+    def __init__(self, walk, spacing_m, method):
+        self.walk, self.method = walk, method
+        self.nodes = walk.nodes(spacing_m)
+        self.queries = walk.queries(self.nodes, 'both')
+        self.blocks = [int(walk.way[i] / BLOCK_M) for i in self.queries]
+        self.rotations = level_rotations(walk.walk)
+
+    def answers(self, right, told):
+        views = list(right)
+        for i in self.queries:
+            views[i] = told[i]
+        return self.walk.answers(views, self.nodes, self.queries, self.method)
+
+    def moved(self, views, kind, scale):
+        return {i: moved_view(views[i], kind, scale, self.rotations[i]) for i in self.queries}
 
 
 class Figures:
-    """Errors of all draws at one psi_c: lists by query."""
+    """Answers of all draws at one psi_c, by query."""
 
-    def __init__(self, draws, blocks):
-        self.draws, self.blocks = draws, blocks
+    def __init__(self, draws):
+        self.by_query = list(zip(*draws))
 
-    def by_query(self, score):
-        return [sum(score(d[q]) for d in self.draws) / len(self.draws)
-                for q in range(len(self.blocks))]
+    def score(self, is_hit):
+        return [mean([is_hit(a) for a in answers]) for answers in self.by_query]
 
-    def near(self):
-        return self.by_query(lambda e: e[0] <= 1)
-
-    def exact(self):
-        return self.by_query(lambda e: e[0] <= 0.25 and e[1] <= 5)
-
-    def median(self):
-        return median([e[0] for d in self.draws for e in d])
+    def cell(self, blocks):
+        return (f'{share(self.score(is_near), blocks)}; {share(self.score(is_exact), blocks)}; '
+                f'{error_of(self.by_query):.3f} m')
 
 
-def resampled(blocks, statistic, seed=1):
-    """95 % of a statistic of chosen queries, by resampling blocks."""
-    groups = {}
-    for q, block in enumerate(blocks):
-        groups.setdefault(block, []).append(q)
-    groups = list(groups.values())
-    chance = random.Random(seed)
-    values = sorted(statistic([q for _ in groups for q in chance.choice(groups)])
-                    for _ in range(DRAWS // 4))
-    return values[int(0.025 * len(values))], values[int(0.975 * len(values)) - 1]
-
-
-def median_of(figures, queries):
-    return median([d[q][0] for d in figures.draws for q in queries])
+def error_of(queries):
+    return median([a['off_m'] for answers in queries for a in answers])
 
 
 def ratio(real, predicted, blocks):
-    every = list(range(len(blocks)))
+    def of(rows):
+        below = error_of([p for _, p in rows])
+        return error_of([r for r, _ in rows]) / below if below > 0 else math.nan
 
-    def of(chosen):
-        below = median_of(predicted, chosen)
-        return median_of(real, chosen) / below if below > 0 else math.inf
-
-    low, high = resampled(blocks, of)
-    return f'{of(every):.2f} ({low:.2f} to {high:.2f})'
+    rows = list(zip(real.by_query, predicted.by_query))
+    low, high = interval(rows, blocks, of)
+    return f'{of(rows):.2f} [{low:.2f}, {high:.2f}]'
 
 
 def slope(levels, blocks):
     """Of the share within 1 m on log10 psi_c, least squares, and its interval."""
     psi = [math.log10(p) for p in levels]
-    shares = [figures.near() for figures in levels.values()]
-    mean = sum(psi) / len(psi)
+    middle = mean(psi)
 
-    def of(chosen):
-        y = [sum(s[q] for q in chosen) / len(chosen) for s in shares]
-        return (sum((p - mean) * v for p, v in zip(psi, y)) / sum((p - mean) ** 2 for p in psi))
+    def of(rows):
+        return (sum((p - middle) * mean([row[k] for row in rows]) for k, p in enumerate(psi)) /
+                sum((p - middle) ** 2 for p in psi))
 
-    low, high = resampled(blocks, of)
-    return f'{of(list(range(len(blocks)))):.2f} ({low:.2f} to {high:.2f})'
+    rows = list(zip(*(figures.score(is_near) for figures in levels.values())))
+    low, high = interval(rows, blocks, of)
+    return f'{of(rows):.2f} [{low:.2f}, {high:.2f}]'
 
 
-def percent(values, blocks):
-    low, high = interval(values, blocks)
-    return f'{100 * sum(values) / len(values):.0f} % [{100 * low:.0f}, {100 * high:.0f}]'
+def scales(options, kind, psi_c):
+    chance = random.Random(f'{kind} {options.seed}')
+    drawn = [1 + SIGMA * psi_c * chance.gauss(0, 1) for _ in range(options.draws)]
+    return [s for s in drawn if s >= LEAST_SCALE] if psi_c else [1]
 
 
 def run(options, folder):
-    walk = Walk(options.program, options.walk, folder / 'real', options.height_m)
+    walk = Walk(options.program, options.walk, folder, options.height_m)
     simulated = None
     if options.simulated:
-        views = options.simulated.read_text().splitlines()
-        if len(views) != len(walk.views):
-            raise SystemExit(f'{options.simulated}: has {len(views)} views of {len(walk.views)} images')
-        simulated = Walk(options.program, options.walk, folder / 'simulated', options.height_m, views)
-    rotations = level_rotations(options.walk)
-    nodes = walk.nodes(options.spacing_m)
-    queries = [i for i in range(len(walk.views)) if i not in nodes]
-    blocks = [int(walk.way[i] / BLOCK_M) for i in queries]
-    walk.make_map(nodes)
-    if simulated:
-        simulated.make_map(nodes)
-
-    def moved(views, kind, scale):
-        return {i: moved_view(views[i], kind, scale, rotations[i]) for i in queries}
-
+        walk.build()
+        simulated = walk.simulated(0, sources_in(options.sources) if options.sources else [])
+    trial = Trial(walk, options.spacing_m, options.method)
     names = ['real', 'model'] + (['simulated'] if simulated else [])
-    print(f'{len(queries)} queries, {len(nodes)} nodes, method {options.method}; {options.draws} draws\n')
+    print(f'{len(trial.queries)} queries, {len(trial.nodes)} nodes, method {options.method}; '
+          f'{options.draws} draws\n')
     print('| told wrong | psi_c | ' + ' | '.join(f'{n}: within 1 m; 0.25 m, 5 deg; median' for n in names)
-          + ' | median error, real / ' + names[-1] + ' |')
-    print('| --- ' * (len(names) + 3) + '|')
+          + ' | ' + ' | '.join(f'median error, real / {n}' for n in names[1:]) + ' |')
+    print('| --- ' * (2 * len(names) + 1) + '|')
     for kind in options.of.split(','):
         levels = {name: {} for name in names}
         for psi_c in [0] + [float(p) for p in options.psi_c.split(',')]:
-            chance = random.Random(f'{kind} {options.seed}')
             draws = {name: [] for name in names}
-            for _ in range(options.draws if psi_c else 1):
-                scale = 1 + SIGMA * psi_c * chance.gauss(0, 1)
-                if scale < LEAST_SCALE:
-                    continue
-                told = walk.lines_told(kind, scale)
-                draws['real'].append(walk.errors(queries, told, options.method))
+            for scale in scales(options, kind, psi_c):
+                draws['real'].append(trial.answers(walk.views, lines_told(walk, kind, scale)))
                 draws['model'].append(
-                    walk.errors(queries, moved(walk.views, kind, scale), options.method))
+                    trial.answers(walk.views, trial.moved(walk.views, kind, scale)))
                 if simulated:
-                    draws['simulated'].append(simulated.errors(
-                        queries, moved(simulated.views, kind, scale), options.method))
-            figures = {name: Figures(draws[name], blocks) for name in names}
+                    draws['simulated'].append(
+                        trial.answers(simulated, trial.moved(simulated, kind, scale)))
+            figures = {name: Figures(draws[name]) for name in names}
             if psi_c:
                 for name in names:
                     levels[name][psi_c] = figures[name]
-            cells = [f'{percent(f.near(), blocks)}; {percent(f.exact(), blocks)}; {f.median():.3f} m'
-                     for f in figures.values()]
-            print(f'| {kind} | {psi_c:g} | ' + ' | '.join(cells) + ' | ' +
-                  ratio(figures['real'], figures[names[-1]], blocks) + ' |', flush=True)
+            cells = [f.cell(trial.blocks) for f in figures.values()]
+            cells += [ratio(figures['real'], figures[n], trial.blocks) for n in names[1:]]
+            print(f'| {kind} | {psi_c:g} | ' + ' | '.join(cells) + ' |', flush=True)
         print(f'\nslope of success, {kind}: ' +
-              '; '.join(f'{name} {slope(levels[name], blocks)}' for name in names) + '\n', flush=True)
+              '; '.join(f'{name} {slope(levels[name], trial.blocks)}' for name in names) + '\n',
+              flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('program', type=lambda name: pathlib.Path(name).resolve())
     parser.add_argument('walk', type=lambda name: pathlib.Path(name).resolve())
-    parser.add_argument('--simulated', type=pathlib.Path)
+    parser.add_argument('--simulated', action='store_true')
+    parser.add_argument('--sources', type=pathlib.Path)
     parser.add_argument('--method', default='pgh')
     parser.add_argument('--of', default='depth,focal')
     parser.add_argument('--psi-c', default='1,3,10,30')
@@ -284,8 +238,6 @@ def main():
     parser.add_argument('--height-m', type=float, default=1.6)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for part in ('real', 'simulated'):
-            (pathlib.Path(folder) / part).mkdir()
         run(options, pathlib.Path(folder))
 
 

@@ -7,6 +7,7 @@ of views of a wall with lines.
     characterise_test.py PROGRAM
 """
 import json
+import os
 import pathlib
 import random
 import subprocess
@@ -148,6 +149,35 @@ class Sequence(unittest.TestCase):
         complains('wall07.png', *SEQUENCE)
         (self.folder / 'wall.segments').write_text('{"image": "wall00.png", "segments": [{}]}\n')
         complains('wall.segments:1', *SEQUENCE)
+
+
+class RealSequence(unittest.TestCase):
+    """The first images of a walk with a head-mounted camera; skipped without VERNIER_DATA."""
+
+    def test_what_a_kitchen_shows(self):
+        walk = pathlib.Path(os.environ.get('VERNIER_DATA', '')) / 'sequences' / 'office_walk'
+        if 'VERNIER_DATA' not in os.environ or not walk.is_dir():
+            self.skipTest('VERNIER_DATA does not name the folder of the data sets')
+        with tempfile.TemporaryDirectory() as folder:
+            def call(*words):
+                done = subprocess.run([PROGRAM, *map(str, words), '-q'], cwd=folder,
+                                      capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                return done.stdout
+            some = '000[0-4]*.png'  # 16 views
+            poses = ['--poses', walk / 'poses.csv']
+            call('lines', '--image', walk / 'images' / some, '--depth', walk / 'depth' / some, '--rig',
+                 walk / 'K.txt', *poses, '--up', 'y', '--height-m', '1.6', '-o', 'walk.jsonl',
+                 '--segments', 'walk.segments')
+            said = json.loads(call('characterise', '--sequence', 'walk.segments', *poses, '--rig',
+                                   walk / 'K.txt', '--depth', walk / 'depth' / some, '--json'))
+        figures = {name: figure['value'] for name, figure in said['figures'].items()}
+        self.assertTrue(0.05 < figures['loss'] < 0.6, figures)
+        self.assertTrue(0.05 < figures['end_across_px'] < 0.4, figures)
+        self.assertTrue(1 < figures['pieces'] < 2, figures)
+        self.assertLess(figures['false_edges'], 0.5)
+        short, long = (said['by_length'][i]['loss']['value'] for i in (0, 2))
+        self.assertGreater(short, long)
 
 
 class Characterise(unittest.TestCase):
